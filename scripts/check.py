@@ -15,7 +15,7 @@ from pathlib import Path
 import yaml
 from documented import NOT_RUN, all_pages, blocks
 
-from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.function_table import functions
 from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
 
 ROOT = Path(__file__).parents[1]
@@ -191,8 +191,8 @@ def the_page_about_expressions_lists_every_function() -> Iterator[Looked]:
     page = (DOCS / "expressions.md").read_text(encoding="utf-8")
     table = page.partition("\n## Functions\n")[2].partition("\n\n**")[0]
     listed = set(re.findall(r"`(\w+)\(", table))
-    for name in sorted(listed | FUNCTIONS.keys()):
-        yield name, "" if name in listed & FUNCTIONS.keys() else "is a function, or a row of the table, only"
+    for name in sorted(listed | functions().keys()):
+        yield name, "" if name in listed & functions().keys() else "is a function, or a row of the table, only"
 
 
 def quoted_messages_are_printed() -> Iterator[Looked]:

@@ -40,8 +40,13 @@ BUILT_IN = (
     "lumen.features.answers:FEATURE",
     "lumen.features.naoqi:FEATURE",
     "lumen.features.robots:FEATURE",
+    "lumen.features.expressions:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
+
+
+VALUE_KINDS = ("null", "boolean", "number", "text", "list", "map", "any")
+"""The kinds of values in expressions, and `any` for all of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +103,32 @@ class ModuleRow:
     module: str
     description: str = ""
     options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionRow:
+    """A function of the expression language. It is pure: the same arguments give the same value.
+
+    `call` is its import string; the first line of its docstring is shown in editors. `parameters` are the kinds that
+    each argument may have, and `returns` those of its value: `text`, several as `text|list`, or `any`. `example` shows
+    how the arguments are written. A `scoped` function gets the `Scope` before its arguments; `clock` means that it
+    reads the time of day, `draws` that it draws random values. An `exact` function checks its arguments itself and
+    returns JSON data within Lumen's bounds; Lumen checks both for others.
+    """
+
+    call: str
+    parameters: tuple[str, ...]
+    returns: str
+    example: str = ""
+    scoped: bool = False
+    clock: bool = False
+    draws: bool = False
+    exact: bool = False
+
+    def __post_init__(self) -> None:
+        for kind in "|".join((*self.parameters, self.returns)).split("|"):
+            if kind not in VALUE_KINDS:
+                raise ValueError(f"there is no kind of value `{kind}`: there are {', '.join(VALUE_KINDS)}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -287,6 +318,7 @@ class Feature:
     """Verbs of the YAML that the robot performs, by their names."""
     modules: Mapping[str, ModuleRow] = field(default_factory=dict)
     robots: Mapping[str, RobotRow] = field(default_factory=dict)
+    functions: Mapping[str, FunctionRow] = field(default_factory=dict)
 
 
 class FeatureFault(NamedTuple):

@@ -19,7 +19,7 @@ from lumen.interpreters.expressions import (
     parse_expression,
     unparse,
 )
-from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.function_table import functions
 from lumen.interpreters.expressions.tree import (
     Binary,
     Conditional,
@@ -59,8 +59,8 @@ def _larger(nodes: st.SearchStrategy[Any]) -> st.SearchStrategy[Any]:
     several = st.lists(nodes, min_size=2, max_size=3).map(tuple)
     keys = st.lists(st.text(max_size=3), max_size=3, unique=True).map(tuple)
     entries = keys.flatmap(lambda k: st.tuples(st.just(k), st.tuples(*[nodes] * len(k))))
-    calls = st.sampled_from(sorted(FUNCTIONS)).flatmap(
-        lambda name: st.tuples(st.just(name), st.tuples(*[nodes] * len(FUNCTIONS[name].parameters)))
+    calls = st.sampled_from(sorted(functions())).flatmap(
+        lambda name: st.tuples(st.just(name), st.tuples(*[nodes] * len(functions()[name].parameters)))
     )
     unary = st.builds(Unary, st.just("!"), nodes) | st.builds(Unary, st.just("-"), nodes.filter(_minus))
     return st.one_of(

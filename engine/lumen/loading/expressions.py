@@ -18,7 +18,8 @@ from lumen.interpreters.expressions.expression_findings import (
     UNKNOWN_FUNCTION,
     UNKNOWN_NAME,
 )
-from lumen.interpreters.expressions.functions import CAUGHT, DRAWING
+from lumen.interpreters.expressions.function_table import drawing_functions
+from lumen.interpreters.expressions.functions import CAUGHT
 from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import NodePath, Place, did_you_mean
@@ -135,9 +136,9 @@ class Expressions:
 
     def _draws_where_it_may(self, source: str, where: NodePath) -> bool:
         """Whether nothing is drawn outside of `assign`; reported where something is."""
-        if "assign" in where or not any(name in source for name in DRAWING):
+        if "assign" in where or not any(name in source for name in drawing_functions()):
             return True
-        drawing = next((name for name in sorted(DRAWING) if re.search(rf"\b{name}\s*\(", source)), "")
+        drawing = next((name for name in sorted(drawing_functions()) if re.search(rf"\b{name}\s*\(", source)), "")
         if drawing:
             hint = "assign the value to a key of `context`, and use that key here"
             self.report(

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.function_table import functions
 from lumen.interpreters.talk.patterns import TYPES, slots_of
 from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
@@ -270,7 +270,7 @@ class _Completion:
             wide = len(part[0]) if part else 0
             known = ("context", "event", "state", *(["heard"] if row_around(path) else []))
             yield from (Item(name, "", wide) for name in known)
-            yield from (Item(f"{name}(", "function", wide) for name in FUNCTIONS)
+            yield from (Item(f"{name}(", "function", wide) for name in functions())
 
     def event_fields(self, path: NodePath) -> list[str]:
         """The fields of the events that can arrive where an expression stands."""

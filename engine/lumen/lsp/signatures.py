@@ -4,7 +4,8 @@ import inspect
 import re
 from typing import NamedTuple
 
-from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.feature import resolve, table
+from lumen.interpreters.expressions.function_table import fault_of, functions
 from lumen.language.text_lines import lines_of
 from lumen.lsp.analysis import Analysis
 
@@ -39,7 +40,7 @@ def signature(analysis: Analysis, file: str, line: int, column: int) -> Function
             depth -= 1
         elif sign == "," and not depth:
             commas += 1
-        elif sign == "(" and (called := _OPEN.search(head[: at + 1])) and called[1] in FUNCTIONS:
+        elif sign == "(" and (called := _OPEN.search(head[: at + 1])) and called[1] in functions():
             return _of(called[1], commas)
         elif sign in "([{":
             commas = 0
@@ -47,10 +48,11 @@ def signature(analysis: Analysis, file: str, line: int, column: int) -> Function
 
 
 def _of(name: str, active: int) -> FunctionSignature:
-    function = FUNCTIONS[name]
-    named = list(inspect.signature(function.call).parameters)[1 if function.scoped else 0 :]
+    function = functions()[name]
+    call = (lambda: None) if fault_of(name) else resolve(table("functions")[name].call)
+    named = list(inspect.signature(call).parameters)[1 if function.scoped else 0 :]
     kinds = [" or ".join(sorted(kinds)) if len(kinds) < 4 else "anything" for kinds in function.parameters]
     shown = tuple(f"{parameter}: {kind}" for parameter, kind in zip(named, kinds, strict=False))
-    says = (inspect.getdoc(function.call) or "").partition("\n\n")[0]
+    says = (inspect.getdoc(call) or "").partition("\n\n")[0]
     gives = " or ".join(sorted(function.returns)) if len(function.returns) < 4 else "anything"
     return FunctionSignature(name, shown, active, f"{says} Gives {gives}.".strip())

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.function_table import functions
 from lumen.interpreters.expressions.kinds import BOOLEAN, LIST, MAP, NUMBER, TEXT, kind_of
 from lumen.interpreters.expressions.tree import (
     Binary,
@@ -44,7 +44,7 @@ def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
             found = {kind(then, context), kind(otherwise, context)}
             return found.pop() if len(found) == 1 else UNKNOWN_KIND
         case FunctionCall(function=function):
-            returns = FUNCTIONS[function].returns if function in FUNCTIONS else ()
+            returns = functions()[function].returns if function in functions() else ()
             return next(iter(returns)) if len(returns) == 1 else UNKNOWN_KIND
     match path_of(node):
         case ("context", key):

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 from lumen.interpreters.exploration.expression_uses import tree_of
 from lumen.interpreters.expressions import ExpressionNode, names, unparse
-from lumen.interpreters.expressions.functions import CAUGHT, CLOCK_FUNCTIONS
+from lumen.interpreters.expressions.function_table import clock_functions
+from lumen.interpreters.expressions.functions import CAUGHT
 from lumen.interpreters.expressions.tree import Binary, FieldAccess, FunctionCall, Literal, Logic, Unary, children
 from lumen.language.actions import Assign, ComputedValue, Expression, PlacedAction, context_key
 from lumen.language.machines import Transition
@@ -56,7 +57,7 @@ def _again(value: Expression, known: set[str], caught: frozenset[str]) -> bool:
 def _computed(tree: ExpressionNode) -> Iterator[ExpressionNode]:
     """The parts of a true guard that it has surely computed, and that come to the same for the same event."""
     speaks = names(tree)
-    if not speaks.context and not speaks.functions & {"In", *CLOCK_FUNCTIONS}:
+    if not speaks.context and not speaks.functions & {"In", *clock_functions()}:
         yield tree
     match tree:
         case Binary() | Unary() | Logic(sign="&&"):  # the other sign takes an error for false

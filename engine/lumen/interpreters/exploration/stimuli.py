@@ -9,7 +9,7 @@ from lumen.errors import ExpressionError
 from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_block, of_transition
 from lumen.interpreters.exploration.samples import FieldPath, samples
 from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, names, unparse
-from lumen.interpreters.expressions.functions import CLOCK_FUNCTIONS
+from lumen.interpreters.expressions.function_table import clock_functions
 from lumen.interpreters.expressions.tree import Binary, FunctionCall, children
 from lumen.interpreters.statechart import Snapshot, Timer
 from lumen.interpreters.statechart.command_ids import outer_id
@@ -221,7 +221,7 @@ def _extremes(schema: Mapping[str, Any]) -> Iterator[Any]:
 def _known_of_events(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[ExpressionNode]:
     """The largest parts of an expression that depend on the event's data and on nothing else but it and entries."""
     speaks = names(tree)
-    alone = speaks.context <= loops and not speaks.functions & {"In", *CLOCK_FUNCTIONS}
+    alone = speaks.context <= loops and not speaks.functions & {"In", *clock_functions()}
     if alone and "event" in unparse(tree):
         yield tree
     elif not alone:
@@ -236,7 +236,7 @@ def _compared(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[Expressio
     compares = tree.sign in COMPARISONS if isinstance(tree, Binary) else isinstance(tree, FunctionCall)
     if compares and not within:
         speaks = names(tree)
-        if speaks.context - loops and "event" in unparse(tree) and not speaks.functions & {"In", *CLOCK_FUNCTIONS}:
+        if speaks.context - loops and "event" in unparse(tree) and not speaks.functions & {"In", *clock_functions()}:
             yield tree
 
 

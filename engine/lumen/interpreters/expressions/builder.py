@@ -10,7 +10,7 @@ from itertools import count
 from types import CodeType
 
 from lumen.interpreters.expressions.error_explanation import EXPRESSION_FILE
-from lumen.interpreters.expressions.functions import ALL_FUNCTIONS
+from lumen.interpreters.expressions.function_table import all_functions
 from lumen.interpreters.expressions.kinds import BOOLEAN
 from lumen.interpreters.expressions.scope import MAX_INT, MIN_INT, Scope
 from lumen.interpreters.expressions.tree import (
@@ -46,7 +46,7 @@ def is_condition(node: ExpressionNode) -> bool:
         case Binary(sign=sign):
             return sign in _YES_OR_NO
         case FunctionCall(function=function):
-            return ALL_FUNCTIONS[function].returns == {BOOLEAN}
+            return all_functions()[function].returns == {BOOLEAN}
         case Conditional(then=then, otherwise=otherwise):
             return is_condition(then) and is_condition(otherwise)
     return False
@@ -153,7 +153,7 @@ class CodeBuilder:
             case FunctionCall(function="has", arguments=(target,)):
                 return self.has(target)
             case FunctionCall(function=function, arguments=arguments):
-                first = [_load("scope")] if ALL_FUNCTIONS[function].scoped else []
+                first = [_load("scope")] if all_functions()[function].scoped else []
                 return self.call(f"call_{function}", *first, *map(self.node, arguments))
 
     def logic(self, sign: str, operands: list[ast.expr]) -> ast.expr:

@@ -13,7 +13,7 @@ from lumen.interpreters.expressions.expression_findings import (
     Declarations,
     ExpressionFindings,
 )
-from lumen.interpreters.expressions.functions import ALL_FUNCTIONS, CLOCK_FUNCTIONS, FUNCTIONS, Function
+from lumen.interpreters.expressions.function_table import Function, all_functions, example_of, fault_of, functions
 from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal
 from lumen.language.diagnostics import Code, did_you_mean, mean
@@ -23,35 +23,33 @@ _INSTEAD = {
     "includes": "contains", "in": "In", "regex": "matches", "split": "words", "startsWith": "matches",
     "endsWith": "matches", "time": "now", "clock": "now", "random": "pick", "choose": "pick",
 }  # fmt: skip
-_ARGUMENTS = {
-    **dict.fromkeys(CLOCK_FUNCTIONS, ""),
-    "has": "event.data.x", "In": "'state'", "contains": "text, 'part'", "replace": "text, 'old', 'new'",
-    "after": "text, 'phrase'", "matches": "text, 'pattern'", "heard": "event.data.result, 'name'",
-    "lookup": "event.data.result, 'table'",
-    "take": "list, 3", "drop": "list, 1", "shuffle": "list", "pick": "list", "in_language": "value",
-}  # fmt: skip
 
 
 def function_of(node: FunctionCall, findings: ExpressionFindings) -> Function | None:
     """The function that is called, None where there is none of that name; a wrong number of arguments is reported."""
-    function = ALL_FUNCTIONS.get(node.function)
+    function = all_functions().get(node.function)
     if function is None:
         similar = _INSTEAD.get(node.function)
-        hint = mean(node.function, similar) if similar else did_you_mean(node.function, FUNCTIONS, "there are")
+        hint = mean(node.function, similar) if similar else did_you_mean(node.function, functions(), "there are")
         findings.report(UNKNOWN_FUNCTION, node, f"there is no function `{node.function}`", hint, node.named)
+        return None
+    if fault := fault_of(node.function):
+        message = f"the function `{node.function}` can't be imported: {fault}"
+        findings.report(UNKNOWN_FUNCTION, node, message, "install the package of this function again", node.named)
         return None
     wanted, given = len(function.parameters), len(node.arguments)
     if wanted != given:
         arguments = f"{wanted or 'no'} argument{'s' * (wanted != 1)}"
         message = f"`{node.function}` takes {arguments}, and {given or 'none'} {'is' if given == 1 else 'are'} given"
-        usage = f"write `{node.function}({_ARGUMENTS.get(node.function, 'text')})`"
+        example = example_of(node.function) or ", ".join(sorted(kinds)[0] for kinds in function.parameters)
+        usage = f"write `{node.function}({example})`"
         findings.report(WRONG_ARGUMENT_COUNT, node, message, usage, node.named)
     return function
 
 
 def check_names(node: FunctionCall, around: Declarations, findings: ExpressionFindings) -> None:
     """Look the literal names up that `heard`, `lookup` and `In` are given, and read the pattern of `matches`."""
-    if len(node.arguments) != len(ALL_FUNCTIONS[node.function].parameters) or not node.arguments:
+    if len(node.arguments) != len(all_functions()[node.function].parameters) or not node.arguments:
         return
     last = node.arguments[-1]
     name = last.value if isinstance(last, Literal) and isinstance(last.value, str) else None

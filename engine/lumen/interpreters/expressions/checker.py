@@ -20,7 +20,7 @@ from lumen.interpreters.expressions.expression_findings import (
     in_words,
 )
 from lumen.interpreters.expressions.facts import KnownFacts, facts, prefixes
-from lumen.interpreters.expressions.functions import FUNCTIONS
+from lumen.interpreters.expressions.function_table import functions
 from lumen.interpreters.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT
 from lumen.interpreters.expressions.parser import parse_expression
 from lumen.interpreters.expressions.scope import ROOTS
@@ -157,7 +157,7 @@ class _Checker:
             hint = f"did you mean `context.{node.name}`?"
         elif around.lists and node.name in around.lists and not nearest(node.name, around.variables):
             hint = f"did you mean `lists.{node.name}`?"
-        elif node.name in FUNCTIONS:
+        elif node.name in functions():
             hint = f"write `{node.name}(…)`"
         else:
             hint += f"; put a text in quotes: '{node.name}'"

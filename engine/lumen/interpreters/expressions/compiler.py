@@ -4,8 +4,8 @@
 is run once more with CEL's full rule: `a && b` is false where either is false, even if the other has no value.
 """
 
-from collections.abc import Callable, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, lru_cache
 from types import CodeType
 from typing import Any
 
@@ -13,7 +13,7 @@ from lumen.interpreters.expressions import operators as values
 from lumen.interpreters.expressions.builder import OPERATOR_FUNCTIONS, CodeBuilder
 from lumen.interpreters.expressions.checker import must_hold
 from lumen.interpreters.expressions.error_explanation import explain
-from lumen.interpreters.expressions.functions import ALL_FUNCTIONS
+from lumen.interpreters.expressions.function_table import all_functions
 from lumen.interpreters.expressions.parser import parse_expression
 from lumen.interpreters.expressions.scope import Scope
 from lumen.interpreters.expressions.tree import ExpressionNode, Logic, walk
@@ -45,13 +45,17 @@ def _any_is(decisive: bool, operands: Sequence[Callable[[], Any]]) -> bool:
 
 
 _HELPERS = [*OPERATOR_FUNCTIONS.values(), "truth", "negation", "negative", "item", "has", "bounded"]
-NAMES: dict[str, Any] = (
-    {name: getattr(values, name) for name in _HELPERS}
-    | {f"call_{name}": function.call for name, function in ALL_FUNCTIONS.items()}
-    | {"type": type, "map": dict, "numbers": frozenset((int, float)), "whole": int}
-    | {"both": both, "either": either, "__builtins__": {}}
-)
-"""What the code of expressions may name, and nothing else."""
+
+
+@cache
+def code_names() -> Mapping[str, Any]:
+    """Return what the code of expressions may name, and nothing else."""
+    return (
+        {name: getattr(values, name) for name in _HELPERS}
+        | {f"call_{name}": function.call for name, function in all_functions().items()}
+        | {"type": type, "map": dict, "numbers": frozenset((int, float)), "whole": int}
+        | {"both": both, "either": either, "__builtins__": {}}
+    )
 
 
 @lru_cache(maxsize=8192)
@@ -95,7 +99,7 @@ def _explainer(source: str, tree: ExpressionNode) -> Callable[[Exception, Scope]
 
 
 def _function(code: CodeType, failed: Callable[[Exception, Scope], Any]) -> Evaluate:
-    names = {**NAMES, "failed": failed, "Exception": Exception}
+    names = {**code_names(), "failed": failed, "Exception": Exception}
     exec(code, names)
     evaluate: Evaluate = names["evaluate"]
     return evaluate

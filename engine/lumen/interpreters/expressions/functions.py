@@ -1,22 +1,19 @@
-"""The functions of the language: what each takes, gives and does."""
+"""What the functions of the language do; the manifest `features/expressions.py` lists them."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from datetime import datetime
-from typing import Any, NamedTuple
+from typing import Any
 
-from lumen.interpreters.expressions import lists, phrases
+from lumen.interpreters.expressions import phrases
 from lumen.interpreters.expressions.kinds import (
-    BOOLEAN,
-    KINDS,
     LIST,
     MAP,
-    NUMBER,
     TEXT,
     FaultError,
     WrongKindError,
     kind_of,
 )
-from lumen.interpreters.expressions.operators import bounded_text, has
+from lumen.interpreters.expressions.operators import bounded_text
 from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
 from lumen.interpreters.talk import folding
@@ -25,18 +22,8 @@ from lumen.interpreters.wall_clock import local_time, moment
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.hours import WEEKDAYS
 
-KindSet = frozenset[str]
 CAUGHT = "caught"
 """The function that `heard` is compiled to in a row of `hears`; files do not call it."""
-
-
-class Function(NamedTuple):
-    """`parameters` are the kinds that each argument may be of; a `scoped` one is handed the Scope before them."""
-
-    parameters: tuple[KindSet, ...]
-    returns: KindSet
-    call: Callable[..., Any]
-    scoped: bool = False
 
 
 def _texts(*values: Any) -> None:
@@ -159,43 +146,3 @@ def active(scope: Scope, state: Any) -> bool:
     if type(state) is not str:
         _texts(state)
     return bool(scope.configuration(state))
-
-
-_TEXT, _BOOLEAN, _NUMBER = frozenset((TEXT,)), frozenset((BOOLEAN,)), frozenset((NUMBER,))
-_LIST = frozenset((LIST,))
-
-CLOCK_FUNCTIONS: dict[str, Function] = {
-    "now": Function((), _TEXT, now, scoped=True),
-    "hour": Function((), _NUMBER, hour, scoped=True),
-    "minute": Function((), _NUMBER, minute, scoped=True),
-    "weekday": Function((), _TEXT, weekday, scoped=True),
-    "date": Function((), _TEXT, today, scoped=True),
-}
-"""Those that read the clock on the wall."""
-
-FUNCTIONS: dict[str, Function] = {
-    "size": Function((frozenset((TEXT, LIST, MAP)),), _NUMBER, size),
-    "has": Function((KINDS,), _BOOLEAN, has),
-    "lower": Function((_TEXT,), _TEXT, lower),
-    "trim": Function((_TEXT,), _TEXT, trim),
-    "contains": Function((_TEXT, _TEXT), _BOOLEAN, contains),
-    "replace": Function((_TEXT, _TEXT, _TEXT), _TEXT, replace),
-    "after": Function((_TEXT, _TEXT), _TEXT, after),
-    "matches": Function((_TEXT, _TEXT), _BOOLEAN, matches),
-    "words": Function((_TEXT,), frozenset((LIST,)), words),
-    **CLOCK_FUNCTIONS,
-    "heard": Function((_TEXT, frozenset((TEXT, LIST, MAP))), _BOOLEAN, heard, scoped=True),
-    "lookup": Function((_TEXT, _TEXT), KINDS, lookup, scoped=True),
-    "In": Function((_TEXT,), _BOOLEAN, active, scoped=True),
-    "take": Function((_LIST, _NUMBER), _LIST, lists.take),
-    "drop": Function((_LIST, _NUMBER), _LIST, lists.drop),
-    "shuffle": Function((_LIST,), _LIST, lists.shuffle, scoped=True),
-    "pick": Function((frozenset((TEXT, LIST)),), KINDS, lists.pick, scoped=True),
-    "in_language": Function((KINDS,), KINDS, lists.in_language, scoped=True),
-}
-
-ALL_FUNCTIONS = FUNCTIONS | {CAUGHT: Function((_NUMBER,), frozenset((MAP,)), caught, scoped=True)}
-"""Those that compiled expressions call: `caught` too, which no file may call."""
-
-DRAWING = frozenset(("shuffle", "pick"))
-"""The functions that draw: they stand in `assign` only, where the next draw is remembered."""

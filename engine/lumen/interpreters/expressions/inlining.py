@@ -9,7 +9,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.interpreters.expressions.builder import CodeBuilder
-from lumen.interpreters.expressions.functions import ALL_FUNCTIONS, CAUGHT
+from lumen.interpreters.expressions.function_table import all_functions
+from lumen.interpreters.expressions.functions import CAUGHT
 from lumen.interpreters.expressions.parser import parse_expression
 from lumen.interpreters.expressions.tree import ExpressionNode, FieldAccess, FunctionCall, Identifier, walk
 from lumen.language.events import Event
@@ -43,7 +44,7 @@ def _needs_of(node: ExpressionNode) -> tuple[str, ...]:
             return ("In",)
         case FunctionCall(function) if function == CAUGHT:
             return ("scope", "heard")
-        case FunctionCall(function) if ALL_FUNCTIONS[function].scoped:
+        case FunctionCall(function) if all_functions()[function].scoped:
             return ("scope",)
     return ()
 

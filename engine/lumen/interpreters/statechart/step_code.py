@@ -5,7 +5,7 @@ from functools import lru_cache
 from typing import Any, TypeAlias
 
 from lumen.interpreters.expressions import Scope
-from lumen.interpreters.expressions.compiler import NAMES as EXPRESSION_NAMES
+from lumen.interpreters.expressions.compiler import code_names
 from lumen.interpreters.expressions.scope import no_draw
 from lumen.interpreters.statechart.activities import placed
 from lumen.interpreters.statechart.advancing import cancelled, resumption_of
@@ -81,7 +81,7 @@ def without(mapping: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     return {other: value for other, value in mapping.items() if other != key}
 
 
-_NAMES = EXPRESSION_NAMES | {
+_NAMES = {
     "Awaiting": Awaiting, "Counters": Counters, "Event": Event, "Fork": Fork, "GoTo": GoTo, "Log": Log,
     "Publish": Publish, "Say": Say, "Scope": Scope, "Snapshot": Snapshot, "Start": Start, "Step": Step, "Timer": Timer,
     "Within": Within, "draw": draw, "leave": leave, "nanoseconds": nanoseconds, "new": tuple.__new__,
@@ -94,7 +94,7 @@ _NAMES = EXPRESSION_NAMES | {
 @lru_cache(maxsize=1024)
 def function_of(text: str) -> Callable[[tuple[Any, ...], Snapshot, Event], Step | None]:
     """The function `play` that the text defines; equal texts give the same one."""
-    names = dict(_NAMES)
+    names = {**code_names(), **_NAMES}
     exec(compile(text, "<step>", "exec", dont_inherit=True), names)
     play: Callable[[tuple[Any, ...], Snapshot, Event], Step | None] = names["play"]
     return play

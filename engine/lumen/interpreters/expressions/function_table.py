@@ -1,0 +1,97 @@
+"""The functions of the language by name, made from the rows of manifests."""
+
+import json
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any, NamedTuple
+
+from lumen.feature import FunctionRow, resolve, table
+from lumen.interpreters.expressions.functions import CAUGHT, caught
+from lumen.interpreters.expressions.kinds import KINDS, MAP, NUMBER, FaultError, WrongKindError, kind_of
+from lumen.interpreters.expressions.operators import bounded
+
+KindSet = frozenset[str]
+
+
+class Function(NamedTuple):
+    """`parameters` are the kinds that each argument may have; a `scoped` function gets the Scope before them."""
+
+    parameters: tuple[KindSet, ...]
+    returns: KindSet
+    call: Callable[..., Any]
+    scoped: bool = False
+
+
+@cache
+def functions() -> Mapping[str, Function]:
+    """Return the functions that files may call."""
+    return {name: _function(name, row) for name, row in table("functions").items()}
+
+
+@cache
+def all_functions() -> Mapping[str, Function]:
+    """Return the functions that compiled expressions call: `caught` too, which no file may call."""
+    heard = Function((frozenset((NUMBER,)),), frozenset((MAP,)), caught, scoped=True)
+    return {**functions(), CAUGHT: heard}
+
+
+@cache
+def clock_functions() -> frozenset[str]:
+    """Return the names of the functions that read the time of day."""
+    return frozenset(name for name, row in table("functions").items() if row.clock)
+
+
+@cache
+def drawing_functions() -> frozenset[str]:
+    """Return the names of the functions that draw: they are allowed only in `assign`, which keeps the next draw."""
+    return frozenset(name for name, row in table("functions").items() if row.draws)
+
+
+def example_of(name: str) -> str:
+    """Return how the arguments of a function are written; empty if its row does not say."""
+    rows = table("functions")
+    return str(rows[name].example) if name in rows else ""
+
+
+@cache
+def fault_of(name: str) -> str:
+    """Return why the code of a function can't be imported; empty if it can."""
+    rows = table("functions")
+    try:
+        return "" if name not in rows or callable(resolve(rows[name].call)) else "it is not a function"
+    except Exception as error:  # of code that is not ours
+        return f"{type(error).__name__}: {error}"
+
+
+def _function(name: str, row: FunctionRow) -> Function:
+    parameters = tuple(map(_kinds, row.parameters))
+    call = resolve(row.call) if row.exact else _checked(name, row, parameters)
+    return Function(parameters, _kinds(row.returns), call, row.scoped)
+
+
+def _kinds(kinds: str) -> KindSet:
+    return KINDS if kinds == "any" else frozenset(kinds.split("|"))
+
+
+def _checked(name: str, row: FunctionRow, parameters: tuple[KindSet, ...]) -> Callable[..., Any]:
+    """Return a function that imports the row's when it is first called, and checks arguments and value."""
+    first, returns = int(row.scoped), _kinds(row.returns)
+
+    def call(*arguments: Any) -> Any:
+        for position, (value, kinds) in enumerate(zip(arguments[first:], parameters, strict=True)):
+            if kind_of(value) not in kinds:
+                raise WrongKindError(position, value, *sorted(kinds))
+        value = bounded(_plain(name, resolve(row.call)(*arguments)))
+        if kind_of(value) not in returns:
+            raise FaultError(f"`{name}` returned {kind_of(value)}, but its row says {row.returns}")
+        return value
+
+    return call
+
+
+def _plain(name: str, value: Any) -> Any:
+    """Return a value as JSON data. Raises FaultError if it is not."""
+    try:
+        return json.loads(json.dumps(value, allow_nan=False))
+    except (TypeError, ValueError) as error:
+        raise FaultError(f"`{name}` returned a value that is not JSON data: {error}") from None
