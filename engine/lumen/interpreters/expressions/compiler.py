@@ -4,7 +4,7 @@
 is run once more with CEL's full rule: `a && b` is false where either is false, even if the other has no value.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
 from types import CodeType
 from typing import Any
@@ -48,7 +48,7 @@ _HELPERS = [*OPERATOR_FUNCTIONS.values(), "truth", "negation", "negative", "item
 
 
 @cache
-def code_names() -> Mapping[str, Any]:
+def code_names() -> dict[str, Any]:
     """Return what the code of expressions may name, and nothing else."""
     return (
         {name: getattr(values, name) for name in _HELPERS}

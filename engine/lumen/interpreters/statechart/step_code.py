@@ -1,7 +1,7 @@
 """The text of a step as a function: what the text may name, and what it has in common with the whole algorithm."""
 
 from collections.abc import Callable, Mapping
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any, TypeAlias
 
 from lumen.interpreters.expressions import Scope
@@ -81,20 +81,24 @@ def without(mapping: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     return {other: value for other, value in mapping.items() if other != key}
 
 
-_NAMES = {
-    "Awaiting": Awaiting, "Counters": Counters, "Event": Event, "Fork": Fork, "GoTo": GoTo, "Log": Log,
-    "Publish": Publish, "Say": Say, "Scope": Scope, "Snapshot": Snapshot, "Start": Start, "Step": Step, "Timer": Timer,
-    "Within": Within, "draw": draw, "leave": leave, "nanoseconds": nanoseconds, "new": tuple.__new__,
-    "no_draw": no_draw, "len": len, "placed": placed, "settled": settled, "with_value": with_value, "without": without,
-    "without_deadline": without_deadline, "without_ended": without_ended,
-    **{kind.__name__: kind for kind in (bool, int, float, str, list, tuple, dict, type(None), Exception)},
-}  # fmt: skip
+@cache
+def _names() -> dict[str, Any]:
+    """Return what the text of a step may name, and nothing else."""
+    return code_names() | {
+        "Awaiting": Awaiting, "Counters": Counters, "Event": Event, "Fork": Fork, "GoTo": GoTo, "Log": Log,
+        "Publish": Publish, "Say": Say, "Scope": Scope, "Snapshot": Snapshot, "Start": Start, "Step": Step,
+        "Timer": Timer, "Within": Within, "draw": draw, "leave": leave, "nanoseconds": nanoseconds,
+        "new": tuple.__new__, "no_draw": no_draw, "len": len, "placed": placed, "settled": settled,
+        "with_value": with_value, "without": without, "without_deadline": without_deadline,
+        "without_ended": without_ended,
+        **{kind.__name__: kind for kind in (bool, int, float, str, list, tuple, dict, type(None), Exception)},
+    }  # fmt: skip
 
 
 @lru_cache(maxsize=1024)
 def function_of(text: str) -> Callable[[tuple[Any, ...], Snapshot, Event], Step | None]:
     """The function `play` that the text defines; equal texts give the same one."""
-    names = {**code_names(), **_NAMES}
+    names = dict(_names())
     exec(compile(text, "<step>", "exec", dont_inherit=True), names)
     play: Callable[[tuple[Any, ...], Snapshot, Event], Step | None] = names["play"]
     return play
