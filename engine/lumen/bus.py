@@ -3,9 +3,9 @@
 import sys
 from pathlib import Path
 
-from lumen.buses.memory import MemoryBus
+from lumen.buses.addresses import open_bus
 from lumen.buses.validated import OnRefused, validated
-from lumen.errors import BusAddressError, BusError, Refused
+from lumen.errors import BusError, Refused
 from lumen.interpreters.arguments import need, need_text
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
@@ -16,27 +16,14 @@ __all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
 def connect(url: str, project: Project | None = None, *, on_refused: OnRefused | None = None, sender: str = "") -> Bus:
     """The bus at `url`.
 
-    `memory://` is a new bus inside this process, `memory://NAME` one that this process shares under
-    that name, `amqp://USER:PASSWORD@HOST:PORT/VHOST` (or `amqps://`) a broker. With a project every body is checked
-    against the schema of its route: publishing a wrong one raises BusError; for a wrong one that comes in, `on_refused`
-    (key, reason) is called instead of the subscriber. `sender` is the program that its messages come from, by default
-    the name of the running file. If there is no such bus, it raises BusError and says what to do.
+    `memory://` is a new bus inside this process, `memory://NAME` one that this process shares under that name,
+    `amqp://USER:PASSWORD@HOST:PORT/VHOST` (or `amqps://`) a broker; features may add others. With a project every body
+    is checked against the schema of its route: publishing a wrong one raises BusError; for a wrong one that comes in,
+    `on_refused` (key, reason) is called instead of the subscriber. `sender` is the program that its messages come from,
+    by default the name of the running file. If there is no such bus, it raises BusError and says what to do.
     """
     need_text(url, "the address of a bus")
     if project is not None:
         need(project, Project, "the project of a bus", "a Project, as `lumen.load` gives it")
-    bus = _open(url, sender or Path(sys.argv[0] or "python").stem)
+    bus = open_bus(url, sender or Path(sys.argv[0] or "python").stem)
     return bus if project is None else validated(bus, project, on_refused)
-
-
-def _open(url: str, sender: str) -> Bus:
-    scheme, separator, rest = url.partition("://")
-    if scheme == "memory" and separator:
-        return MemoryBus(rest, sender)
-    if scheme in ("amqp", "amqps") and separator:
-        from lumen.buses.amqp import AmqpBus  # pika takes 0.2 s to import
-
-        return AmqpBus(url, sender)
-    known = "memory://, memory://NAME, amqp://HOST or amqps://HOST"
-    what = f"`{scheme}://` is not a bus" if separator else "the address of a bus begins with `memory://` or `amqp://`"
-    raise BusAddressError(f"{what}: write {known}")

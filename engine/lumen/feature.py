@@ -41,6 +41,8 @@ BUILT_IN = (
     "lumen.features.naoqi:FEATURE",
     "lumen.features.robots:FEATURE",
     "lumen.features.expressions:FEATURE",
+    "lumen.features.memory_bus:FEATURE",
+    "lumen.features.rabbitmq:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
 
@@ -89,6 +91,22 @@ class RobotRow:
     real_time: bool = False
     bounded: bool = False
     options: tuple[RobotOption, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class BusRow:
+    """A kind of bus, by the scheme of its addresses.
+
+    `open` is the import string of a function from an address and the name of a sender to a `lumen.ports.Bus`. `forms`
+    are the addresses that a wrong one is told of, `example` is shown in `--help`. A bus `within_process` has no other
+    processes on it; a `rabbitmq` one has a RabbitMQ broker, which `lumen doctor` examines.
+    """
+
+    open: str
+    forms: tuple[str, ...]
+    example: str = ""
+    within_process: bool = False
+    rabbitmq: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -319,6 +337,7 @@ class Feature:
     modules: Mapping[str, ModuleRow] = field(default_factory=dict)
     robots: Mapping[str, RobotRow] = field(default_factory=dict)
     functions: Mapping[str, FunctionRow] = field(default_factory=dict)
+    buses: Mapping[str, BusRow] = field(default_factory=dict)
 
 
 class FeatureFault(NamedTuple):

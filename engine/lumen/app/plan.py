@@ -6,6 +6,7 @@ from typing import Any
 
 from lumen.app.narrator import Narrator
 from lumen.app.setup import Setup
+from lumen.buses.addresses import within_process
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, Clock
@@ -48,7 +49,7 @@ class Plan:
     @property
     def shared(self) -> bool:
         """Whether other processes are on the bus."""
-        return bool(self.roles) or not self.url.startswith("memory:")
+        return bool(self.roles) or not within_process(self.url)
 
     @property
     def brain(self) -> bool:

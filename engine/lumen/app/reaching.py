@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from lumen.app.one_robot import one_robot, robots_of
 from lumen.bus import connect
+from lumen.buses.addresses import within_process
 from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.errors import BusUnreachableError
 from lumen.language.causes import TERMINAL
@@ -44,11 +45,11 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
     found = _running(root, wanted if robot else "")
     home = _home(found) or wanted
     url = bus or os.environ.get("LUMEN_BUS") or ("" if found is None else str(found.get("bus", "")))
-    if url and not url.startswith("memory:"):
+    if url and not within_process(url):
         return Reached(connect(url, sender=TERMINAL), _robot(root, found, home), *_keys(root, found, home), url, home)
     if found is None:
         settings = main_settings(root, home)
-        if settings and not settings.bus.startswith("memory:"):
+        if settings and not within_process(settings.bus):
             keys = _keys(root, None, home)
             return Reached(connect(settings.bus, sender=TERMINAL), settings.robot, *keys, settings.bus, home)
         raise BusUnreachableError(

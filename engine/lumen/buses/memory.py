@@ -223,3 +223,8 @@ class MemoryBus(Bus):
             subscription.active = False
         self._hub.change(drop=mine)
         gone.set()
+
+
+def open_bus(url: str, sender: str) -> MemoryBus:
+    """Return the bus of `memory://NAME`, which this process shares under that name; a new one without a name."""
+    return MemoryBus(url.partition("://")[2], sender)

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from lumen.app.attendance import RobotAttendance
 from lumen.bus import connect
+from lumen.buses.addresses import is_rabbitmq, within_process
 from lumen.buses.probe import BrokerProbe
 from lumen.buses.queues import SIDE_QUEUES
 from lumen.buses.validated import by_key
@@ -60,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
     root = own_project(options.project)
     project = check_files(root, read_files(root))[0]
     url = options.bus or os.environ.get("LUMEN_BUS") or (project.bus if project else "memory://")
-    findings = list(_broker(url, project) if url.startswith(("amqp:", "amqps:")) else _embedded(options, url, project))
+    findings = list(_broker(url, project) if is_rabbitmq(url) else _other(options, url, project))
     bad = any(finding.severity in ("warning", "error") for finding in findings)
     if options.format == "json":
         print(json.dumps({"ok": not bad, "findings": [finding._asdict() for finding in findings]}))
@@ -94,11 +95,13 @@ def _broker(url: str, project: Project | None) -> Iterator[Finding]:
             yield Finding("dead letters", "ok", f"unusable and undeliverable messages are kept in {SIDE_QUEUES}")
 
 
-def _embedded(options: argparse.Namespace, url: str, project: Project | None) -> Iterator[Finding]:
-    if not url.startswith("memory:"):
-        connect(url)  # says what an address looks like
-    with closing(reach(options).bus) as bus:
-        yield Finding("bus", "ok", "an exhibition with an embedded bus is running on this machine")
+def _other(options: argparse.Namespace, url: str, project: Project | None) -> Iterator[Finding]:
+    if within_process(url):
+        opened, what = reach(options).bus, "an exhibition with an embedded bus is running on this machine"
+    else:
+        opened, what = connect(url), f"the bus `{url.partition(':')[0]}://` can be reached"
+    with closing(opened) as bus:
+        yield Finding("bus", "ok", what)
         if project is None:
             yield Finding("project", "error", "its saved files have errors: run `lumen lint`")
         else:

@@ -12,6 +12,7 @@ from lumen.app.plan import Plan
 from lumen.app.run_start import BegunRun
 from lumen.app.services import Services
 from lumen.app.setup import Setup, robot_options, set_up_house
+from lumen.buses.addresses import within_process
 from lumen.cli.imperfection_options import imperfections_of
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
@@ -38,9 +39,9 @@ class HouseRun:
         self.story = chosen_story(self.projects[self._first], options.story)
         self.stories: dict[str, Story | None] = dict.fromkeys(robots) | {self._first: self.story}
         url = options.bus or os.environ.get("LUMEN_BUS") or self.projects[self._first].bus
-        if parts and url.startswith("memory:"):
+        if parts and within_process(url):
             raise UsageError("several processes need a common bus: pass `--bus amqp://USER:PASSWORD@HOST/`")
-        self._url = f"memory://house-{os.getpid()}" if url.startswith("memory:") else url
+        self._url = f"{url.partition(':')[0]}://house-{os.getpid()}" if within_process(url) else url
         self._setups = self._set_up()
         self._lost: dict[str, LumenError] = {}
         self._clocks = {name: self._clock(name) for name in robots}

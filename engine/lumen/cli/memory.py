@@ -11,6 +11,7 @@ from lumen.app.forgetting.files import forget_in
 from lumen.app.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
 from lumen.app.one_robot import one_robot
 from lumen.app.reaching import reach_exhibition
+from lumen.buses.addresses import within_process
 from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_robot_name
 from lumen.errors import BusUnreachableError, UsageError
@@ -105,9 +106,9 @@ def _tell_running(options: argparse.Namespace, settings: Settings | None, found:
         reached = reach_exhibition(options.project, options.bus, options.robot_name)
     except BusUnreachableError as error:
         url = options.bus or os.environ.get("LUMEN_BUS") or (settings.bus if settings else "")
-        if url and not url.startswith("memory:"):
+        if url and not within_process(url):
             found.left.append(ForgottenPlace("the running exhibition", str(error)))
-        return bool(url) and not url.startswith("memory:")
+        return bool(url) and not within_process(url)
     try:
         _ask(reached.bus, settings or Settings(), options.name, found)
     finally:

@@ -76,7 +76,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     for option in robot_options():
         add(option.flag, metavar=option.metavar, help=option.help)
     add("--speed", choices=SPEEDS, default="1", help="speed of simulated time, as a multiple of real time (default: 1)")
-    add("--bus", metavar="URL", help="memory:// or amqp://user:password@host/ (default: LUMEN_BUS, then lumen.yaml)")
+    add("--bus", metavar="URL", help=f"{examples()} (default: LUMEN_BUS, then lumen.yaml)")
     add("--for", dest="period", metavar="60s", help="end after this much simulated time")
     add("--language", metavar="LANG", help="the language that the robot speaks first")
     add("--video", metavar="FILE.mp4", type=Path, help="save a video of the run (simulation only; needs OpenGL)")
@@ -244,7 +244,7 @@ def _going_first() -> Iterator[None]:
 
 
 def _check_processes(options: argparse.Namespace, story: Story | None, parts: Sequence[str], url: str) -> None:
-    if url.startswith("memory:"):
+    if within_process(url):
         raise UsageError("several processes need a common bus: pass `--bus amqp://USER:PASSWORD@HOST/`")
     if options.speed == "max":
         raise UsageError(

@@ -16,9 +16,9 @@ from lumen.language.text_lines import lines_of
 from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
 from lumen.loading.document import TOO_LARGE, Document
 from lumen.loading.document_report import DocumentReport
+from lumen.loading.feature_schemas import add_features
 from lumen.loading.misindented import KeyNames, key_names, misindented
 from lumen.loading.misplaced import misplaced
-from lumen.loading.module_schemas import add_modules
 from lumen.loading.packaged import schema_folder
 from lumen.loading.project_folders import MAIN_KIND
 from lumen.loading.pruning import prune
@@ -81,7 +81,7 @@ def load_schema(kind: str) -> Any:
     except (OSError, ValueError) as error:
         raise LumenError(f"Lumen's own {file} can't be read ({error}): reinstall Lumen, or restore the file") from None
     if kind == MAIN_KIND:
-        add_modules(schema)
+        add_features(schema)
         return with_sections(schema)
     if verbs := usable_verbs():
         _add_verbs(schema, kind, verbs)

@@ -13,6 +13,7 @@ from lumen.app.fleet.centre_journal import CentreJournal
 from lumen.app.fleet.fleet_log import FleetLog
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.signing import Signer
+from lumen.buses.addresses import is_rabbitmq
 from lumen.buses.stream_reader import StreamReader, has_stream
 from lumen.errors import UsageError
 from lumen.interpreters.fleet.state import CentreState
@@ -81,7 +82,7 @@ class ServedCentre:
         self._ending.set()
 
     def _opened(self, url: str, first: int, tell: Callable[[str], None]) -> StreamReader | None:
-        if not url.startswith(("amqp:", "amqps:")):
+        if not is_rabbitmq(url):
             return None
         if not has_stream(url, STREAM):
             tell(

@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from lumen.app.parts.part import Part
+from lumen.buses.addresses import within_process
 from lumen.language.events import Event
 from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
@@ -77,7 +78,7 @@ class ConsolePart(Part):
 
     def _begin(self, now: float) -> None:
         environment = dict(os.environ)
-        if not self._url.startswith("memory:"):
+        if not within_process(self._url):
             environment["LUMEN_BUS"] = self._url  # it may hold a password: not in the arguments, which all can read
         else:
             environment.pop("LUMEN_BUS", None)

@@ -13,6 +13,7 @@ from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
 from lumen.app.reload.validation_worker import load_apart
+from lumen.buses.addresses import within_process
 from lumen.buses.local import LocalBusServer
 from lumen.errors import UsageError
 from lumen.language.projects import Project
@@ -96,7 +97,7 @@ class RunDirectory:
     def open(self, bus: Bus, url: str, project: Project) -> None:
         """Let others find this run: by its broker, or through a door to the embedded bus."""
         self._bus = url
-        if self.home and url.startswith("memory:"):
+        if self.home and within_process(url):
             try:
                 self._door = LocalBusServer(bus, self.home.folder)
             except OSError as error:

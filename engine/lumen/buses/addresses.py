@@ -1,0 +1,44 @@
+"""The addresses of buses: each scheme is a row of a feature."""
+
+from lumen.errors import BusAddressError
+from lumen.feature import BusRow, resolve, table
+from lumen.ports import Bus
+
+
+def open_bus(url: str, sender: str) -> Bus:
+    """Return the bus at that address. Raises BusError if there is none, or none can be."""
+    row = row_of(url)
+    if row and "://" in url:
+        bus: Bus = resolve(row.open)(url, sender)
+        return bus
+    schemes: dict[str, BusRow] = table("buses")
+    begins = [f"`{scheme}://`" for scheme, row in schemes.items() if row.example]
+    scheme, separator, _ = url.partition("://")
+    what = f"`{scheme}://` is not a bus" if separator else f"the address of a bus begins with {_either(begins)}"
+    raise BusAddressError(f"{what}: write {_either([form for row in schemes.values() for form in row.forms])}")
+
+
+def row_of(url: str) -> BusRow | None:
+    """Return the row for the scheme of an address; None if there is none."""
+    row: BusRow | None = table("buses").get(url.partition(":")[0])
+    return row
+
+
+def within_process(url: str) -> bool:
+    """Return whether only this process can be on the bus with that address."""
+    return (row := row_of(url)) is not None and row.within_process
+
+
+def is_rabbitmq(url: str) -> bool:
+    """Return whether the address is that of a RabbitMQ broker."""
+    return (row := row_of(url)) is not None and row.rabbitmq
+
+
+def examples() -> str:
+    """Return addresses of each kind, for `--help`."""
+    return _either([row.example for row in table("buses").values() if row.example])
+
+
+def _either(texts: list[str]) -> str:
+    *first, last = texts
+    return f"{', '.join(first)} or {last}" if first else last
