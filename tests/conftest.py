@@ -15,6 +15,7 @@ pytest_plugins = [
     "tests.cpu_time",
     "tests.garbage",
     "tests.progress",
+    "tests.stranger.exhibiting",
     "tests.stranger.installing",
 ]
 

@@ -1,6 +1,17 @@
 """The manifest of the stranger's feature."""
 
-from lumen.feature import Exporter, Feature, Importer, Section, Subcommand
+from lumen.feature import (
+    BusRow,
+    Exporter,
+    Feature,
+    FunctionRow,
+    Importer,
+    ModuleRow,
+    RobotOption,
+    RobotRow,
+    Section,
+    Subcommand,
+)
 
 FEATURE = Feature(
     name="stranger",
@@ -26,4 +37,19 @@ FEATURE = Feature(
             of_house=True,
         )
     },
+    robots={
+        "teddy": RobotRow(
+            "lumen_stranger.teddy:set_up",
+            options=(RobotOption("voice", "VOICE", "with --robot teddy: its voice, deep or high (default: deep)"),),
+        )
+    },
+    buses={"postbox": BusRow("lumen_stranger.postbox:Postbox", ("postbox://NAME",), "postbox://hall", True)},
+    modules={
+        "mood": ModuleRow(
+            "lumen_stranger.mood:Mood",
+            "How cheerful the visitors are, by their words",
+            {"cheerful": {"description": "Words of cheerful visitors", "type": "array", "items": {"type": "string"}}},
+        )
+    },
+    functions={"shout": FunctionRow("lumen_stranger.shouting:shout", ("text", "number"), "text", "text, 2")},
 )

@@ -1,0 +1,51 @@
+"""A project that uses what the stranger's distribution adds."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from tests import ROOT
+
+MAIN = """
+bus: postbox://hall
+modules: {mood: {here: true, cheerful: [great, lovely]}}
+routes:
+  mood: {key: "lumen.{robot}.mood", direction: in, schema: mood, event: cheered}
+"""
+MOOD = """{"type": "object", "properties": {"cheer": {"type": "integer"}}, "required": ["cheer"]}"""
+BEHAVIOR = """\
+words: common
+entry: {wake: true}
+states:
+  waiting: {on: {face: greeting}}
+  greeting:
+    do: {say: {en: "{{ shout('hello', 2) }}"}}
+    on: {cheered: {target: laughing, guard: event.data.cheer == 2}}
+    hears: {bye: waiting}
+    after: {30s: waiting}
+  laughing:
+    do: [{play: wave}, {say: {en: Ha ha!}}]
+    onDone: waiting
+    onError: waiting
+"""
+STORY = """\
+title: A visitor is cheerful
+steps:
+  - visitor: arrives
+  - expect: {state: greeting}
+  - wait: 2s
+  - says: A great and lovely bear
+"""
+
+
+@pytest.fixture
+def hall(tmp_path: Path) -> Path:
+    """A project with the stranger's bus, module and function."""
+    root = shutil.copytree(ROOT / "examples/minimal", tmp_path / "hall")
+    (root / "lumen.yaml").write_text((root / "lumen.yaml").read_text() + MAIN)
+    (root / "behaviors/hello.yaml").write_text(BEHAVIOR)
+    (root / "behaviors/stories/visitor.yaml").write_text(STORY)
+    (root / "schemas/messages").mkdir(parents=True)
+    (root / "schemas/messages/mood.schema.json").write_text(MOOD)
+    return root
