@@ -78,7 +78,10 @@ def forms(seconds: float) -> None:
     robot = RecordingRobot(lumen.load().body)
     reading = robot.read(Sense.JOINT)
     assert isinstance(reading, Joints)
-    for what, body, form in (("image", image, JPEG_TYPE), ("joints", encode_reading(reading), FLOATS_TYPE)):
+    for what, body, form in (
+        ("image", image, JPEG_TYPE),
+        ("joints", encode_reading(Sense.JOINT, reading), FLOATS_TYPE),
+    ):
         text, bytes_ = encode(body), packed(body, form)
         assert bytes_
         headers = sum(len(key) + len(str(value)) + 7 for key, value in bytes_.headers.items())

@@ -43,6 +43,7 @@ BUILT_IN = (
     "lumen.features.expressions:FEATURE",
     "lumen.features.memory_bus:FEATURE",
     "lumen.features.rabbitmq:FEATURE",
+    "lumen.features.senses:FEATURE",
 )
 """The manifests that come with Lumen, in the order in which their rows take part."""
 
@@ -91,6 +92,20 @@ class RobotRow:
     real_time: bool = False
     bounded: bool = False
     options: tuple[RobotOption, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SenseRow:
+    """A sense of robots. A route of the project with its name, or `of` it, carries its readings.
+
+    `encode` is the import string of a function from a reading to the body of a message; `decode` of one from a body and
+    the names of the robot's joints to a reading, or to None if the body is of another robot. `decode` may raise
+    KeyError, TypeError or ValueError for a body that has no reading. A sense without them is of images.
+    """
+
+    meaning: str
+    encode: str = ""
+    decode: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -338,6 +353,7 @@ class Feature:
     robots: Mapping[str, RobotRow] = field(default_factory=dict)
     functions: Mapping[str, FunctionRow] = field(default_factory=dict)
     buses: Mapping[str, BusRow] = field(default_factory=dict)
+    senses: Mapping[str, SenseRow] = field(default_factory=dict)
 
 
 class FeatureFault(NamedTuple):

@@ -266,6 +266,24 @@ class Idles(Protocol):
         ...
 
 
+class OtherReading(Protocol):
+    """A reading of a sense that a feature adds."""
+
+    @property
+    def time(self) -> float:
+        """When it was measured [s], on the robot's clock."""
+        ...
+
+
+@runtime_checkable
+class HasOtherSenses(Protocol):
+    """A robot with senses that features add."""
+
+    def read_other(self, sense: str) -> OtherReading | None:
+        """The newest reading of the sense with that name, None if the robot does not have it."""
+        ...
+
+
 @runtime_checkable
 class PerformsVerbs(Protocol):
     """A robot that performs the verbs of features itself, together with its other commands."""

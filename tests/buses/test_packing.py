@@ -150,7 +150,7 @@ def test_joints_are_numbers_of_32_bits_in_the_order_of_names(project: Project, b
         assert numbers[: len(names)] == pytest.approx(reading.angles)
         [heard] = told.wait(1)
         assert heard["angle"] == list(numbers[: len(names)])
-        assert heard.keys() == encode_reading(reading).keys()
+        assert heard.keys() == encode_reading(Sense.JOINT, reading).keys()
     finally:
         server.close()
         bus.close()

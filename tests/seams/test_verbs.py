@@ -8,6 +8,7 @@ from typing import Any, get_args
 import pytest
 
 from lumen.buses.memory import MemoryBus
+from lumen.feature import table
 from lumen.formats.behavior_data import plain_action
 from lumen.interpreters.changes.actions import described
 from lumen.language.actions import Action, ComputedAction
@@ -34,7 +35,7 @@ from lumen.language.commands import Walk as WalkTo
 from lumen.language.events import Event
 from lumen.language.life import STILL_STYLE
 from lumen.language.motions import Keyframe, MotionDefinition
-from lumen.language.routes import MEANINGS
+from lumen.language.routes import route_meanings
 from lumen.language.verbs import COMPUTED, VERBS, Quantity, verb_of
 from lumen.loading.actions import COMPUTED_READERS
 from lumen.loading.schema import load_schema
@@ -215,9 +216,10 @@ def test_the_recording_robot_performs_every_command(command: RobotCommand) -> No
 
 
 def test_every_sense_has_a_meaning_a_reading_and_a_body() -> None:
-    assert {sense.value for sense in Sense} <= MEANINGS.keys()
+    assert {sense.value for sense in Sense} <= route_meanings().keys()
     assert {type(reading) for reading in READINGS} == set(get_args(NumericReading))
     assert len(get_args(Reading)) == len(Sense)
+    assert set(table("senses")) == set(Sense)
     robot = RecordingRobot(BODY)
     for sense in Sense:
         reading = robot.read(sense)
@@ -228,5 +230,5 @@ def test_every_sense_has_a_meaning_a_reading_and_a_body() -> None:
 @pytest.mark.parametrize("reading", READINGS, ids=lambda reading: type(reading).__name__)
 def test_every_reading_crosses_the_bus(reading: NumericReading) -> None:
     senses = [sense for sense in Sense if isinstance(RecordingRobot(BODY).read(sense), type(reading))]
-    body = json.loads(json.dumps(encode_reading(reading)))
+    body = json.loads(json.dumps(encode_reading(senses[0], reading)))
     assert [decode_reading(sense, body, tuple(BODY.joints)) for sense in senses] == [reading]

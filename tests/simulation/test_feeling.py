@@ -84,15 +84,15 @@ def test_motors_that_hold_get_warm(robot: SimulatedRobot) -> None:
 
 def test_it_crosses_the_bus_whole_and_robots_that_feel_nothing_say_nothing(robot: SimulatedRobot) -> None:
     joints = felt(robot)
-    body = encode_reading(joints)
+    body = encode_reading(Sense.JOINT, joints)
     assert decode_reading(Sense.JOINT, body, joints.names) == joints
     plain = RecordingRobot(robot.body).read(Sense.JOINT)
     assert isinstance(plain, Joints)
-    assert sorted(encode_reading(plain)) == ["angle", "life", "name", "position", "stiffness", "time"]
-    assert decode_reading(Sense.JOINT, encode_reading(plain), plain.names) == plain
+    assert sorted(encode_reading(Sense.JOINT, plain)) == ["angle", "life", "name", "position", "stiffness", "time"]
+    assert decode_reading(Sense.JOINT, encode_reading(Sense.JOINT, plain), plain.names) == plain
 
 
 @pytest.mark.parametrize("broken", [{"fsr": 3}, {"inertial": {"AngleX": "much"}}, {"temperature": ["hot"]}])
 def test_what_is_no_number_is_no_reading(robot: SimulatedRobot, broken: dict[str, object]) -> None:
     joints = felt(robot)
-    assert decode_reading(Sense.JOINT, {**encode_reading(joints), **broken}, joints.names) is None
+    assert decode_reading(Sense.JOINT, {**encode_reading(Sense.JOINT, joints), **broken}, joints.names) is None

@@ -1,4 +1,4 @@
-"""A stranger's robot, bus, module and function work wherever a user meets those of Lumen."""
+"""A stranger's robot, sense, bus, module and function work wherever a user meets those of Lumen."""
 
 from contextlib import closing
 from pathlib import Path
@@ -12,6 +12,7 @@ from lumen.cli.main import main
 from lumen.errors import ExpressionError, UsageError
 from lumen.interpreters.expressions import Scope, compile_expression
 from lumen.language.events import robot_events
+from lumen.language.routes import route_meanings
 from lumen.language.stories import Visitor
 from lumen.loading.files import read_files
 from lumen.loading.schema import load_schema
@@ -20,6 +21,7 @@ from lumen.lsp.completion import complete
 from lumen.lsp.hover import hover
 from lumen.lsp.signatures import signature
 from lumen.robots.bounded_robot import BoundedRobot
+from lumen.robots.remote import RemoteRobot
 from lumen.rules import check_files
 from lumen.runtime.presence import all_parts, unique_parts
 from tests.lsp.test_services import place
@@ -111,6 +113,34 @@ def test_a_module_hears_and_publishes(stranger: Path, hall: Path) -> None:
         bus.publish(project.key_of("heard"), {"result": "a great and lovely bear"})
         module.close()
     assert heard == [{"cheer": 2}]
+
+
+def test_a_behaviour_hears_a_sense_through_its_route(stranger: Path, hall: Path) -> None:
+    with lumen.open(hall, robot="teddy") as exhibition:
+        exhibition.visitor.arrive(Visitor())
+        exhibition.run(seconds=3)
+        assert exhibition.configuration == {"content"}
+        assert exhibition.node.robot.server.counts["slow_honey"].off == ""
+
+
+def test_a_robot_in_another_process_has_the_sense(stranger: Path, hall: Path) -> None:
+    project = lumen.load(hall)
+    with closing(lumen.bus.connect("memory://")) as bus, closing(RemoteRobot(project, bus, lambda: 7.0)) as robot:
+        assert robot.read_other("honey") is None
+        bus.publish(project.key_of("honey"), {"pots": "many"})
+        assert robot.read_other("honey") is None
+        bus.publish(project.key_of("honey"), {"pots": 2, "time": 5.0})
+        assert (robot.read_other("honey").pots, robot.time()) == (2, 5.0)
+
+
+def test_lint_and_editor_know_the_sense(stranger: Path, hall: Path) -> None:
+    assert route_meanings()["honey"] == "the pots of honey"
+    analysis = Analysis(hall, read_files(hall))
+    assert "honey" in {item.text for item in complete(analysis, *place(analysis, MAIN, "of: |honey"))}
+    text = (hall / MAIN).read_text()
+    (hall / MAIN).write_text(text.replace("of: honey", "of: honeycomb"))
+    (message,) = findings(hall)
+    assert "honey" in message
 
 
 def test_a_scheme_opens_its_bus_and_is_allowed_in_a_project(stranger: Path, hall: Path) -> None:

@@ -18,6 +18,7 @@ from lumen.app.run_start import BegunRun, started
 from lumen.app.services import Services
 from lumen.app.setup import SPEEDS, VOICES, Setup, robot_names, robot_options
 from lumen.app.stories import home_of
+from lumen.buses.addresses import examples, within_process
 from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.imperfection_options import configure_imperfections, set_up_robot

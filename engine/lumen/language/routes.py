@@ -5,23 +5,23 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Literal, NamedTuple
 
+from lumen.feature import table
 from lumen.language.diagnostics import NodePath
 
 IMAGE, JOINT, SONAR, TACTILE, BATTERY = "image", "joint", "sonar", "tactile", "battery"
 FACE, HEARD, COMMAND, STOP = "face", "heard", "command", "stop"
 
-MEANINGS: Mapping[str, str] = {
-    IMAGE: "the images from the robot's camera",
-    JOINT: "the angles of the robot's joints; `track` needs this route",
-    SONAR: "the distances to the nearest obstacles",
-    TACTILE: "the touch sensors that are pressed",
-    BATTERY: "the charge of the robot's battery",
+_MEANINGS: Mapping[str, str] = {
     FACE: "the position of a visitor's face in the camera's image; simulated visitors appear on it",
     HEARD: "the words of a visitor: spoken, typed, or from a story",
     COMMAND: "commands from other modules to the robot",
     STOP: "commands to rest or to stop, on a separate route",
 }
-"""The routes whose names mean something to Lumen itself, and what each is for; all others are the exhibition's own."""
+
+
+def route_meanings() -> Mapping[str, str]:
+    """Return the routes whose names have a meaning for Lumen, and what each is for; all others are the exhibition's."""
+    return {**{sense: str(row.meaning) for sense, row in table("senses").items()}, **_MEANINGS}
 
 
 JSON_TYPE, JPEG_TYPE, FLOATS_TYPE = "application/json", "image/jpeg", "application/vnd.lumen.float32"

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lumen.errors import UsageError
 from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.diagnostics import Diagnostic, Severity
-from lumen.language.routes import MEANINGS
+from lumen.language.routes import route_meanings
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.heard_rows import ELSE, WAYS
 from lumen.lsp.index import WORD_KINDS
@@ -72,8 +72,8 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
         raise UsageError(
             f"`{name}` can't be the name of a {use.kind}: it is a word list that `hears` uses to read sentences"
         )
-    if use.kind is NameKind.ROUTE and use.name in MEANINGS:
-        raise UsageError(f"the route `{use.name}` has a fixed meaning in Lumen: {MEANINGS[use.name]}")
+    if use.kind is NameKind.ROUTE and use.name in route_meanings():
+        raise UsageError(f"the route `{use.name}` has a fixed meaning in Lumen: {route_meanings()[use.name]}")
     if _taken(analysis, use, name):
         raise UsageError(f"there is already a {use.kind} `{name}`")
     uses = [other for other in analysis.index.of(use) if other.text == use.text]

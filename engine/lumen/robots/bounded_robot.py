@@ -9,7 +9,19 @@ from lumen.errors import BadCommandError
 from lumen.language.commands import Do, Posture, Rest, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.robots import Body
-from lumen.ports import Aim, Idles, Joints, Perform, PerformsVerbs, Reading, Robot, RobotCommand, Sense
+from lumen.ports import (
+    Aim,
+    HasOtherSenses,
+    Idles,
+    Joints,
+    OtherReading,
+    Perform,
+    PerformsVerbs,
+    Reading,
+    Robot,
+    RobotCommand,
+    Sense,
+)
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_table import parts_of
 from lumen.robots.executor import Executor
@@ -71,6 +83,9 @@ class BoundedRobot:
 
     def read(self, sense: Sense) -> Reading | None:
         return self.robot.read(sense)
+
+    def read_other(self, sense: str) -> OtherReading | None:
+        return self.robot.read_other(sense) if isinstance(self.robot, HasOtherSenses) else None
 
     def close(self) -> None:
         self._runner.close()

@@ -1,6 +1,6 @@
 """A robot that performs nothing, remembers everything, and takes its time: for stories, tests and authors."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, inf
 from typing import Any
@@ -14,6 +14,7 @@ from lumen.language.commands import Do, Look, Move, Posture, Say, Walk
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.robots import Body
+from lumen.language.routes import BATTERY, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import LEGS, WHOLE_BODY, part_of
@@ -111,6 +112,12 @@ class RecordingRobot:
         self._visitor: Visitor | None = None
         self._noticed: list[Event] = []
         self._reckoning = DeadReckoning()
+        self._senses: Mapping[str, Callable[[], Reading | None]] = {
+            JOINT: self._joints,
+            SONAR: self._sonar,
+            TACTILE: self._tactile,
+            BATTERY: self._battery,
+        }
         self._executor = Executor(self._begin, lambda command: parts_of(command, body), self._begin)
         self._part = part_of(body)
         self._life = LifeLayer(body)
@@ -151,27 +158,28 @@ class RecordingRobot:
         self._noticed += self._executor.advance(self.time)
 
     def read(self, sense: Sense) -> Reading | None:
-        match sense:
-            case Sense.JOINT:
-                names = tuple(self.body.joints)
-                offsets = self._offsets()
-                angles = tuple(self._angles.get(name, 0.0) + offsets.get(name, 0.0) for name in names)
-                where = self._reckoning.whereabouts
-                return Joints(self.time, names, angles, (1.0,) * len(names), position=where, life=offsets)
-            case Sense.SONAR if self.body.sonar is None:
-                return None
-            case Sense.SONAR:
-                distance = hypot(self._visitor.x, self._visitor.y) if self._visitor else 2.55
-                return Sonar(self.time, distance, distance)
-            case Sense.TACTILE if not self.body.tactile:
-                return None
-            case Sense.TACTILE:
-                names = self.body.tactile
-                return Tactile(self.time, names, tuple(int(name in self._pressed) for name in names))
-            case Sense.BATTERY:
-                return Battery(self.time, 100, plugged=self._plugged, charging=False)
-            case Sense.IMAGE:
-                return None
+        measure = self._senses.get(sense)
+        return measure() if measure else None
+
+    def _joints(self) -> Joints:
+        names = tuple(self.body.joints)
+        offsets = self._offsets()
+        angles = tuple(self._angles.get(name, 0.0) + offsets.get(name, 0.0) for name in names)
+        where = self._reckoning.whereabouts
+        return Joints(self.time, names, angles, (1.0,) * len(names), position=where, life=offsets)
+
+    def _sonar(self) -> Sonar | None:
+        if self.body.sonar is None:
+            return None
+        distance = hypot(self._visitor.x, self._visitor.y) if self._visitor else 2.55
+        return Sonar(self.time, distance, distance)
+
+    def _tactile(self) -> Tactile | None:
+        names = self.body.tactile
+        return Tactile(self.time, names, tuple(int(name in self._pressed) for name in names)) if names else None
+
+    def _battery(self) -> Battery:
+        return Battery(self.time, 100, plugged=self._plugged, charging=False)
 
     def close(self) -> None:
         """Nothing to let go of."""

@@ -2,13 +2,14 @@
 
 import base64
 import wave
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from io import BytesIO
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any
 
+from lumen.feature import SenseRow, resolve, table
 from lumen.language.data_url import DataUrl
 from lumen.language.routes import Size
-from lumen.ports import Battery, Image, Joints, NumericReading, Reading, Sense, Sonar, Tactile, Whereabouts
+from lumen.ports import Battery, Image, Joints, OtherReading, Sonar, Tactile, Whereabouts
 
 if TYPE_CHECKING:
     import numpy as np
@@ -19,60 +20,86 @@ RECORDING_RATE = 16_000
 """Samples of a recording a second."""
 
 
-def encode_reading(reading: NumericReading) -> dict[str, Any]:
-    """The body of a reading that is numbers already; angles in [rad], distances in [m], charge in [%]."""
-    match reading:
-        case Joints(time, names, angles, stiffness):
-            body = {"name": list(names), "angle": list(angles), "stiffness": list(stiffness), "time": time}
-            felt: dict[str, Any] = {"temperature": list(reading.temperature)}
-            felt |= {"inertial": reading.inertial, "fsr": reading.fsr, "life": reading.life}
-            if reading.position:
-                felt["position"] = reading.position._asdict()
-            return body | {name: dict(v) if isinstance(v, Mapping) else v for name, v in felt.items() if v}
-        case Sonar(time, left, right):
-            return {"rightSensor": right, "leftSensor": left, "time": time}
-        case Tactile(time, names, values):
-            return {"name": list(names), "value": list(values), "time": time}
-        case Battery(time, percentage, plugged, charging):
-            return {"percentage": percentage, "isPlugged": plugged, "isCharging": charging, "time": time}
-        case _:
-            assert_never(reading)
+def encode_reading(sense: str, reading: OtherReading) -> dict[str, Any]:
+    """Return the body of a reading of any sense but images."""
+    encode: Callable[[OtherReading], dict[str, Any]] = resolve(table("senses")[sense].encode)
+    return encode(reading)
 
 
-def decode_reading(sense: Sense, body: Any, names: Sequence[str]) -> Reading | None:
-    """The reading in a body of that sense; None where it is none, or of another body than the one with these joints.
+def decode_reading(sense: str, body: Any, names: Sequence[str]) -> OtherReading | None:
+    """Return the reading in a body of that sense; None if it has none, or is of a robot with other joints.
 
     Of images it is always None: pictures are for other modules.
     """
-    if not isinstance(body, Mapping):
+    row: SenseRow = table("senses")[sense]
+    if not isinstance(body, Mapping) or not row.decode:
         return None
+    decode: Callable[[Mapping[str, Any], Sequence[str]], OtherReading | None] = resolve(row.decode)
     try:
-        time = float(body.get("time", 0.0))
-        match sense:
-            case Sense.JOINT:
-                known, angles = tuple(map(str, body["name"])), tuple(map(float, body["angle"]))
-                stiffness = tuple(map(float, body["stiffness"]))
-                whole = known == tuple(names) and len(angles) == len(stiffness) == len(known)
-                felt = _felt(body, len(known))
-                life = _named(body, "life")
-                return Joints(time, known, angles, stiffness, *felt, _position(body), life) if whole else None
-            case Sense.SONAR:
-                return Sonar(time, float(body["leftSensor"]), float(body["rightSensor"]))
-            case Sense.TACTILE:
-                return Tactile(time, tuple(map(str, body["name"])), tuple(map(int, body["value"])))
-            case Sense.BATTERY:
-                return Battery(
-                    time,
-                    int(body["percentage"]),
-                    plugged=bool(body["isPlugged"]),
-                    charging=bool(body["isCharging"]),
-                )
-            case Sense.IMAGE:
-                return None
-            case _:
-                assert_never(sense)
+        return decode(body, names)
     except (KeyError, TypeError, ValueError, OverflowError):
         return None
+
+
+def encode_joints(reading: Joints) -> dict[str, Any]:
+    """Angles are in [rad]."""
+    body = {
+        "name": list(reading.names),
+        "angle": list(reading.angles),
+        "stiffness": list(reading.stiffness),
+        "time": reading.time,
+    }
+    felt: dict[str, Any] = {"temperature": list(reading.temperature)}
+    felt |= {"inertial": reading.inertial, "fsr": reading.fsr, "life": reading.life}
+    if reading.position:
+        felt["position"] = reading.position._asdict()
+    return body | {name: dict(v) if isinstance(v, Mapping) else v for name, v in felt.items() if v}
+
+
+def decode_joints(body: Mapping[str, Any], names: Sequence[str]) -> Joints | None:
+    time, known, angles = _time(body), tuple(map(str, body["name"])), tuple(map(float, body["angle"]))
+    stiffness = tuple(map(float, body["stiffness"]))
+    whole = known == tuple(names) and len(angles) == len(stiffness) == len(known)
+    felt = _felt(body, len(known))
+    life = _named(body, "life")
+    return Joints(time, known, angles, stiffness, *felt, _position(body), life) if whole else None
+
+
+def encode_sonar(reading: Sonar) -> dict[str, Any]:
+    """Distances are in [m]."""
+    return {"rightSensor": reading.right, "leftSensor": reading.left, "time": reading.time}
+
+
+def decode_sonar(body: Mapping[str, Any], names: Sequence[str]) -> Sonar:
+    return Sonar(_time(body), float(body["leftSensor"]), float(body["rightSensor"]))
+
+
+def encode_tactile(reading: Tactile) -> dict[str, Any]:
+    return {"name": list(reading.names), "value": list(reading.values), "time": reading.time}
+
+
+def decode_tactile(body: Mapping[str, Any], names: Sequence[str]) -> Tactile:
+    return Tactile(_time(body), tuple(map(str, body["name"])), tuple(map(int, body["value"])))
+
+
+def encode_battery(reading: Battery) -> dict[str, Any]:
+    """The charge is in [%]."""
+    return {
+        "percentage": reading.percentage,
+        "isPlugged": reading.plugged,
+        "isCharging": reading.charging,
+        "time": reading.time,
+    }
+
+
+def decode_battery(body: Mapping[str, Any], names: Sequence[str]) -> Battery:
+    return Battery(
+        _time(body), int(body["percentage"]), plugged=bool(body["isPlugged"]), charging=bool(body["isCharging"])
+    )
+
+
+def _time(body: Mapping[str, Any]) -> float:
+    return float(body.get("time", 0.0))
 
 
 def _felt(body: Mapping[str, Any], count: int) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:

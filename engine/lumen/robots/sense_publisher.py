@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumen.errors import BusError, RobotError
-from lumen.ports import Reading
+from lumen.ports import OtherReading
 from lumen.upkeep.threads import WatchedThread
 
 MAX_LOGGED_REASONS = 20
@@ -35,7 +35,7 @@ class PendingReading:
     `begun` is set when its turn to be published has come, at `began` [s, monotonic], `done` when that is over.
     """
 
-    reading: Reading
+    reading: OtherReading
     after: "PendingReading | None" = None
     began: float = 0.0
     begun: threading.Event = field(default_factory=threading.Event)

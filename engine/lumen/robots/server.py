@@ -10,12 +10,13 @@ from math import inf
 from typing import Any
 
 from lumen.errors import BusError
+from lumen.feature import table
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.commands import Say
 from lumen.language.events import RECORDED, Event
 from lumen.language.projects import Project
 from lumen.language.routes import Route
-from lumen.ports import Bus, Image, KnowsListeners, Robot, RobotCommand, Sense
+from lumen.ports import Bus, HasOtherSenses, Image, KnowsListeners, OtherReading, Robot, RobotCommand, Sense
 from lumen.robots.command_receiver import CommandListener, CommandReceiver
 from lumen.robots.deduplication_log import DeduplicationLog
 from lumen.robots.robot_routes import NOTICED_ROUTE, RECORDING_ROUTE, TEXT_ROUTE, publish_on
@@ -103,7 +104,7 @@ class RobotServer:
             if now + TIME_EPSILON >= self._next[name] and not self._broadcasts[name].count.off:
                 self._schedule(name, route, now)
                 if self._wanted(route):
-                    self._read(name, Sense(route.sense))
+                    self._read(name, route.sense)
         self._orders.begin()
 
     def use(self, project: Project) -> None:
@@ -185,8 +186,8 @@ class RobotServer:
         if self._next[name] <= now:
             self._next[name] = now + period
 
-    def _read(self, name: str, sense: Sense) -> None:
-        reading = self._robot.read(sense)
+    def _read(self, name: str, sense: str) -> None:
+        reading = self._robot.read(Sense(sense)) if sense in set(Sense) else self._other(sense)
         if reading is None:
             return
         if isinstance(reading, Image):
@@ -200,16 +201,19 @@ class RobotServer:
         self._leaving.append(handed)
         self._broadcasts[name].hand(handed)
 
+    def _other(self, sense: str) -> OtherReading | None:
+        return self._robot.read_other(sense) if isinstance(self._robot, HasOtherSenses) else None
+
     def _listen(self, project: Project) -> None:
         """Give every route of a sense what publishes it: the one of its name first, then those that are `of` it."""
         self._project = project
-        senses = {sense.value: i for i, sense in enumerate(Sense)}
+        senses = {sense: i for i, sense in enumerate(table("senses"))}
         rows = [(name, route) for name, route in project.routes.items() if route.sense in senses]
         self._routes = dict(sorted(rows, key=lambda row: (bool(row[1].of), senses[row[1].sense])))
         for name, route in self._routes.items():
             if name not in self._broadcasts:
                 image = route.sense == Sense.IMAGE
-                encode = partial(self._picture, name) if image else encode_reading
+                encode = partial(self._picture, name) if image else partial(encode_reading, route.sense)
                 publish, direct = partial(self._publish, name), self._direct and not image
                 self._broadcasts[name] = SensePublisher(name, encode, publish, direct=direct)
                 self._next[name] = 0.0

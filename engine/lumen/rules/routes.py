@@ -14,11 +14,11 @@ from lumen.language.routes import (
     JOINT,
     JPEG_TYPE,
     LONGEST_COMMAND_TTL,
-    MEANINGS,
     SHORTEST_IMAGE_INTERVAL,
     Carried,
     Direction,
     Route,
+    route_meanings,
 )
 from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS
 from lumen.loading.document_report import DocumentReport
@@ -133,7 +133,7 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
         waits = any(d != "*" and hears(d, HEARD) for d in descriptors(machine))
         for name, needed, what in ((JOINT, tracks, "uses `track`"), (HEARD, waits, "waits for `heard`")):
             if needed and name not in routes and name not in report.lost:
-                message = f"`{behavior}` {what}, but there is no route `{name}`: {MEANINGS[name]}"
+                message = f"`{behavior}` {what}, but there is no route `{name}`: {route_meanings()[name]}"
                 hint, cause = f"write a row `{name}:`", f"name {name}"
                 where: NodePath = ("routes",)
                 if meant := next((r for r in routes.values() if name in (r.event, *_meant(r))), None):

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from difflib import get_close_matches
 
 from lumen.language.diagnostics import ERROR, WARNING, Code
-from lumen.language.routes import MEANINGS, Direction, Route
+from lumen.language.routes import Direction, Route, route_meanings
 from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS, INTERNAL_KEYS, KEY_PREFIXES, SHARED_ROUTES
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.settings import Settings
@@ -75,7 +75,7 @@ def _taken(report: DocumentReport, route: Route, settings: Settings) -> bool:
     elif owner == route.name:
         return False
     hint = f"choose a key of your own, such as `museum.{route.name}`"
-    if owner in MEANINGS and owner not in settings.routes and owner != route.name:
+    if owner in route_meanings() and owner not in settings.routes and owner != route.name:
         hint = f"name the route `{owner}`, or {hint}"
     report(TAKEN_KEY, (*route.where, "key"), message, hint, cause=cause)
     return True

@@ -8,11 +8,12 @@ from pathlib import Path
 from lumen.app.parts.kept_hold import KeptHold
 from lumen.app.parts.part import Part
 from lumen.app.setup import Setup
+from lumen.feature import table
 from lumen.language.commands import Command, Say, Start
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
-from lumen.ports import Bus, HasSpeed, Sense
+from lumen.ports import Bus, HasSpeed
 from lumen.robots.bounded_robot import is_idle
 from lumen.robots.command_receiver import CommandListener
 from lumen.robots.deduplication_log import DeduplicationLog
@@ -123,7 +124,7 @@ class RobotPart(Part, Observer):
         routes = {
             name: route
             for name, route in project.routes.items()
-            if name not in set(Sense) or route.event or name in read
+            if name not in table("senses") or route.event or name in read
         }
         return replace(project, routes=routes)
 

@@ -63,7 +63,9 @@ class NaoqiRobot:
         self._aim: Aim | None = None
         self._reconnector = Reconnector(self._session, self._take_over)
         self._reconnector.open()
-        self._senses = {sense: SensePoller(sense, self._session, *self._sensors.reader(sense)) for sense in Sense}
+        self._senses = {
+            sense: SensePoller(sense, self._session, *reader) for sense, reader in self._sensors.readers().items()
+        }
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):

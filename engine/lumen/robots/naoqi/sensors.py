@@ -3,12 +3,12 @@
 import logging
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, assert_never
+from typing import TYPE_CHECKING, Any
 
 from lumen.errors import RobotError, SenseError
 from lumen.language.robots import Body
-from lumen.language.routes import SIZES, Size
-from lumen.ports import Battery, Image, Joints, Reading, Sense, Sonar, Tactile, Whereabouts
+from lumen.language.routes import BATTERY, IMAGE, JOINT, SIZES, SONAR, TACTILE, Size
+from lumen.ports import Battery, Image, Joints, Reading, Sonar, Tactile, Whereabouts
 from lumen.robots.naoqi.hardware import CHARGE, CHARGING, INERTIAL, PLUGGED, device, hardware_of
 from lumen.robots.naoqi.session import NaoqiSession
 
@@ -60,21 +60,15 @@ class NaoqiSensors:
         self._size = self._wanted = self._own
         self._behind: deque[float] = deque(maxlen=CLOCK_OFFSET_FRAMES)
 
-    def reader(self, sense: Sense) -> tuple[Callable[[], Reading], float]:
-        """What reads a sense, and how often [s]: no later than the shipped routes publish it."""
-        match sense:
-            case Sense.IMAGE:
-                return self.image, 0.066
-            case Sense.JOINT:
-                return self.joints, 0.05
-            case Sense.SONAR:
-                return self.sonar, 0.1
-            case Sense.TACTILE:
-                return self.tactile, 0.1
-            case Sense.BATTERY:
-                return self.battery, 1.0
-            case _:
-                assert_never(sense)
+    def readers(self) -> Mapping[str, tuple[Callable[[], Reading], float]]:
+        """Return a function for each sense, and how often to call it [s]: as often as the shipped routes publish it."""
+        return {
+            IMAGE: (self.image, 0.066),
+            JOINT: (self.joints, 0.05),
+            SONAR: (self.sonar, 0.1),
+            TACTILE: (self.tactile, 0.1),
+            BATTERY: (self.battery, 1.0),
+        }
 
     def begin(self) -> None:
         """Forget what another session was about; what was left over of our own cameras is let go."""

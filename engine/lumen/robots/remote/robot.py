@@ -10,11 +10,12 @@ from functools import partial
 from typing import Any
 
 from lumen.errors import BadCommandError, BusError
+from lumen.feature import table
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Stop
 from lumen.language.events import CUE, MISSED, RESULT, Event, robot_events
 from lumen.language.projects import Project
-from lumen.ports import Aim, Bus, Live, Message, Perform, Reading, RobotCommand, Sense
+from lumen.ports import Aim, Bus, Live, Message, NumericReading, OtherReading, Perform, Reading, RobotCommand, Sense
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_codec import encode_command
 from lumen.robots.command_reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN_COMMAND
@@ -93,7 +94,7 @@ class RemoteRobot:
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_REPORTS)
         self._events: list[Event] = []
         self._begun: list[str] = []
-        self._readings: dict[Sense, tuple[Reading, float]] = {}
+        self._readings: dict[str, tuple[OtherReading, float]] = {}
         self._undo: dict[str, Callable[[], None]] = {}
         self.use(project)
 
@@ -101,8 +102,8 @@ class RemoteRobot:
         """Go by the routes of this project from now on; what is new is listened to before what is gone is not."""
         self._project = project
         wanted = {key_of(project, REPORT_ROUTE): self._came.append, key_of(project, NOTICED_ROUTE): self._came.append}
-        for sense in Sense:
-            if sense in project.routes and sense is not Sense.IMAGE:
+        for sense, row in table("senses").items():
+            if sense in project.routes and row.decode:
                 wanted[project.routes[sense].key_for(project.robot)] = partial(self._sense, sense)
         for key in sorted(wanted.keys() - self._undo.keys()):
             self._undo[key] = self._bus.subscribe(key, wanted[key])
@@ -171,6 +172,10 @@ class RemoteRobot:
     def read(self, sense: Sense) -> Reading | None:
         """The newest reading that has come; of images none, which are for other modules."""
         found = self._readings.get(sense)
+        return found[0] if found and isinstance(found[0], NumericReading) else None
+
+    def read_other(self, sense: str) -> OtherReading | None:
+        found = self._readings.get(sense)
         return found[0] if found else None
 
     def time(self) -> float | None:
@@ -222,7 +227,7 @@ class RemoteRobot:
         except BusError as error:
             _log.warning("a command was not sent to the robot: %s", error)
 
-    def _sense(self, sense: Sense, message: Message) -> None:
+    def _sense(self, sense: str, message: Message) -> None:
         """On whichever thread the bus has."""
         if reading := decode_reading(sense, message.body, tuple(self._project.body.joints)):
             self._readings[sense] = (reading, self._clock())

@@ -1,6 +1,6 @@
 """The simulated NAO behind the `Robot` seam, in a hall behind the `Hall` seam."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from math import degrees
 from pathlib import Path
 from typing import assert_never
@@ -19,8 +19,9 @@ from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES, BaseKind
+from lumen.language.routes import BATTERY, IMAGE, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
-from lumen.ports import Aim, Battery, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Image, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.executor import Activity, Executor
@@ -109,6 +110,13 @@ class SimulatedRobot:
         self._skills = SimulatedSkills(
             self.world, self.motors, self.lights, self.base, self._sensors, posture, self._notice
         )
+        self._senses: Mapping[str, Callable[[], Reading | None]] = {
+            IMAGE: self._image,
+            JOINT: self._joints,
+            SONAR: self._sonar,
+            TACTILE: self._touch_sensors,
+            BATTERY: self._battery,
+        }
         self._skill_runner = SkillRunner()
         self._executor = Executor(self._begin, self._skills.parts, self._skill_runner.begin)
         self.figure = figure or VisitorFigure(self.world.model, self.world.data)
@@ -196,22 +204,28 @@ class SimulatedRobot:
         return added_verbs()
 
     def read(self, sense: Sense) -> Reading | None:
-        now = self.time
-        match sense:
-            case Sense.IMAGE:
-                return self._camera.image(now) if self._camera else None
-            case Sense.JOINT:
-                angles, stiffness = self._sensors.angles.tolist(), self.motors.stiffness.tolist()
-                heat = tuple(self.condition.temperatures.round(1).tolist())
-                felt = heat, self._sensors.inertial, self._force_sensors.weigh()
-                where, life = self.base.whereabouts, self._life.offsets
-                return Joints(now, self.motors.names, tuple(angles), tuple(stiffness), *felt, where, life)
-            case Sense.SONAR:
-                return Sonar(now, *self._sonars.measure()) if self._sonars else None
-            case Sense.TACTILE:
-                return Tactile(now, tuple(self._pressed), tuple(map(int, self._pressed.values())))
-            case Sense.BATTERY:
-                return Battery(now, self.condition.percentage, self.condition.plugged, self.condition.charging)
+        measure = self._senses.get(sense)
+        return measure() if measure else None
+
+    def _image(self) -> Image | None:
+        return self._camera.image(self.time) if self._camera else None
+
+    def _joints(self) -> Joints:
+        angles, stiffness = self._sensors.angles.tolist(), self.motors.stiffness.tolist()
+        heat = tuple(self.condition.temperatures.round(1).tolist())
+        felt = heat, self._sensors.inertial, self._force_sensors.weigh()
+        where, life = self.base.whereabouts, self._life.offsets
+        return Joints(self.time, self.motors.names, tuple(angles), tuple(stiffness), *felt, where, life)
+
+    def _sonar(self) -> Sonar | None:
+        return Sonar(self.time, *self._sonars.measure()) if self._sonars else None
+
+    def _touch_sensors(self) -> Tactile:
+        return Tactile(self.time, tuple(self._pressed), tuple(map(int, self._pressed.values())))
+
+    def _battery(self) -> Battery:
+        condition = self.condition
+        return Battery(self.time, condition.percentage, condition.plugged, condition.charging)
 
     def close(self) -> None:
         self._skill_runner.close()

@@ -10,6 +10,7 @@ from lumen.feature import (
     RobotOption,
     RobotRow,
     Section,
+    SenseRow,
     Subcommand,
 )
 
@@ -52,4 +53,5 @@ FEATURE = Feature(
         )
     },
     functions={"shout": FunctionRow("lumen_stranger.shouting:shout", ("text", "number"), "text", "text, 2")},
+    senses={"honey": SenseRow("the pots of honey", "lumen_stranger.honey:encode", "lumen_stranger.honey:decode")},
 )

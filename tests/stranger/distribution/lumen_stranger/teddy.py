@@ -6,7 +6,8 @@ from lumen.app.setup import RobotRequest, Setup, set_up_with
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.stories import Visitor
-from lumen.ports import Reading, RobotCommand
+from lumen.ports import Reading, RobotCommand, Sense
+from lumen_stranger.honey import Honey
 
 TIME_TO_SAY = 0.5
 """[s]."""
@@ -45,8 +46,11 @@ class Teddy:
     def begun(self) -> Sequence[str]:
         return ()
 
-    def read(self, sense: str) -> Reading | None:
+    def read(self, sense: Sense) -> Reading | None:
         return None
+
+    def read_other(self, sense: str) -> Honey | None:
+        return Honey(self._time, max(0, 3 - len(self.said))) if sense == "honey" else None
 
     def close(self) -> None:
         pass
