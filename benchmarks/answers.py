@@ -29,9 +29,10 @@ from lumen.interpreters.retrieval.calibration import (
     left_out,
     outcome,
 )
-from lumen.interpreters.retrieval.features import METHODS, Method, joined, words
+from lumen.interpreters.retrieval.features import Method, by_wordings, joined, words
 from lumen.interpreters.retrieval.ranking import AnswerRates
 from lumen.interpreters.retrieval.retriever import Retriever
+from lumen.interpreters.retrieval.scorers import bm25, ngrams
 from lumen.interpreters.retrieval.trials import samples_of
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.projects import Project
@@ -42,6 +43,8 @@ from lumen.modules.answers.packaged_vectors import PackagedVectors
 from lumen.modules.answers.vectors import KnownText, TextVector, VectorSource
 from lumen.rules import check_files
 
+METHODS: dict[str, Method] = {"ngrams": by_wordings(ngrams), "bm25": by_wordings(bm25), "words": words}
+"""The methods that are compared; `words` is the one that is used."""
 ROOT = Path(__file__).parents[1]
 HALVES = {"dev": ROOT / "knowledge/questions/visitors.yaml", "test": Path(__file__).with_suffix(".yaml")}
 LANGUAGES = ("en", "id")

@@ -6,13 +6,14 @@ from datetime import date
 import answers
 import numpy as np
 import pytest
+from answers import METHODS
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from lumen.interpreters.retrieval.calibration import Judged, least_probability, left_out, outcome
 from lumen.interpreters.retrieval.choice import RIDGE, fitted, probabilities, shares
-from lumen.interpreters.retrieval.features import METHODS, coverage
+from lumen.interpreters.retrieval.features import coverage
 from lumen.interpreters.retrieval.ranking import NEVER, UNANSWERABLE, Weights
 from lumen.interpreters.retrieval.retriever import Retriever
 from lumen.interpreters.retrieval.trials import tried, weights_of

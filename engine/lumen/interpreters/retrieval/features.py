@@ -6,7 +6,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.retrieval.scorers import WordingMethod, bm25, combined, ngrams
+from lumen.interpreters.retrieval.scorers import WordingMethod, combined
 from lumen.interpreters.retrieval.words import stems
 from lumen.language.knowledge import Passage
 
@@ -86,6 +86,3 @@ def joined(*methods: Method) -> Method:
 
 words = joined(by_wordings(combined), coverage)
 """What is used: letters forgive what was misheard, words tell what was meant, and coverage what is not known at all."""
-
-METHODS: dict[str, Method] = {"ngrams": by_wordings(ngrams), "bm25": by_wordings(bm25), "words": words}
-"""Every method by its name."""
