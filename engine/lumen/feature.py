@@ -354,6 +354,8 @@ class Feature:
     functions: Mapping[str, FunctionRow] = field(default_factory=dict)
     buses: Mapping[str, BusRow] = field(default_factory=dict)
     senses: Mapping[str, SenseRow] = field(default_factory=dict)
+    voices: Mapping[str, str] = field(default_factory=dict)
+    """For `lumen run --voice NAME`, the class of the voice: a `lumen.app.voice.Voice`, made as its `Speaker` is."""
 
 
 class FeatureFault(NamedTuple):

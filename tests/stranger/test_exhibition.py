@@ -1,4 +1,4 @@
-"""A stranger's robot, sense, bus, module and function work wherever a user meets those of Lumen."""
+"""A stranger's robot, sense, bus, module, voice and function work wherever a user meets those of Lumen."""
 
 from contextlib import closing
 from pathlib import Path
@@ -38,15 +38,23 @@ def findings(root: Path) -> list[str]:
 @pytest.mark.process
 def test_lumen_run_performs_the_exhibition(stranger_lumen: Lumen, hall: Path) -> None:
     words = "--robot", "teddy", "--robot-voice", "high", "--story", "visitor", "--speed", "max"
-    done = stranger_lumen(hall, "run", *words)
+    sound = "--voice", "growl", "--sound", "growls.wav"
+    done = stranger_lumen(hall, "run", *words, *sound)
     assert done.returncode == 0, done.stderr
     assert "“HELLO!!”" in done.stdout
+    assert (hall / "growls.wav").read_text() == "grrr HELLO!!"
 
 
 @pytest.mark.process
 def test_help_and_completion_list_its_rows(stranger_lumen: Lumen, hall: Path) -> None:
     shown = " ".join(stranger_lumen(hall, "run", "--help").stdout.split())
-    for text in ("none,teddy}", "--robot-voice VOICE with --robot teddy", "answers, mood", "or postbox://hall"):
+    for text in (
+        "none,teddy}",
+        "{none,espeak,growl}",
+        "--robot-voice VOICE with --robot teddy",
+        "answers, mood",
+        "or postbox://hall",
+    ):
         assert text in shown
     offered = stranger_lumen(hall, "completion", "words", ".run", ".--robot", ".te")
     assert offered.stdout.split() == ["teddy"]

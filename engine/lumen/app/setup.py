@@ -16,7 +16,6 @@ from lumen.robots.bounded_robot import BoundedRobot, ability
 from lumen.runtime.tracking import TrackingService
 
 SPEEDS = ("1", "4", "max")
-VOICES = ("none", "espeak")
 NO_OPTIONS: Mapping[str, str] = {}
 
 

@@ -11,11 +11,34 @@ from typing import IO, Protocol, runtime_checkable
 from lumen.app.loudspeaker import player_here
 from lumen.app.setup import Setup
 from lumen.errors import ModuleError, UsageError
+from lumen.feature import resolve, table
 from lumen.language.gestures import WordTime
 from lumen.modules.audio_track import AudioTrack
 from lumen.modules.sound import Sound, save
 from lumen.modules.voice import espeak
 from lumen.ports import Robot
+from lumen.robots.bounded_robot import ability
+
+
+class Voice(Protocol):
+    """A voice of a simulated robot; `words` tells when those of the last text begin, if the voice measures that."""
+
+    words: tuple[WordTime, ...]
+
+    @property
+    def mute(self) -> bool:
+        """Whether nobody hears anything."""
+        ...
+
+    def begin(self, text: str, language: str, volume: float, now: float) -> float:
+        """Say a text from `now` [s] on, with a `volume` from 0 to 1; return how long that takes [s]."""
+        ...
+
+    def end(self, now: float) -> None:
+        """End the text, which is over or was cancelled."""
+        ...
+
+    def close(self) -> None: ...
 
 
 class Speaker:
@@ -100,7 +123,7 @@ class Speaker:
 class Speaks(Protocol):
     """A robot that can be given a voice."""
 
-    def speak_with(self, voice: Speaker) -> None: ...
+    def speak_with(self, voice: Voice) -> None: ...
 
 
 def voiced(
@@ -113,24 +136,25 @@ def voiced(
     found = speaker(voice, file, chosen.robot, language, track)
     if found is None:
         return lambda: None
-    if isinstance(chosen.robot, Speaks):
-        chosen.robot.speak_with(found)
+    if speaking := ability(chosen.robot, Speaks):
+        speaking.speak_with(found)
     return found.close
 
 
 def speaker(
     voice: str, file: Path | None, robot: Robot, language: str, track: AudioTrack | None = None
-) -> Speaker | None:
+) -> Voice | None:
     """The voice that was asked for; None for none. Raises UsageError or ModuleError where it can't be had."""
     if voice == "none":
         if file:
             raise UsageError("--sound needs a voice: add --voice espeak")
         return None
-    if not isinstance(robot, Speaks):
+    if ability(robot, Speaks) is None:
         raise UsageError("--voice needs the simulated robot: leave out --robot")
     if file and (file.suffix != ".wav" or not file.parent.is_dir()):
         raise UsageError(f"can't write a sound to {file}: name a .wav file in an existing folder")
-    found = Speaker(language, file, track)
+    make: Callable[[str, Path | None, AudioTrack | None], Voice] = resolve(table("voices")[voice])
+    found = make(language, file, track)
     if found.mute:
         print(
             "No sound player is installed: the speech is silent; `--sound FILE.wav` writes it to a file.",

@@ -16,7 +16,7 @@ from lumen.app.processes.choosing import parts_of
 from lumen.app.reload.reloader import MODES
 from lumen.app.run_start import BegunRun, started
 from lumen.app.services import Services
-from lumen.app.setup import SPEEDS, VOICES, Setup, robot_names, robot_options
+from lumen.app.setup import SPEEDS, Setup, robot_names, robot_options
 from lumen.app.stories import home_of
 from lumen.buses.addresses import examples, within_process
 from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
@@ -33,11 +33,13 @@ from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.clocks.following import FollowingClock
 from lumen.errors import UsageError
+from lumen.feature import table
 from lumen.language.stories import Story
 from lumen.loading.broken_features import broken_features
 from lumen.loading.running_project import is_substituted, project_to_run
 from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Clock
+from lumen.robots.bounded_robot import ability
 from lumen.runtime.home import home_of as home_of_run
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER
 from lumen.runtime.presence import BRAIN, ROBOT_PART, all_parts
@@ -86,7 +88,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--record", metavar="FILE.mcap", type=Path, help="record the messages on the bus, for Foxglove and Lichtblick")
     add(
         "--voice",
-        choices=VOICES,
+        choices=("none", *table("voices")),
         default="none",
         help="speak the simulated robot's texts with espeak-ng (default: none)",
     )
@@ -275,8 +277,8 @@ def _heard(
 
             language = language_of(one.project, options.language) or one.project.languages[0]
             stack.callback(voiced(setup, options.voice, options.sound, language, track))
-        if setup and isinstance(setup.robot, Sounds):
+        if setup and (sounding := ability(setup.robot, Sounds)):
             loudspeaker = Loudspeaker(Path(one.project.root), track, audible=options.speed != "max")
-            setup.robot.sound_with(loudspeaker)
+            sounding.sound_with(loudspeaker)
             stack.callback(loudspeaker.close)
         yield

@@ -2,4 +2,8 @@
 
 from lumen.feature import Feature, ModuleRow
 
-FEATURE = Feature(name="voice", modules={"voice": ModuleRow("lumen.modules.voice:Voice")})
+FEATURE = Feature(
+    name="voice",
+    modules={"voice": ModuleRow("lumen.modules.voice:Voice")},
+    voices={"espeak": "lumen.app.voice:Speaker"},
+)

@@ -52,6 +52,7 @@ FEATURE = Feature(
             {"cheerful": {"description": "Words of cheerful visitors", "type": "array", "items": {"type": "string"}}},
         )
     },
+    voices={"growl": "lumen_stranger.growl:Growl"},
     functions={"shout": FunctionRow("lumen_stranger.shouting:shout", ("text", "number"), "text", "text, 2")},
     senses={"honey": SenseRow("the pots of honey", "lumen_stranger.honey:encode", "lumen_stranger.honey:decode")},
 )

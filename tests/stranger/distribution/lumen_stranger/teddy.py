@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from lumen.app.setup import RobotRequest, Setup, set_up_with
+from lumen.app.voice import Voice
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.stories import Visitor
@@ -20,6 +21,7 @@ class Teddy:
         self.said: list[str] = []
         self._voice = voice
         self._time = 0.0
+        self._playback: Voice | None = None
         self._ends: dict[str, float] = {}
         self._answers: list[Event] = []
         self._visitor: Visitor | None = None
@@ -33,7 +35,13 @@ class Teddy:
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Say):
             self.said.append(f"{self._voice}: {command.text}")
-        self._ends[id] = self._time + TIME_TO_SAY
+        if isinstance(command, Say) and self._playback:
+            self._ends[id] = self._time + self._playback.begin(command.text, command.language, 1.0, self._time)
+        else:
+            self._ends[id] = self._time + TIME_TO_SAY
+
+    def speak_with(self, voice: Voice) -> None:
+        self._playback = voice
 
     def cancel(self, id: str) -> None:
         if self._ends.pop(id, None) is not None:
