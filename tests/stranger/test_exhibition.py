@@ -2,14 +2,16 @@
 
 from contextlib import closing
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 import lumen
 from lumen.app.parts.module_factory import make_module
 from lumen.app.setup import set_up, set_up_house
+from lumen.app.voice import speaker
 from lumen.cli.main import main
-from lumen.errors import ExpressionError, UsageError
+from lumen.errors import ExpressionError, LumenError, UsageError
 from lumen.interpreters.expressions import Scope, compile_expression
 from lumen.language.events import robot_events
 from lumen.language.routes import route_meanings
@@ -24,6 +26,7 @@ from lumen.robots.bounded_robot import BoundedRobot
 from lumen.robots.remote import RemoteRobot
 from lumen.rules import check_files
 from lumen.runtime.presence import all_parts, unique_parts
+from tests import ROOT
 from tests.lsp.test_services import place
 from tests.stranger.installing import Installed, Lumen
 from tests.waiting import HANG, until
@@ -205,3 +208,33 @@ def test_a_faulty_function_is_an_error_of_its_expression(installed: Installed) -
     with pytest.raises(ExpressionError, match="the function `gone` can't be imported: AttributeError"):
         compile_expression("gone()")
     assert compile_expression("size('abc')")(Scope()) == 3
+
+
+FAULTY = """
+from lumen.feature import BusRow, Feature, ModuleRow, RobotRow
+
+FEATURE = Feature(
+    name="faulty",
+    robots={"gone": RobotRow("faulty_gone:set_up"), "broken": RobotRow("faulty_code:broken")},
+    buses={"broken": BusRow("faulty_code:broken", ("broken://",))},
+    modules={"broken": ModuleRow("faulty_code:Gone")},
+    voices={"broken": "faulty_code:broken"},
+)
+"""
+CODE = "def broken(*arguments): 1 / 0"
+
+
+def test_faulty_code_of_a_package_is_an_error_that_names_it(installed: Installed) -> None:
+    exhibit = lumen.load(ROOT)
+    installed.write("faulty", FAULTY, faulty_code=CODE)
+    bus, speaking = lumen.bus.connect("memory://"), SimpleNamespace(speak_with=print)
+    for call, what in (
+        (lambda: set_up("gone", exhibit, "max"), "No module named 'faulty_gone'"),
+        (lambda: set_up("broken", exhibit, "max"), "`faulty_code:broken` raised ZeroDivisionError"),
+        (lambda: lumen.bus.connect("broken://"), "`faulty_code:broken` raised ZeroDivisionError"),
+        (lambda: make_module("broken", exhibit, bus, print, None), "has no attribute 'Gone'"),
+        (lambda: speaker("broken", None, speaking, "en"), "`faulty_code:broken` raised ZeroDivisionError"),
+    ):
+        with pytest.raises(LumenError, match="the installed package `faulty`") as raised:
+            call()
+        assert what in str(raised.value)

@@ -7,10 +7,11 @@ from typing import Any
 from lumen.clocks.real import RealClock
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import UsageError
-from lumen.feature import RobotOption, RobotRow, resolve, table
+from lumen.feature import RobotOption, RobotRow, owner, table
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
+from lumen.loading.broken_features import called
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, MeetsVisitors, Robot
 from lumen.robots.bounded_robot import BoundedRobot, ability
 from lumen.runtime.tracking import TrackingService
@@ -65,10 +66,6 @@ class RobotRequest:
         return self.imperfections or self.project.section(Imperfections)
 
 
-SetsUp = Callable[[RobotRequest], Setup]
-SetsUpHouse = Callable[[Mapping[str, RobotRequest]], dict[str, Setup]]
-
-
 def set_up(
     kind: str,
     project: Project,
@@ -79,9 +76,11 @@ def set_up(
 ) -> Setup:
     """Return the robot of that name, on its feet; `options` are those of its row that were given.
 
-    Raises UsageError if there is no such robot here, or if it does not go with what was asked.
+    Raises UsageError if there is no such robot here, or if it does not go with what was asked; LumenError with the name
+    of the installed package if the robot's own code is faulty.
     """
-    return _alone(_row(kind, options), RobotRequest(project, speed, story, imperfections, options))
+    row = _row(kind, options)
+    return _alone(kind, row, RobotRequest(project, speed, story, imperfections, options))
 
 
 def set_up_house(
@@ -98,14 +97,14 @@ def set_up_house(
     row = _row(kind)
     requests = {n: RobotRequest(project, speed, stories[n], imperfections) for n, project in projects.items()}
     if row.set_up_house:
-        together: SetsUpHouse = resolve(row.set_up_house)
-        return {name: _bounded(row, setup, projects[name]) for name, setup in together(requests).items()}
-    return {name: _alone(row, request) for name, request in requests.items()}
+        setups: dict[str, Setup] = called(owner("robots", kind), row.set_up_house, requests)
+        return {name: _bounded(row, setup, projects[name]) for name, setup in setups.items()}
+    return {name: _alone(kind, row, request) for name, request in requests.items()}
 
 
-def _alone(row: RobotRow, request: RobotRequest) -> Setup:
-    found: SetsUp = resolve(row.set_up)
-    return _bounded(row, found(request), request.project)
+def _alone(kind: str, row: RobotRow, request: RobotRequest) -> Setup:
+    setup: Setup = called(owner("robots", kind), row.set_up, request)
+    return _bounded(row, setup, request.project)
 
 
 def _bounded(row: RobotRow, setup: Setup, project: Project) -> Setup:

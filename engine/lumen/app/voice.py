@@ -11,8 +11,9 @@ from typing import IO, Protocol, runtime_checkable
 from lumen.app.loudspeaker import player_here
 from lumen.app.setup import Setup
 from lumen.errors import ModuleError, UsageError
-from lumen.feature import resolve, table
+from lumen.feature import owner, table
 from lumen.language.gestures import WordTime
+from lumen.loading.broken_features import called
 from lumen.modules.audio_track import AudioTrack
 from lumen.modules.sound import Sound, save
 from lumen.modules.voice import espeak
@@ -153,8 +154,7 @@ def speaker(
         raise UsageError("--voice needs the simulated robot: leave out --robot")
     if file and (file.suffix != ".wav" or not file.parent.is_dir()):
         raise UsageError(f"can't write a sound to {file}: name a .wav file in an existing folder")
-    make: Callable[[str, Path | None, AudioTrack | None], Voice] = resolve(table("voices")[voice])
-    found = make(language, file, track)
+    found: Voice = called(owner("voices", voice), table("voices")[voice], language, file, track)
     if found.mute:
         print(
             "No sound player is installed: the speech is silent; `--sound FILE.wav` writes it to a file.",

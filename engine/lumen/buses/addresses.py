@@ -1,15 +1,19 @@
 """The addresses of buses: each scheme is a row of a feature."""
 
 from lumen.errors import BusAddressError
-from lumen.feature import BusRow, resolve, table
+from lumen.feature import BusRow, owner, table
+from lumen.loading.broken_features import called
 from lumen.ports import Bus
 
 
 def open_bus(url: str, sender: str) -> Bus:
-    """Return the bus at that address. Raises BusError if there is none, or none can be."""
+    """Return the bus at that address. Raises BusError if there is none, or none can be.
+
+    Raises LumenError with the name of the installed package if the code of the bus is faulty.
+    """
     row = row_of(url)
     if row and "://" in url:
-        bus: Bus = resolve(row.open)(url, sender)
+        bus: Bus = called(owner("buses", url.partition(":")[0]), row.open, url, sender)
         return bus
     schemes: dict[str, BusRow] = table("buses")
     begins = [f"`{scheme}://`" for scheme, row in schemes.items() if row.example]

@@ -37,6 +37,21 @@ def resolved(feature: Feature, where: str) -> Any:
         raise blamed(feature, where, error) from error
 
 
+def called(feature: Feature, where: str, *arguments: Any) -> Any:
+    """Return what the function of an import string of a feature returns.
+
+    Raises LumenError as that function does, or with the name of the distribution if a feature is faulty that was
+    installed beside Lumen.
+    """
+    function = resolved(feature, where)
+    try:
+        return function(*arguments)
+    except LumenError:
+        raise
+    except Exception as error:
+        raise blamed(feature, where, error) from error
+
+
 def blamed(feature: Feature, where: str, error: Exception) -> LumenError:
     """Return an error that names the distribution in whose module `error` was raised.
 
