@@ -113,7 +113,7 @@ class BusRow:
     """A kind of bus, by the scheme of its addresses.
 
     `open` is the import string of a function from an address and the name of a sender to a `lumen.ports.Bus`. `forms`
-    are the addresses that a wrong one is told of, `example` is shown in `--help`. A bus `within_process` has no other
+    are shown if an address is wrong, `example` in `--help`. A bus `within_process` has no other
     processes on it; a `rabbitmq` one has a RabbitMQ broker, which `lumen doctor` examines.
     """
 

@@ -7,7 +7,7 @@ from lumen.ports import Bus
 
 
 def open_bus(url: str, sender: str) -> Bus:
-    """Return the bus at that address. Raises BusError if there is none, or none can be.
+    """Return the bus at that address. Raises BusError if it can't be opened.
 
     Raises LumenError with the name of the installed package if the code of the bus is faulty.
     """
@@ -23,7 +23,7 @@ def open_bus(url: str, sender: str) -> Bus:
 
 
 def row_of(url: str) -> BusRow | None:
-    """Return the row for the scheme of an address; None if there is none."""
+    """Return the row for the scheme of an address; None if no feature has that scheme."""
     row: BusRow | None = table("buses").get(url.partition(":")[0])
     return row
 

@@ -1,4 +1,4 @@
-"""What features add to the schema of lumen.yaml."""
+"""The additions of features to the schema of lumen.yaml."""
 
 import re
 from typing import Any
