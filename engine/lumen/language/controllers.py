@@ -104,6 +104,11 @@ class Variable:
     accuracy: float | None = None
     where: NodePath = field(default=(), compare=False)
 
+    @property
+    def weighted(self) -> bool:
+        """Whether an output is computed from the values of its terms, and not from a set."""
+        return self.defuzzifier in WEIGHTED_DEFUZZIFIERS
+
 
 @dataclass(frozen=True, slots=True)
 class Proposition:

@@ -109,7 +109,7 @@ class _Variables:
     def fits(self, variable: Variable) -> None:
         """Report terms that the variable can't use: a value where a set is asked for, or the other way round."""
         output = self.side == "outputs"
-        weighted = output and variable.defuzzifier in WEIGHTED_DEFUZZIFIERS
+        weighted = output and variable.weighted
         for term in variable.terms.values():
             path = (*term.where, term.kind)
             if weighted and term.kind not in (*VALUE_TERMS, "function", *INVERSE_MEMBERSHIPS):

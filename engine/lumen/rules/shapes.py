@@ -7,7 +7,7 @@ from math import isfinite
 from lumen.interpreters.inference.arithmetic import NUMBERS
 from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.survey import grid
-from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Term, Variable
+from lumen.language.controllers import VALUE_TERMS, ControllerDefinition, Term, Variable
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.scales import ranks
 from lumen.loading.document_report import DocumentReport
@@ -28,7 +28,7 @@ SampledTerm = tuple[Term, list[float]]
 def check(controller: ControllerDefinition, report: DocumentReport) -> None:
     """Report terms out of the order of their names or of reach, and gaps between them."""
     for variable in (*controller.inputs.values(), *controller.outputs.values()):
-        weighted = variable.name in controller.outputs and variable.defuzzifier in WEIGHTED_DEFUZZIFIERS
+        weighted = variable.name in controller.outputs and variable.weighted
         if not (isfinite(variable.minimum) and isfinite(variable.maximum)):
             continue
         xs = list(grid(variable, GRID_POINTS))

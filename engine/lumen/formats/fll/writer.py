@@ -10,7 +10,6 @@ from lumen.formats.fll.rule_text import negations, rule_text
 from lumen.formats.unused_names import unused_name
 from lumen.language.controllers import (
     VALUE_TERMS,
-    WEIGHTED_DEFUZZIFIERS,
     Activation,
     ControllerDefinition,
     Rule,
@@ -74,7 +73,7 @@ class _FllWriter:
                 yield f"  term: {self.terms[variable.name][term.name]} {shape}"
 
     def output(self, variable: Variable) -> Iterator[str]:
-        weighted = variable.defuzzifier in WEIGHTED_DEFUZZIFIERS
+        weighted = variable.weighted
         usual = weighted and variable.aggregation == "unbounded-sum"
         yield f"  aggregation: {'none' if usual else foreign(NORMS, variable.aggregation)}"
         method = foreign(METHODS, variable.defuzzifier)

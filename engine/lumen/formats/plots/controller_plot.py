@@ -9,7 +9,7 @@ from lumen.formats.plots.sheet import PlotAxis, PlotLine, PlotMark, PlotPanel, P
 from lumen.interpreters.inference.arithmetic import NUMBERS
 from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.survey import Survey, asked, resting
-from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Variable
+from lumen.language.controllers import VALUE_TERMS, ControllerDefinition, Variable
 
 POINTS, ACROSS = 321, 41
 """Of a curve, and of each side of a surface."""
@@ -59,9 +59,7 @@ def memberships(variable: Variable, marks: tuple[PlotMark, ...] = ()) -> PlotPan
     for style, term in enumerate(variable.terms.values()):
         if term.kind == "constant":
             lines.append(PlotLine((term.parameters[0],) * 2, (0.0, term.height), term.name, style))
-        elif term.kind not in VALUE_TERMS and not (
-            term.kind == "function" and variable.defuzzifier in WEIGHTED_DEFUZZIFIERS
-        ):
+        elif term.kind not in VALUE_TERMS and not (term.kind == "function" and variable.weighted):
             shape = membership(NUMBERS, term)
             lines.append(PlotLine(xs, tuple(float(shape(x)) for x in xs), term.name, style))
     title = variable.name

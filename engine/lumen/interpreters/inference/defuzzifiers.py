@@ -10,7 +10,7 @@ from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.program import Conclusion
 from lumen.interpreters.inference.sampled import Sampled
 from lumen.interpreters.inference.weighted import Weighted
-from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, Term, Variable
+from lumen.language.controllers import VALUE_TERMS, Term, Variable
 
 if TYPE_CHECKING:
     from lumen.interpreters.inference.arithmetic import Array
@@ -34,7 +34,7 @@ def defuzzifier(
     names = list(dict.fromkeys(conclusion.term for conclusion in conclusions))
     which = [names.index(conclusion.term) for conclusion in conclusions]
     terms = [variable.terms[name] for name in names]
-    if variable.defuzzifier in WEIGHTED_DEFUZZIFIERS:
+    if variable.weighted:
         average = variable.defuzzifier == "weighted-average"
         return Weighted(terms, which, variable.aggregation, average, known, inputs)
     points = midpoints(variable)

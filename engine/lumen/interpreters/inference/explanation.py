@@ -9,7 +9,7 @@ from lumen.interpreters.inference.defuzzifiers import midpoints, sampled
 from lumen.interpreters.inference.evaluator import Evaluator
 from lumen.interpreters.inference.memberships import membership
 from lumen.interpreters.inference.norms import norm
-from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS, Rule, Variable
+from lumen.language.controllers import Rule, Variable
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def _concluded(variable: Variable, conclusions: list[tuple[str, float, str]], va
     for term, degree, _ in conclusions:
         degrees[term] = aggregate(degrees[term], degree) if term in degrees else degree
     fired = any(degree > 0.0 for degree in degrees.values())
-    if variable.defuzzifier in WEIGHTED_DEFUZZIFIERS:
+    if variable.weighted:
         return Concluded(degrees, value, fired)
     points = midpoints(variable)
     parts = [_implied(variable, points, conclusion) for conclusion in conclusions]
