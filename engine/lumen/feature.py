@@ -355,7 +355,7 @@ class Feature:
     buses: Mapping[str, BusRow] = field(default_factory=dict)
     senses: Mapping[str, SenseRow] = field(default_factory=dict)
     voices: Mapping[str, str] = field(default_factory=dict)
-    """For `lumen run --voice NAME`, the class of the voice: a `lumen.app.voice.Voice`, made as its `Speaker` is."""
+    """For `lumen run --voice NAME`, the class: a `lumen.app.voice.RobotVoice`, made as `Speaker` there."""
 
 
 class FeatureFault(NamedTuple):

@@ -21,7 +21,7 @@ from lumen.ports import Robot
 from lumen.robots.bounded_robot import ability
 
 
-class Voice(Protocol):
+class RobotVoice(Protocol):
     """A voice of a simulated robot; `words` tells when those of the last text begin, if the voice measures that."""
 
     words: tuple[WordTime, ...]
@@ -124,7 +124,7 @@ class Speaker:
 class Speaks(Protocol):
     """A robot that can be given a voice."""
 
-    def speak_with(self, voice: Voice) -> None: ...
+    def speak_with(self, voice: RobotVoice) -> None: ...
 
 
 def voiced(
@@ -144,7 +144,7 @@ def voiced(
 
 def speaker(
     voice: str, file: Path | None, robot: Robot, language: str, track: AudioTrack | None = None
-) -> Voice | None:
+) -> RobotVoice | None:
     """The voice that was asked for; None for none. Raises UsageError or ModuleError where it can't be had."""
     if voice == "none":
         if file:
@@ -154,7 +154,7 @@ def speaker(
         raise UsageError("--voice needs the simulated robot: leave out --robot")
     if file and (file.suffix != ".wav" or not file.parent.is_dir()):
         raise UsageError(f"can't write a sound to {file}: name a .wav file in an existing folder")
-    found: Voice = called(owner("voices", voice), table("voices")[voice], language, file, track)
+    found: RobotVoice = called(owner("voices", voice), table("voices")[voice], language, file, track)
     if found.mute:
         print(
             "No sound player is installed: the speech is silent; `--sound FILE.wav` writes it to a file.",

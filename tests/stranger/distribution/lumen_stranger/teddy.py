@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from lumen.app.setup import RobotRequest, Setup, set_up_with
-from lumen.app.voice import Voice
+from lumen.app.voice import RobotVoice
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.stories import Visitor
@@ -21,7 +21,7 @@ class Teddy:
         self.said: list[str] = []
         self._voice = voice
         self._time = 0.0
-        self._playback: Voice | None = None
+        self._playback: RobotVoice | None = None
         self._ends: dict[str, float] = {}
         self._answers: list[Event] = []
         self._visitor: Visitor | None = None
@@ -40,7 +40,7 @@ class Teddy:
         else:
             self._ends[id] = self._time + TIME_TO_SAY
 
-    def speak_with(self, voice: Voice) -> None:
+    def speak_with(self, voice: RobotVoice) -> None:
         self._playback = voice
 
     def cancel(self, id: str) -> None:
