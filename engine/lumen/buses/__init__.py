@@ -3,6 +3,7 @@
     memory.py         the embedded bus, in this process
     local/            the embedded bus of another process of this machine: a server, its clients
     amqp.py           the bus on RabbitMQ, made of the files below
+    addresses.py      the kinds of buses, by the schemes of their addresses
     validated.py      any bus, with every body checked against the schema of its route
 
 What crosses a bus:

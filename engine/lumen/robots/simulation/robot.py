@@ -1,6 +1,7 @@
 """The simulated NAO behind the `Robot` seam, in a hall behind the `Hall` seam."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import cached_property
 from math import degrees
 from pathlib import Path
 from typing import assert_never
@@ -110,13 +111,6 @@ class SimulatedRobot:
         self._skills = SimulatedSkills(
             self.world, self.motors, self.lights, self.base, self._sensors, posture, self._notice
         )
-        self._senses: Mapping[str, Callable[[], Reading | None]] = {
-            IMAGE: self._image,
-            JOINT: self._joints,
-            SONAR: self._sonar,
-            TACTILE: self._touch_sensors,
-            BATTERY: self._battery,
-        }
         self._skill_runner = SkillRunner()
         self._executor = Executor(self._begin, self._skills.parts, self._skill_runner.begin)
         self.figure = figure or VisitorFigure(self.world.model, self.world.data)
@@ -206,6 +200,17 @@ class SimulatedRobot:
     def read(self, sense: Sense) -> Reading | None:
         measure = self._senses.get(sense)
         return measure() if measure else None
+
+    @cached_property
+    def _senses(self) -> Mapping[str, Callable[[], Reading | None]]:
+        """What measures each sense."""
+        return {
+            IMAGE: self._image,
+            JOINT: self._joints,
+            SONAR: self._sonar,
+            TACTILE: self._touch_sensors,
+            BATTERY: self._battery,
+        }
 
     def _image(self) -> Image | None:
         return self._camera.image(self.time) if self._camera else None
