@@ -8,7 +8,7 @@ STORY ?= visitor
 SPEED ?= 4
 TESTS ?= tests
 # What the tests of `make test` take of the processor, to print how long they will take [s].
-CPU := 400
+CPU := 500
 # The same for the rest, which waits half of its time for processes, brokers and the browser.
 REST := 2200
 WORKERS ?= $(shell getconf _NPROCESSORS_ONLN)
