@@ -4,18 +4,20 @@ Words are improved more often than rules, so that a change of one leaves the oth
 """
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from tests.golden.adapters_language import Diagnostic, findings
 
+Lint = Callable[[Path, Mapping[str, bytes]], tuple[Diagnostic, ...]]
 
-def write_findings(folder: Path, inputs: Iterable[tuple[str, Path, Mapping[str, bytes]]]) -> int:
+
+def write_findings(folder: Path, inputs: Iterable[tuple[str, Path, Mapping[str, bytes]]], lint: Lint = findings) -> int:
     """Write findings.json and words.json of these projects (name, root and files); return how many there were."""
     found, words = {}, {}
     for name, root, files in inputs:
-        diagnostics = findings(root, files)
+        diagnostics = lint(root, files)
         found[name] = [_finding(diagnostic) for diagnostic in diagnostics]
         if diagnostics:
             words[name] = [_words(diagnostic) for diagnostic in diagnostics]

@@ -3,6 +3,7 @@
 A subject is a module of `tests/golden/subjects` with
 
 - `SUITE`: "test" if it is deterministic, without a process, network or physics; else "rest";
+- `GROUP`, if it shares work with other tests: their group of pytest-xdist;
 - `record(folder)`: writes its files into an empty folder, the same bytes on each machine and at each run;
 - if it can say more than a difference does, `explain(recorded, now)`: yields sentences for a failure.
 

@@ -1,6 +1,8 @@
 """What the engine does is what it did when the goldens were recorded, to the byte."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -10,7 +12,14 @@ DO = "Change the code, or record it anew in a commit of its own."
 
 
 def subjects() -> list[object]:
-    return [pytest.param(name, marks=[pytest.mark.rest] * (subject(name).SUITE == "rest")) for name in names()]
+    return [pytest.param(name, marks=list(marks(subject(name)))) for name in names()]
+
+
+def marks(one: ModuleType) -> Iterator[pytest.MarkDecorator]:
+    if one.SUITE == "rest":
+        yield pytest.mark.rest
+    if hasattr(one, "GROUP"):
+        yield pytest.mark.xdist_group(one.GROUP)
 
 
 @pytest.mark.parametrize("name", subjects())

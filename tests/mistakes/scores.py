@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.rules import check_files
+from tests.mistakes.linted import findings
 from tests.mistakes.rows import Row
 
 
@@ -32,7 +32,7 @@ class Score(NamedTuple):
 
 def judge(row: Row) -> Judged:
     """Whether the finding is at the right line and names the remedy there, and whether there is no other."""
-    _, found = check_files(row.root, row.files)
+    found = findings(row.root, row.files)
     here = [d for d in found if d.place.file == row.file and d.place.line == row.line]
     named = any(words.lower() in f"{d.message} {d.hint}".lower() for d in here for words in row.says)
     return Judged(row, found, bool(here), named, len(found) == 1)

@@ -6,11 +6,12 @@ import pytest
 
 from lumen.rules import check_files
 from tests.mistakes.__main__ import told
+from tests.mistakes.linted import findings
 from tests.mistakes.rows import PROJECTS, Row, rows, shipped
 from tests.mistakes.scores import Judged, judge, score
 from tests.tables import for_each
 
-pytestmark = pytest.mark.rest  # dear
+pytestmark = [pytest.mark.rest, pytest.mark.xdist_group("mistakes")]  # dear, and one lint serves the golden as well
 
 
 @cache
@@ -32,7 +33,7 @@ def test_mistakes_are_told_where_they_are_with_what_to_do_and_once() -> None:
 
 @for_each("row", list(rows("legal")), ids=lambda row: row.name)
 def test_nothing_is_said_of_what_is_right(row: Row) -> None:
-    assert [str(d) for d in check_files(row.root, row.files)[1]] == []
+    assert [str(d) for d in findings(row.root, row.files)] == []
 
 
 def test_there_are_many_rows() -> None:

@@ -1,0 +1,17 @@
+"""What lint finds in a project, worked out once in a process: two tests of the same 301 rows ask for it."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from lumen.language.diagnostics import Diagnostic
+from lumen.rules import check_files
+
+_found: dict[tuple[Path, frozenset[tuple[str, bytes]]], tuple[Diagnostic, ...]] = {}
+
+
+def findings(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
+    """Return what lint finds in these files, in its order."""
+    key = root, frozenset(files.items())
+    if key not in _found:
+        _found[key] = check_files(root, files)[1]
+    return _found[key]
