@@ -99,3 +99,9 @@ def test_a_word_that_is_misspelt_is_answered_with_what_was_meant(
         main(words)
     assert ended.value.code == 2
     assert answer in capsys.readouterr().err
+
+
+def test_an_unknown_option_before_the_verb_is_compared_with_its_options(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        main(["--strickt", "lint"])
+    assert "did you mean `--strict`?" in capsys.readouterr().err
