@@ -60,9 +60,9 @@ def _dead_ends(
     machine: MachineDefinition, search: StateSpaceSearch, nodes: list[SearchNode]
 ) -> Iterator[ExplorationFinding]:
     """Where no event, time or answer leads to other states, and the machine is not at its end."""
-    leaving = {id(s) for s in nodes if not s.expanded or s.restless or any(e.names != s.names for e in s.successors)}
+    leaving = {s for s in nodes if not s.expanded or s.restless or any(e.names != s.names for e in s.successors)}
     free = reaching(nodes, leaving, inside=True)
-    stuck = [s for s in nodes if id(s) not in free and not search.finished(s)]
+    stuck = [s for s in nodes if s not in free and not search.finished(s)]
     beginning, covered = set(leaves(machine, search.first.names)), set[str]()
     for node in sorted(stuck, key=lambda s: s.cost):
         paths = [p for p in leaves(machine, node.names) if p not in beginning] or list(leaves(machine, node.names))
@@ -77,23 +77,23 @@ def _no_way_back(
     machine: MachineDefinition, search: StateSpaceSearch, nodes: list[SearchNode], home: str
 ) -> Iterator[ExplorationFinding]:
     """Where a state can't be reached any more, nor the machine's end."""
-    goals = {id(s) for s in nodes if home in s.names or not s.expanded or s.restless or search.finished(s)}
+    goals = {s for s in nodes if home in s.names or not s.expanded or s.restless or search.finished(s)}
     reached = reaching(nodes, goals)
-    lost = [s for s in nodes if id(s) not in reached]
+    lost = [s for s in nodes if s not in reached]
     nearest = _cheapest(machine, lost, _region(machine, home))
     for path, node in sorted(nearest.items(), key=lambda item: _ahead(item[1])):  # what others only lead to is first
         name = machine.states[path].name or machine.id
-        elsewhere = any(name in s.names for s in nodes if id(s) in reached)
+        elsewhere = any(name in s.names for s in nodes if s in reached)
         message = f"from `{name}` there is {'not always a' if elsewhere else 'no'} way back to `{home}`"
         yield _finding(machine, "no-way-back", path, message, node)
 
 
 def _ahead(node: SearchNode) -> int:
     """How many nodes can be reached from this one."""
-    found, ahead = {id(node)}, [node]
+    found, ahead = {node}, [node]
     while ahead:
-        fresh = [successor for successor in ahead.pop().successors if id(successor) not in found]
-        found.update(map(id, fresh))
+        fresh = [successor for successor in ahead.pop().successors if successor not in found]
+        found.update(fresh)
         ahead += fresh
     return len(found)
 

@@ -52,8 +52,8 @@ def _triggers(machine: MachineDefinition, search: StateSpaceSearch, property: Pr
     condition = property.whenever
     if condition is None:
         return [search.first]
-    asked = {id(node): holds(machine, condition, node.snapshot) for node in search.nodes.values()}
-    fresh = [node for node in search.nodes.values() if asked[id(node)] and not (node.parent and asked[id(node.parent)])]
+    asked = {node: holds(machine, condition, node.snapshot) for node in search.nodes.values()}
+    fresh = [node for node in search.nodes.values() if asked[node] and not (node.parent and asked[node.parent])]
     return sorted(fresh, key=lambda node: node.cost)
 
 

@@ -164,22 +164,22 @@ def still(
     return kept | {c.id: c.command for c in started if isinstance(c, Start) and c.id.startswith("d")}
 
 
-def reaching(nodes: list[SearchNode], goals: set[int], *, inside: bool = False) -> set[int]:
-    """The nodes (by identity) from which one of the goals can be reached.
+def reaching(nodes: list[SearchNode], goals: set[SearchNode], *, inside: bool = False) -> set[SearchNode]:
+    """The nodes from which one of the goals can be reached.
 
     With `inside` only paths count on which the active states stay the same.
     """
-    before: dict[int, list[SearchNode]] = {}
+    before: dict[SearchNode, list[SearchNode]] = {}
     for node in nodes:
         for successor in node.successors:
             if not inside or successor.names == node.names:
-                before.setdefault(id(successor), []).append(node)
+                before.setdefault(successor, []).append(node)
     found, ahead = set(goals), list(goals)
     while ahead:
         for node in before.get(ahead.pop(), ()):
-            if id(node) not in found:
-                found.add(id(node))
-                ahead.append(id(node))
+            if node not in found:
+                found.add(node)
+                ahead.append(node)
     return found
 
 
