@@ -324,6 +324,8 @@ class Feature:
     extras: tuple[str, ...] = ()
     parts: tuple[PartRow, ...] = ()
     """Parts of an exhibition."""
+    roles: tuple[str, ...] = ()
+    """Roles of a process of several: `lumen run --only ROLE` makes the parts that ask for `role:ROLE`."""
     rules: tuple[str, ...] = ()
     """Functions that report faults of a `ProjectDraft`. Their modules declare the codes of these reports."""
     last_rules: tuple[str, ...] = ()

@@ -13,6 +13,7 @@ from lumen.app.parts.robot import RobotPart
 from lumen.app.plan import Plan
 from lumen.app.services import Services
 from lumen.app.setup import set_up
+from lumen.clocks.real import RealClock
 from lumen.errors import UsageError
 from lumen.feature import PartRow, Phase
 from lumen.language.events import Event
@@ -32,6 +33,15 @@ class Greeter(Part):
 
     def close(self) -> None:
         self.closed = True
+
+
+class Lights(Part):
+    """The role of a process of its own, in another package."""
+
+    name = "lights"
+
+    def __init__(self, services: Services) -> None:
+        self.project = services.project
 
 
 def broken(services: Services) -> Part:
@@ -97,6 +107,16 @@ def test_a_part_is_made_only_if_its_conditions_hold(monkeypatch: pytest.MonkeyPa
         services = compose(plan(**options))
         assert (services.get(Greeter) is not None) == there
         services.node.close()
+
+
+def test_a_process_of_several_has_the_parts_of_its_role(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_rows(monkeypatch, PartRow("lights", Phase.WORLD, f"{HERE}:Lights", "role:lights"))
+    services = compose(Plan(project(), roles=("lights",), clock=RealClock()))
+    assert services[Lights].name == "lights"
+    assert services.presence
+    assert services.presence.parts == ("lights",)
+    assert services.get(LiveBehavior) is None
+    services.node.close()
 
 
 def test_a_claimed_part_is_made_at_the_beginning_and_in_its_place(monkeypatch: pytest.MonkeyPatch) -> None:

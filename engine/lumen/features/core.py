@@ -7,6 +7,7 @@ TYPED = "lumen.cli.typed:typed_visitor"
 
 FEATURE = Feature(
     name="core",
+    roles=("robot", "brain", "motion", "visitor"),
     parts=(
         PartRow("recording", Phase.RECORD, f"{MAKING}.watching:recording", "option:directory"),
         PartRow("bundles", Phase.RECORD, f"{MAKING}.processes:follower", "follows", after="recording"),

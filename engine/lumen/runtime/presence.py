@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.errors import BusError
+from lumen.feature import rows
 from lumen.language.events import Event
 from lumen.language.modules import module_names
 from lumen.language.routing_keys import DEFAULT_ALIASES
@@ -19,7 +20,8 @@ from lumen.ports import Bus, Message
 PRESENCE_ROUTE = "presence"
 PRESENCE_KEY = DEFAULT_ALIASES[PRESENCE_ROUTE]
 """Where a process says that it is there if nobody says under which key: the one of a bus with one robot."""
-ROBOT_PART, BRAIN, MOTION, VISITOR = PROCESS_PARTS = ("robot", "brain", "motion", "visitor")
+ROBOT_PART, BRAIN, MOTION, VISITOR = "robot", "brain", "motion", "visitor"
+"""The roles that Lumen's own code refers to; `roles` has all of them."""
 PRESENCE_PERIOD = 0.5
 """How often a process says that it is there [s]."""
 LOST_AFTER = 4.0
@@ -33,9 +35,14 @@ ASKS, HERE, LEAVES = "asks", "here", "leaves"
 _log = logging.getLogger(__name__)
 
 
+def roles() -> tuple[str, ...]:
+    """Return the roles that a process can have beside the modules, those of Lumen first."""
+    return tuple(role for _, role in rows("roles"))
+
+
 def all_parts() -> tuple[str, ...]:
     """Return the parts that a process can be, modules last."""
-    return (*PROCESS_PARTS, *module_names())
+    return (*roles(), *module_names())
 
 
 def unique_parts() -> tuple[str, ...]:

@@ -2,13 +2,13 @@
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.runtime.presence import PROCESS_PARTS, ROBOT_PART, all_parts
+from lumen.runtime.presence import ROBOT_PART, all_parts, roles
 
 
 def parts_of(only: str | None, robot: str) -> tuple[str, ...]:
     """The parts that this process is to be; none where it is to be a whole exhibition. Raises UsageError."""
     if only is None:
-        return tuple(part for part in PROCESS_PARTS if part != ROBOT_PART) if robot == "remote" else ()
+        return tuple(part for part in roles() if part != ROBOT_PART) if robot == "remote" else ()
     parts = tuple(dict.fromkeys(word.strip() for word in only.split(",") if word.strip()))
     known = all_parts()
     for part in parts:
