@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import pytest
 
+import lumen
 from lumen.app import compose as composing
 from lumen.app.compose import begin, compose, ordered, part_rows, start
 from lumen.app.live_behavior import LiveBehavior
@@ -17,6 +18,7 @@ from lumen.clocks.real import RealClock
 from lumen.errors import UsageError
 from lumen.feature import PartRow, Phase
 from lumen.language.events import Event
+from tests import ROOT
 from tests.exhibits import project
 
 HERE = "tests.app.test_compose"
@@ -142,4 +144,14 @@ def test_a_kind_that_is_not_there_is_named() -> None:
     services = compose(plan())
     with pytest.raises(LookupError, match="this process has no Greeter"):
         services[Greeter]
+    services.node.close()
+
+
+def test_an_exhibition_runs_the_behaviour_of_its_story() -> None:
+    exhibit = lumen.load(ROOT / "examples/duet", robot="ben")
+    story = exhibit.stories["visitor"]
+    assert story.behavior != exhibit.behavior
+    services = compose(Plan(exhibit, set_up("recording", exhibit, "max", story), story=story))
+    assert services.project.behavior == story.behavior
+    assert services.behavior.project.behavior == story.behavior
     services.node.close()

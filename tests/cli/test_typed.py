@@ -33,7 +33,7 @@ def test_a_line_without_end_fills_no_memory_and_holds_up_no_tick(monkeypatch: py
     typed, visitor = EndlessInput(), Mock()
     monkeypatch.setattr("sys.stdin", typed)
     who: Any = SimpleNamespace(needs=(), actor=visitor, environment=Mock())
-    part = TypedVisitorPart(who, Mock(), "")
+    part = TypedVisitorPart(who, Mock(), "", lambda: None)
     part.begin(0.0)
     until(lambda: typed.calls == MAX_WAITING_LINES + 1)
     part.tick(0.0, ())

@@ -9,6 +9,7 @@ from lumen.cli.main import main
 NO_BROKER = "amqp://guest:guest@127.0.0.1:1/"
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(("robots", "only"), [((), False), (("--robot-name", "ana"), False), ((), True)])
 def test_a_remote_robot_without_only_gets_a_hint(
     two: Path, robots: tuple[str, ...], only: bool, capsys: pytest.CaptureFixture[str]

@@ -19,6 +19,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.runtime.loop import Observer
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
+from lumen.runtime.story import staged
 
 EXHIBITION = "exhibition"
 """The sender of the messages of an exhibition in one process."""
@@ -40,7 +41,7 @@ class Services:
         self.narrator = plan.narrator or Narrator(self.clock.now, lambda: self.project.machine)
         self.presence = self._presence() if plan.shared else None
         self.node = Node(
-            plan.project,
+            staged(plan.project, plan.story),
             self.bus,
             self.clock,
             self.narrator,

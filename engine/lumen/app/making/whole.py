@@ -51,7 +51,7 @@ def robot(services: Services) -> RobotPart:
     listeners = (ForeignCommands(services.narrator, record), _Noticing(services.behavior))
     begun = directory and plan.shared and home_of(directory.root, plan.project.one_of_several) / DEDUPLICATION_FILE
     return RobotPart(
-        plan.project,
+        services.project,
         services.bus,
         services.setup,
         listeners,
