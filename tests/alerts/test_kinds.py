@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app import claiming, exhibition, node
+from lumen.app import claiming, node, services
 from lumen.app.alerts import disk
 from lumen.app.parts import alerting
 from lumen.app.recovery.run_directory import RunDirectory
@@ -303,7 +303,7 @@ def test_a_start_without_a_broker_and_with_a_main_file_that_can_not_be_read(
         raise BusUnreachableError(f"no broker listens at {url.rpartition('@')[2]}")
 
     with monkeypatch.context() as patch:
-        patch.setattr(exhibition, "connect", connect)
+        patch.setattr(services, "connect", connect)
         url = "amqp://lumen:secret@127.0.0.1:1"
         assert main(["run", str(hall.folder), "--robot", "recording", "--bus", url]) == 2
     [body] = hall.web.told("start")
