@@ -47,7 +47,7 @@ def test_the_same_seed_gives_the_same_messages() -> None:
 def test_no_message_ends_a_running_exhibition_nor_makes_it_deaf(
     exhibition: Exhibition, broker: RabbitMQ, caplog: pytest.LogCaptureFixture
 ) -> None:
-    random, robot = Random(1), exhibition.setup.robot
+    random, robot = Random(1), exhibition.services.setup.robot
     sound = dict.fromkeys(route.key_for(exhibition.project.robot) for route in exhibition.project.routes.values())
     stranger, friend, watch = Stranger(broker.url), Stranger(broker.url), ThreadWatch()
     for n in range(COUNT):
