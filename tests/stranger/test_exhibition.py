@@ -7,7 +7,10 @@ from types import SimpleNamespace
 import pytest
 
 import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.making.modules import ModulesPlan
 from lumen.app.parts.module_factory import make_module
+from lumen.app.plan import Plan
 from lumen.app.setup import set_up, set_up_house
 from lumen.app.voice import speaker
 from lumen.cli.main import main
@@ -67,16 +70,18 @@ def test_a_robot_is_opened_by_name_within_the_limits_of_its_body(stranger: Path,
     with lumen.open(hall, robot="teddy") as exhibition:
         exhibition.visitor.arrive(Visitor())
         exhibition.run(seconds=3)
-        robot = exhibition.node.setup.robot
+        robot = exhibition.services.setup.robot
         assert isinstance(robot, BoundedRobot)
         assert robot.robot.said == ["deep: HELLO!!"]
 
 
 def test_a_module_takes_part_in_an_exhibition(stranger: Path, hall: Path) -> None:
     entered: list[str] = []
-    with lumen.open(hall, robot="teddy") as exhibition:
+    project = lumen.load(hall)
+    plan = Plan(project, set_up("teddy", project, "max"), project.bus, options={"modules": ModulesPlan()})
+    with Exhibition(plan) as exhibition:
         exhibition.observe(lambda step: entered.extend(step.entered))
-        exhibition.node.add_modules()
+        exhibition.start()
         exhibition.visitor.arrive(Visitor())
         exhibition.run(seconds=1)
         exhibition.node.bus.publish(exhibition.project.key_of("heard"), {"result": "a great and lovely bear"})
@@ -131,7 +136,7 @@ def test_a_behaviour_hears_a_sense_through_its_route(stranger: Path, hall: Path)
         exhibition.visitor.arrive(Visitor())
         exhibition.run(seconds=3)
         assert exhibition.configuration == {"content"}
-        assert exhibition.node.robot.server.counts["slow_honey"].off == ""
+        assert exhibition.robot.server.counts["slow_honey"].off == ""
 
 
 def test_a_robot_in_another_process_has_the_sense(stranger: Path, hall: Path) -> None:
