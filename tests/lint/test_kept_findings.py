@@ -183,10 +183,10 @@ def test_what_is_kept_badly_is_judged(content: bytes, lint: Run, judged: list[in
     assert judged
 
 
-def test_what_is_known_needs_no_rules(project: Path) -> None:
+def test_what_is_known_needs_neither_rules_nor_the_language(project: Path) -> None:
     told = (
         "import sys; from lumen.loading import looks; looks.SETTLED_NS = -10**18; from lumen.cli.main import main\n"
-        "main(['lint', sys.argv[1]]); print(sorted({'yaml', 'lumen.rules'} & set(sys.modules)))"
+        "main(['lint', sys.argv[1]]); print(sorted({'yaml', 'lumen.interpreters', 'lumen.rules'} & set(sys.modules)))"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
 
@@ -194,4 +194,4 @@ def test_what_is_known_needs_no_rules(project: Path) -> None:
         done = run_guarded([sys.executable, "-c", told, str(project)], stdout=PIPE, text=True, env=environment)
         return str(done.stdout.splitlines()[-1])
 
-    assert [imported(), imported()] == ["['lumen.rules', 'yaml']", "[]"]
+    assert [imported(), imported()] == ["['lumen.interpreters', 'lumen.rules', 'yaml']", "[]"]
