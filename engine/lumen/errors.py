@@ -33,8 +33,10 @@ becomes an `Event` while an exhibition runs. A fault in Lumen itself is none of 
 """
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from lumen.language.diagnostics import Diagnostic
+if TYPE_CHECKING:  # each start of `lumen` imports this module, and `--help` has no findings
+    from lumen.language.diagnostics import Diagnostic
 
 
 class LumenError(Exception):
@@ -44,7 +46,7 @@ class LumenError(Exception):
 class ProjectError(LumenError):
     """The project's YAML has errors; `diagnostics` holds every one of them, warnings included."""
 
-    def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
+    def __init__(self, diagnostics: "Sequence[Diagnostic]") -> None:
         self.diagnostics = tuple(diagnostics)
         errors = [d for d in self.diagnostics if d.severity == "error"]
         first = str(errors[0]) if errors else "no diagnostics"
