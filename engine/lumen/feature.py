@@ -5,7 +5,6 @@ when it is first needed. A kind whose rows have names is a mapping; every other 
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields
 from enum import IntEnum, auto
 from functools import cache
 from importlib import import_module
@@ -52,20 +51,12 @@ VALUE_KINDS = ("null", "boolean", "number", "text", "list", "map", "any")
 """The kinds of values in expressions, and `any` for all of them."""
 
 
-@dataclass(frozen=True, slots=True)
-class RobotOption:
-    """An option of `lumen run` that only some robots take: `--robot-NAME`, whose value is a text.
-
-    Raises ValueError for a name that no option can have.
-    """
+class RobotOption(NamedTuple):
+    """An option of `lumen run` that only some robots take: `--robot-NAME`, whose value is a text."""
 
     name: str
     metavar: str
     help: str
-
-    def __post_init__(self) -> None:
-        if self.name == "name" or not self.name.isidentifier():
-            raise ValueError(f"no robot can have an option `--robot-{self.name}`: choose another word")
 
     @property
     def flag(self) -> str:
@@ -77,8 +68,7 @@ class RobotOption:
         return f"robot_{self.name}"
 
 
-@dataclass(frozen=True, slots=True)
-class RobotRow:
+class RobotRow(NamedTuple):
     """A robot that performs an exhibition: `lumen run --robot NAME`, `lumen.open(robot="NAME")`.
 
     `set_up` is the import string of a function from a `RobotRequest` to a `Setup` (both in `lumen.app.setup`); empty if
@@ -94,8 +84,7 @@ class RobotRow:
     options: tuple[RobotOption, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class SenseRow:
+class SenseRow(NamedTuple):
     """A sense of robots. A route of the project with its name, or `of` it, carries its readings.
 
     `encode` is the import string of a function from a reading to the body of a message; `decode` of one from a body and
@@ -108,8 +97,7 @@ class SenseRow:
     decode: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class BusRow:
+class BusRow(NamedTuple):
     """A kind of bus, by the scheme of its addresses.
 
     `open` is the import string of a function from an address and the name of a sender to a `lumen.ports.Bus`. `forms`
@@ -124,8 +112,7 @@ class BusRow:
     rabbitmq: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ModuleRow:
+class ModuleRow(NamedTuple):
     """A module: a program on the bus beside the behaviour, such as the eyes.
 
     `module` is the import string of a subclass of `lumen.modules.module.Module`. `description` and `options` (a JSON
@@ -135,11 +122,10 @@ class ModuleRow:
 
     module: str
     description: str = ""
-    options: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    options: Mapping[str, Mapping[str, Any]] = {}
 
 
-@dataclass(frozen=True, slots=True)
-class FunctionRow:
+class FunctionRow(NamedTuple):
     """A function of the expression language. It is pure: the same arguments give the same value.
 
     `call` is its import string; the first line of its docstring is shown in editors. `parameters` are the kinds that
@@ -158,14 +144,8 @@ class FunctionRow:
     draws: bool = False
     exact: bool = False
 
-    def __post_init__(self) -> None:
-        for kind in "|".join((*self.parameters, self.returns)).split("|"):
-            if kind not in VALUE_KINDS:
-                raise ValueError(f"there is no kind of value `{kind}`: there are {', '.join(VALUE_KINDS)}")
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VerbRow:
+class VerbRow(NamedTuple):
     """A verb of the YAML that the robot performs by code of a feature.
 
     `performer` is the import string of a `SkillPerformer` (`lumen.ports`). `arguments` is the JSON Schema of an object
@@ -179,8 +159,8 @@ class VerbRow:
 
     performer: str
     description: str = ""
-    arguments: Mapping[str, Any] = field(default_factory=dict)
-    result: Mapping[str, Any] = field(default_factory=dict)
+    arguments: Mapping[str, Any] = {}
+    result: Mapping[str, Any] = {}
     takes: str = "0s"
     parts: tuple[str, ...] = ()
     moves: bool = False
@@ -191,8 +171,7 @@ RiskName = Literal["cosmetic", "behavior", "motion", "wiring", "restart"]
 """The part of a running exhibition that a change can touch, as `lumen diff` prints it."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Section:
+class Section(NamedTuple):
     """A section of lumen.yaml: how its settings are read, checked and compared.
 
     The settings are an object of a frozen dataclass of which each field has a default. `project.section(TYPE)` returns
@@ -227,13 +206,8 @@ class Section:
         """Whether a change takes effect at the next start."""
         return self.risk == "restart"
 
-    def __post_init__(self) -> None:
-        if self.risk not in (risks := get_args(RiskName)):
-            raise ValueError(f"a section has no risk `{self.risk}`: choose one of {', '.join(risks)}")
 
-
-@dataclass(frozen=True, slots=True)
-class Subcommand:
+class Subcommand(NamedTuple):
     """A subcommand of `lumen`. `after` is the one after which `lumen --help` lists it, of this or an earlier feature.
 
     `module` has `configure`, which adds arguments to an `ArgumentParser`, and `run`, which returns the exit code.
@@ -244,8 +218,7 @@ class Subcommand:
     after: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Importer:
+class Importer(NamedTuple):
     """A kind of file of another tool that `lumen import` converts to one of ours.
 
     `kind` is `behavior`, `controller` or `motion`. `read` names a `FileReader` of `lumen.formats.importers`, for a
@@ -256,8 +229,7 @@ class Importer:
     read: str
 
 
-@dataclass(frozen=True, slots=True)
-class Exporter:
+class Exporter(NamedTuple):
     """A format that `lumen export` writes. `kind` is `behavior`, `controller`, `diagram` or `project`.
 
     `write` names a function. It gets a `MachineDefinition` or `ControllerDefinition` and a function from paths to
@@ -294,8 +266,7 @@ class Phase(IntEnum):
     """Parts that keep or show what the behaviour did."""
 
 
-@dataclass(frozen=True, slots=True)
-class PartRow:
+class PartRow(NamedTuple):
     """A part of an exhibition: `make` is an import string of a function that takes the services made so far.
 
     It returns a part, several, or none. Rows of one phase come by name, or `after` another one. The conditions in
@@ -312,8 +283,7 @@ class PartRow:
     claimed: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Feature:
+class Feature(NamedTuple):
     """One capability: its rows by kind. A text such as `package.module:name` is an import string.
 
     `extras` are those of the distribution that install what the feature needs.
@@ -334,29 +304,29 @@ class Feature:
     """Other modules that declare codes, such as those that read files."""
     pages: tuple[str, ...] = ()
     """Packages with a `CODE.md` for codes, in the form that `lumen.rules.pages` describes."""
-    fixes: Mapping[str, str] = field(default_factory=dict)
+    fixes: Mapping[str, str] = {}
     """For a code, the function that proposes how to repair a finding, as `lumen.rules.fixes` describes."""
-    subcommands: Mapping[str, Subcommand] = field(default_factory=dict)
-    finding_formats: Mapping[str, str] = field(default_factory=dict)
+    subcommands: Mapping[str, Subcommand] = {}
+    finding_formats: Mapping[str, str] = {}
     """For `--format NAME` of findings, the `Renderer` of `lumen.cli.render`."""
-    verdict_formats: Mapping[str, str] = field(default_factory=dict)
+    verdict_formats: Mapping[str, str] = {}
     """For `lumen test --format NAME`, the function from a `Verdict` to text."""
-    importers: Mapping[str, Importer] = field(default_factory=dict)
+    importers: Mapping[str, Importer] = {}
     """Readers of other tools' files, by the ending of a file's name in small letters, as `.scxml`."""
-    exporters: Mapping[str, Exporter] = field(default_factory=dict)
+    exporters: Mapping[str, Exporter] = {}
     """Writers for `lumen export`, by the name of the format."""
-    format_tables: Mapping[str, str] = field(default_factory=dict)
+    format_tables: Mapping[str, str] = {}
     """For a format that is imported, its `FormatTable` of names that are read, lost or without meaning."""
-    sections: Mapping[str, Section] = field(default_factory=dict)
+    sections: Mapping[str, Section] = {}
     """Sections of lumen.yaml by their keys; `modules.show` is the key `show` under `modules`."""
-    verbs: Mapping[str, VerbRow] = field(default_factory=dict)
+    verbs: Mapping[str, VerbRow] = {}
     """Verbs of the YAML that the robot performs, by their names."""
-    modules: Mapping[str, ModuleRow] = field(default_factory=dict)
-    robots: Mapping[str, RobotRow] = field(default_factory=dict)
-    functions: Mapping[str, FunctionRow] = field(default_factory=dict)
-    buses: Mapping[str, BusRow] = field(default_factory=dict)
-    senses: Mapping[str, SenseRow] = field(default_factory=dict)
-    voices: Mapping[str, str] = field(default_factory=dict)
+    modules: Mapping[str, ModuleRow] = {}
+    robots: Mapping[str, RobotRow] = {}
+    functions: Mapping[str, FunctionRow] = {}
+    buses: Mapping[str, BusRow] = {}
+    senses: Mapping[str, SenseRow] = {}
+    voices: Mapping[str, str] = {}
     """For `lumen run --voice NAME`, the class: a `lumen.app.voice.RobotVoice`, made as `Speaker` there."""
 
 
@@ -438,24 +408,24 @@ def found() -> Found:
             faults.append(FeatureFault(distribution, fault))
     features = (*built_in, *(feature for feature, _ in others.values()))
     installed = {name: distribution for name, (_, distribution) in others.items()}
-    return Found(features, installed, (*faults, *_repeated(features, installed)))
+    return Found(features, installed, (*faults, *(_repeated(features, installed) if installed else ())))
 
 
 def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
     """Return the feature of a distribution, or None and what is wrong with its manifest."""
     try:
         feature = resolve(distribution.manifest)
+        if not isinstance(feature, Feature):
+            return None, f"its entry point names `{distribution.manifest}`, which is no `Feature`"
+        if feature.api != API:
+            return None, f"its manifest is written for API {feature.api}, and this Lumen has API {API}"
+        return feature, next(wrong_rows(feature), "")
     except Exception as error:  # of code that is not ours
         return None, f"its manifest `{distribution.manifest}` raised {type(error).__name__}: {error}"
-    if not isinstance(feature, Feature):
-        return None, f"its entry point names `{distribution.manifest}`, which is no `Feature`"
-    if feature.api != API:
-        return None, f"its manifest is written for API {feature.api}, and this Lumen has API {API}"
-    return feature, next(_wrong_kinds(feature), "")
 
 
-def _wrong_kinds(feature: Feature) -> Iterator[str]:
-    """Describe each kind of rows that has another type than `Feature` declares, or has a row of another type."""
+def wrong_rows(feature: Feature) -> Iterator[str]:
+    """Describe each kind of rows with another type than `Feature` declares, or with a row that can't be used."""
     declared = get_type_hints(Feature)
     for kind in _kinds():
         form, value = get_origin(declared[kind]), getattr(feature, kind)
@@ -463,14 +433,30 @@ def _wrong_kinds(feature: Feature) -> Iterator[str]:
         if not isinstance(value, form):
             yield f"`{kind}` of its manifest is no {form.__name__.lower()}"
             continue
-        rows_of = value.values() if isinstance(value, Mapping) else value
+        rows_of = tuple(value.values() if isinstance(value, Mapping) else value)
         if wrong := [each for each in rows_of if not isinstance(each, get_origin(row) or row)]:
             yield f"`{kind}` of its manifest has the row `{wrong[0]!r}`, which is no `{row.__name__}`"
+        else:
+            yield from (f"`{kind}` of its manifest is faulty: {fault}" for each in rows_of if (fault := _fault(each)))
+
+
+def _fault(row: Any) -> str:
+    """Return what is wrong with a row of the right type; empty if nothing is."""
+    match row:
+        case RobotRow(options=options):
+            wrong = [each.name for each in options if each.name == "name" or not each.name.isidentifier()]
+            return f"no robot can have an option `--robot-{wrong[0]}`: choose another word" if wrong else ""
+        case FunctionRow(parameters=parameters, returns=returns):
+            wrong = [kind for kind in "|".join((*parameters, returns)).split("|") if kind not in VALUE_KINDS]
+            return f"there is no kind of value `{wrong[0]}`: there are {', '.join(VALUE_KINDS)}" if wrong else ""
+        case Section(risk=risk) if risk not in (risks := get_args(RiskName)):
+            return f"a section has no risk `{risk}`: choose one of {', '.join(risks)}"
+    return ""
 
 
 def _kinds() -> Iterator[str]:
     """Iterate over the names of the kinds of rows."""
-    yield from (kind.name for kind in fields(Feature) if kind.name not in ("name", "api"))
+    yield from (kind for kind in Feature._fields if kind not in ("name", "api"))
 
 
 def _repeated(features: tuple[Feature, ...], installed: Mapping[str, Distribution]) -> Iterator[FeatureFault]:

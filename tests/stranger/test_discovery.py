@@ -2,8 +2,8 @@
 
 import re
 import shutil
+import sys
 from collections.abc import Iterable, Iterator
-from dataclasses import fields
 from importlib.metadata import entry_points
 from pathlib import Path
 
@@ -14,14 +14,16 @@ from lumen import distributions, feature
 from lumen.app.lint import outcome_cache
 from lumen.app.workers import tasks
 from lumen.cli.main import main
-from lumen.feature import BUILT_IN, Feature, features, resolve
+from lumen.feature import BUILT_IN, Feature, features, resolve, wrong_rows
 from lumen.loading import engine_files
 from lumen.loading.files import read_files
 from lumen.loading.packaged import PACKAGE
 from lumen.rules import check_files
 from tests import ROOT
+from tests.guarded import run_guarded
 from tests.stranger.installing import Installed
 from tests.tables import for_each
+from tests.waiting import HANG
 
 PROJECT = ROOT / "tests/lint/pages/base"
 GOOD = 'from lumen.feature import Feature\nFEATURE = Feature(name="greeter", extras=("waving",))\n'
@@ -45,6 +47,11 @@ def test_a_feature_of_an_installed_distribution_comes_after_those_of_lumen(insta
     assert findings() == []
 
 
+def with_row(kind: str, row: str) -> str:
+    """Return the source of a manifest with one row, named `wave`."""
+    return f'from lumen.feature import *\nFEATURE = Feature(name="greeter", {kind}={{"wave": {row}}})\n'
+
+
 FAULTY = {
     "raises": ("1 / 0\n", "its manifest `lumen_greeter:FEATURE` raised ZeroDivisionError: division by zero"),
     "lacks an import": (
@@ -62,6 +69,24 @@ FAULTY = {
     "a row of another type": (
         GOOD.replace('extras=("waving",)', 'subcommands={"wave": "waving"}'),
         "`subcommands` of its manifest has the row `'waving'`, which is no `Subcommand`",
+    ),
+    "a name that no option can have": (
+        with_row("robots", 'RobotRow(options=(RobotOption("name", "NAME", "a name"),))'),
+        "`robots` of its manifest is faulty: no robot can have an option `--robot-name`: choose another word",
+    ),
+    "an option of another type": (
+        with_row("robots", 'RobotRow(options=("name",))'),
+        "its manifest `lumen_greeter:FEATURE` raised AttributeError: 'str' object has no attribute 'name'",
+    ),
+    "no kind of value": (
+        with_row("functions", 'FunctionRow("waving:wave", ("text|colour",), "text")'),
+        "`functions` of its manifest is faulty: there is no kind of value `colour`: there are null, boolean, number,"
+        " text, list, map, any",
+    ),
+    "no risk": (
+        with_row("sections", 'Section(read="waving:read", risk="great")'),
+        "`sections` of its manifest is faulty: a section has no risk `great`: choose one of cosmetic, behavior, motion,"
+        " wiring, restart",
     ),
     "a name of Lumen's": (
         GOOD.replace('"greeter"', '"core"'),
@@ -192,11 +217,27 @@ def test_every_import_string_of_the_features_that_come_with_lumen_names_somethin
         assert resolve(text) is not None
 
 
+def test_the_rows_of_the_features_that_come_with_lumen_can_be_used() -> None:
+    assert [fault for where in BUILT_IN for fault in wrong_rows(resolve(where))] == []
+
+
 def test_no_two_features_that_come_with_lumen_have_rows_of_the_same_name() -> None:
     built_in = [resolve(where) for where in BUILT_IN]
-    for kind in fields(Feature):
-        named = [value for each in built_in if isinstance(value := getattr(each, kind.name), dict)]
-        assert len({name for rows in named for name in rows}) == sum(map(len, named)), kind.name
+    for kind in Feature._fields:
+        named = [value for each in built_in if isinstance(value := getattr(each, kind), dict)]
+        assert len({name for rows in named for name in rows}) == sum(map(len, named)), kind
+
+
+def test_help_lists_the_subcommands_of_all_features_without_dataclasses() -> None:
+    """Every start of `lumen` reads the manifests."""
+    code = (
+        "import sys; from lumen.cli.main import main; from lumen.feature import features; main([]); features()\n"
+        "sys.exit(str({'dataclasses', 'inspect', 'lumen.language.diagnostics'} & set(sys.modules)))"
+    )
+    environment = {"PYTHONPATH": str(ROOT / "engine")}
+    done = run_guarded([sys.executable, "-c", code], env=environment, timeout=HANG, capture_output=True, text=True)
+    assert "console" in done.stdout
+    assert done.stderr == "set()\n"
 
 
 def import_strings(value: object) -> Iterator[str]:
@@ -207,7 +248,5 @@ def import_strings(value: object) -> Iterator[str]:
         return
     if isinstance(value, dict):
         value = value.values()
-    elif not isinstance(value, Iterable):
-        value = [getattr(value, name) for name in getattr(type(value), "__slots__", ())]
-    for part in value:
+    for part in value if isinstance(value, Iterable) else ():
         yield from import_strings(part)

@@ -1,7 +1,6 @@
 """The verbs that features add: their rows, the schemas of their data in the YAML, and their results."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
 from functools import cache
 from typing import Any
 
@@ -57,7 +56,7 @@ def given_arguments(row: VerbRow, data: Any) -> Mapping[str, Any]:
 
 def expected_schema(row: VerbRow) -> dict[str, Any]:
     """Return the JSON Schema of some of a verb's arguments, as a story expects them."""
-    return written_schema(replace(row, arguments={**row.arguments, "required": []})) | _short_form(row)
+    return written_schema(row._replace(arguments={**row.arguments, "required": []})) | _short_form(row)
 
 
 def _short_form(row: VerbRow) -> dict[str, Any]:
