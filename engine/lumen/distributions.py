@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 GROUP = "lumen.features"
 _METADATA = (".dist-info", ".egg-info")
-_SECTION = re.compile(rf"^\[\s*{re.escape(GROUP)}\s*\]$([^\[]*)", re.MULTILINE)
-_ENTRY_POINT = re.compile(r"^\s*[^#;=\s][^=]*=\s*(?P<manifest>[\w.]+(?:\s*:\s*[\w.]+)?)", re.MULTILINE)
-_CODE = re.compile(r"^\"?([^\W\d]\w*)(?:/[^,]*)?\.py\"?(?:,|$)", re.MULTILINE)
+_SECTION = rf"(?m)^\[\s*{re.escape(GROUP)}\s*\]$([^\[]*)"
+_ENTRY_POINT = r"(?m)^\s*[^#;=\s][^=]*=\s*(?P<manifest>[\w.]+(?:\s*:\s*[\w.]+)?)"
+_CODE = r"(?m)^\"?([^\W\d]\w*)(?:/[^,]*)?\.py\"?(?:,|$)"
 
 
 class Distribution(NamedTuple):
@@ -52,11 +52,12 @@ def metadata_folders() -> Iterator[str]:
 
 
 def _described(metadata: str) -> Iterator[Distribution]:
-    if section := _SECTION.search(_text(metadata, "entry_points.txt")):
+    declared = _text(metadata, "entry_points.txt")
+    if GROUP in declared and (section := re.search(_SECTION, declared)):
         about = _text(metadata, "METADATA") or _text(metadata, "PKG-INFO")
         headers = dict(line.split(": ", 1) for line in about.partition("\n\n")[0].splitlines() if ": " in line)
-        code = _CODE.findall(_text(metadata, "RECORD"))
-        for entry in sorted(_ENTRY_POINT.findall(section[1])):
+        code = re.findall(_CODE, _text(metadata, "RECORD"))
+        for entry in sorted(re.findall(_ENTRY_POINT, section[1])):
             manifest = re.sub(r"\s", "", entry)
             packages = tuple(sorted({re.split(r"[.:]", manifest)[0], *code}))
             yield Distribution(headers.get("Name", metadata), headers.get("Version", ""), manifest, packages)
@@ -65,7 +66,7 @@ def _described(metadata: str) -> Iterator[Distribution]:
 def _text(folder: str, name: str) -> str:
     """Return the text of a file of metadata, or an empty one if the file is missing."""
     try:
-        with open(os.path.join(folder, name), encoding="utf-8", errors="replace") as file:
-            return file.read()
+        with open(os.path.join(folder, name), "rb", buffering=0) as file:
+            return file.read().decode(errors="replace").replace("\r\n", "\n")
     except OSError:
         return ""

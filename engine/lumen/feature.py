@@ -375,7 +375,8 @@ def rows(kind: str) -> Iterator[tuple[Feature, Any]]:
             yield from ((feature, row) for row in rows_of)
 
 
-def table(kind: str) -> dict[str, Any]:
+@cache
+def table(kind: str) -> Mapping[str, Any]:
     """Return the rows of a kind that is a mapping, by name."""
     return {name: row for _, (name, row) in rows(kind)}
 

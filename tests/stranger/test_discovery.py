@@ -137,6 +137,11 @@ METADATA = {
         "# a = b\n\n[ lumen.features ]\n; a = b\n  x = waving : FEATURE [extra]\n\n[console_scripts]\ny = a:b\n",
         [("waving:FEATURE", ("waving",))],
     ),
+    "lines that end as on Windows": (
+        "waving.py,,\r\n",
+        "[lumen.features]\r\nwaving = waving:FEATURE\r\n",
+        [("waving:FEATURE", ("waving",))],
+    ),
     "two manifests": (
         "",
         "[lumen.features]\nb = b:FEATURE\na = a:FEATURE",

@@ -1,5 +1,7 @@
 """The addresses of buses: each scheme is a row of a feature."""
 
+from collections.abc import Mapping
+
 from lumen.errors import BusAddressError
 from lumen.feature import BusRow, owner, table
 from lumen.loading.broken_features import called
@@ -15,7 +17,7 @@ def open_bus(url: str, sender: str) -> Bus:
     if row and "://" in url:
         bus: Bus = called(owner("buses", url.partition(":")[0]), row.open, url, sender)
         return bus
-    schemes: dict[str, BusRow] = table("buses")
+    schemes: Mapping[str, BusRow] = table("buses")
     begins = [f"`{scheme}://`" for scheme, row in schemes.items() if row.example]
     scheme, separator, _ = url.partition("://")
     what = f"`{scheme}://` is not a bus" if separator else f"the address of a bus begins with {_either(begins)}"

@@ -7,7 +7,7 @@ import gc
 import os
 import sys
 import time
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -31,7 +31,7 @@ def ready() -> float:
 
 def subcommands() -> dict[str, Subcommand]:
     """Return all subcommands, in the order in which `lumen --help` lists them."""
-    found: dict[str, Subcommand] = table("subcommands")
+    found: Mapping[str, Subcommand] = table("subcommands")
     order: list[str] = []
     for name, row in found.items():
         order.insert(order.index(row.after) + 1 if row.after in order else len(order), name)
