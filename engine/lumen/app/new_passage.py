@@ -8,7 +8,7 @@ from pathlib import Path
 import yaml
 
 from lumen.errors import UsageError
-from lumen.language.knowledge import KNOWLEDGE_FOLDER
+from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.language_tags import is_language_tag
 
 MAX_TEXT = 1_000

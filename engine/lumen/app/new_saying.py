@@ -10,7 +10,8 @@ from typing import Any
 from lumen.app.new_passage import check_language, one_line
 from lumen.errors import UsageError
 from lumen.language.diagnostics import NodePath, Place, Severity
-from lumen.language.sayings import SAYINGS_FOLDER, Saying
+from lumen.language.folders import SAYINGS_FOLDER
+from lumen.language.sayings import Saying
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.files import Unreadable, read_files

@@ -8,8 +8,9 @@ from typing import TypeVar
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.projects import Project
-from lumen.language.sayings import SAYINGS_FOLDER, SayingSet
+from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
 from lumen.loading.files import composed
 from lumen.loading.project_folders import MAIN_FILE, STORIES

@@ -4,9 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
 
-KNOWLEDGE_FOLDER = "knowledge"
-QUESTIONS_FOLDER = "knowledge/questions"
-
 
 @dataclass(frozen=True)
 class Passage:

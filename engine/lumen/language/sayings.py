@@ -6,8 +6,6 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath
 
-SAYINGS_FOLDER = "behaviors/sayings"
-
 
 @dataclass(frozen=True)
 class Saying:

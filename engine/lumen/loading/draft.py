@@ -10,8 +10,9 @@ from lumen.errors import ProjectError
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
 from lumen.language.fleet import Fleet
+from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.gestures import GestureLibrary
-from lumen.language.knowledge import KNOWLEDGE_FOLDER, Passage, QuestionSet
+from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition

@@ -9,12 +9,11 @@ from unicodedata import normalize
 
 from lumen.interpreters.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
-from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
+from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
-from lumen.language.sayings import SAYINGS_FOLDER
 from lumen.language.shared import SharedKeys
 from lumen.loading.behaviors import build_machine
 from lumen.loading.bodies import build_body, build_likes

@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
-from lumen.language.sayings import SAYINGS_FOLDER
+from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 
 MAIN_FILE, MAIN_KIND = "lumen.yaml", "lumen"
 FLEET_FILE = "fleet.yaml"

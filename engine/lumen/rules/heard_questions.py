@@ -7,7 +7,7 @@ from lumen.interpreters.talk.finder import Find
 from lumen.interpreters.talk.hearing import Taken, hearing_of
 from lumen.language.actions import AskQuestion, PlacedAction, nested
 from lumen.language.diagnostics import WARNING, Code, Related
-from lumen.language.knowledge import KNOWLEDGE_FOLDER
+from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.machines import State, StateKind
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.buttons import together

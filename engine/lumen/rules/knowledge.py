@@ -4,7 +4,8 @@ from datetime import date
 
 from lumen.interpreters.talk.folding import folded
 from lumen.language.diagnostics import ERROR, WARNING, Code, Place, Related, did_you_mean
-from lumen.language.knowledge import KNOWLEDGE_FOLDER, Passage
+from lumen.language.folders import KNOWLEDGE_FOLDER
+from lumen.language.knowledge import Passage
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import first

@@ -8,8 +8,8 @@ from math import hypot, pi
 from lumen.interpreters.expressions import split_template
 from lumen.language.commands import GoTo
 from lumen.language.diagnostics import ERROR, INFO, WARNING, Code, NodePath, did_you_mean, has_errors
+from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.hall_places import HallPlace, HallPlaces
-from lumen.language.knowledge import KNOWLEDGE_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Stage
 from lumen.language.stories import Expect

@@ -5,8 +5,9 @@ from lumen.interpreters.explaining.sentences import hearing_states, rows_around
 from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
 from lumen.interpreters.talk.patterns import slots_of
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
+from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.machines import Hears, MachineDefinition
-from lumen.language.sayings import SAYINGS_FOLDER, Saying
+from lumen.language.sayings import Saying
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import References

@@ -9,10 +9,9 @@ from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, Place, Related, did_you_mean, nearest
-from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
+from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.language_tags import is_language_tag
 from lumen.language.machines import Answer, MachineDefinition
-from lumen.language.sayings import SAYINGS_FOLDER
 from lumen.loading.common_words import COMMON_FILE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft

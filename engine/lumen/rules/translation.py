@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import NodePath, Place
-from lumen.language.knowledge import KNOWLEDGE_FOLDER
+from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.words import ANYHOW

@@ -4,7 +4,8 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, Place, Related, did_you_mean
-from lumen.language.knowledge import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, QuestionSet
+from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
+from lumen.language.knowledge import QuestionSet
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.knowledge import words_of

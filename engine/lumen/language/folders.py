@@ -1,0 +1,5 @@
+"""The folders of a project that parts of the language are named for."""
+
+KNOWLEDGE_FOLDER = "knowledge"
+QUESTIONS_FOLDER = "knowledge/questions"
+SAYINGS_FOLDER = "behaviors/sayings"
