@@ -35,11 +35,11 @@ from lumen.clocks.following import FollowingClock
 from lumen.errors import UsageError
 from lumen.feature import table
 from lumen.language.stories import Story
+from lumen.loading.broken_features import broken_features
 from lumen.loading.running_project import is_substituted, project_to_run
 from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Clock
 from lumen.robots.bounded_robot import ability
-from lumen.rules.features import broken_features
 from lumen.runtime.home import home_of as home_of_run
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER
 from lumen.runtime.presence import BRAIN, ROBOT_PART, all_parts

@@ -4,11 +4,20 @@ from typing import Any
 
 from lumen.distributions import Distribution
 from lumen.errors import LumenError
-from lumen.feature import Feature, distribution_of, resolve
+from lumen.feature import Feature, FeatureFault, distribution_of, found, resolve
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place
 from lumen.loading.project_folders import MAIN_FILE
 
 BROKEN_FEATURE = Code("broken-feature", "features", WARNING, "an installed feature, or a part of it, can't be used")
+
+
+def broken_features() -> list[Diagnostic]:
+    """Return a finding for each installed distribution whose feature, or a row of it, is ignored."""
+    from lumen.interpreters.added_verbs import faulty_verbs  # and with it all of the expressions
+
+    verbs = ((distribution_of(feature), fault) for feature, fault in faulty_verbs())
+    faults = [*found().faults, *(FeatureFault(distribution, fault) for distribution, fault in verbs if distribution)]
+    return [broken(fault.distribution, fault.message) for fault in faults]
 
 
 def broken(distribution: Distribution, message: str) -> Diagnostic:

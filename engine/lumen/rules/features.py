@@ -1,9 +1,7 @@
 """Features that were installed beside Lumen and can't be used."""
 
-from lumen.feature import FeatureFault, distribution_of, found, resolve, rows
-from lumen.interpreters.added_verbs import faulty_verbs
-from lumen.language.diagnostics import Diagnostic
-from lumen.loading.broken_features import broken
+from lumen.feature import distribution_of, resolve, rows
+from lumen.loading.broken_features import broken, broken_features
 from lumen.loading.draft import ProjectDraft
 
 
@@ -18,10 +16,3 @@ def check(draft: ProjectDraft) -> None:
                 draft.loose.append(
                     broken(distribution, f"its module `{module}` raised {type(error).__name__}: {error}")
                 )
-
-
-def broken_features() -> list[Diagnostic]:
-    """Return a finding for each installed distribution whose feature, or a row of it, is ignored."""
-    verbs = ((distribution_of(feature), fault) for feature, fault in faulty_verbs())
-    faults = [*found().faults, *(FeatureFault(distribution, fault) for distribution, fault in verbs if distribution)]
-    return [broken(fault.distribution, fault.message) for fault in faults]
