@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from lumen.ports import Clock, Dozes
+from lumen.ports import Dozes
 
 
 class Nap:
@@ -13,9 +13,9 @@ class Nap:
         self._clock: Dozes | None = None
 
     @contextmanager
-    def on(self, clock: Clock) -> Iterator[None]:
-        """Nap on a clock. Begin before you look what is due: a message that comes afterwards ends the nap."""
-        self._clock = clock if isinstance(clock, Dozes) else None
+    def on(self, clock: Dozes | None) -> Iterator[None]:
+        """Nap on a clock, if it dozes. Begin before you look what is due: a message that comes later ends the nap."""
+        self._clock = clock
         try:
             yield
         finally:

@@ -155,7 +155,7 @@ class Node:
 
     def napping(self, on: "Node") -> AbstractContextManager[None]:
         """Nap on the clock of a node: this one, or another one of this process."""
-        return self._nap.on(on._clock)
+        return self._nap.on(on._dozes)
 
     def rest(self) -> float:
         """For how long nothing happens in it unless something comes [s]; 0 where that is not known."""

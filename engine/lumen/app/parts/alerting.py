@@ -48,7 +48,8 @@ class AlertPart(Part, Observer):
         clock: Callable[[], float] = time.monotonic,
         stopped: Callable[[], bool] = lambda: False,
     ) -> None:
-        self._desk, self._bus, self._parts, self._presence = desk, bus, parts, presence
+        self._desk, self._parts, self._presence = desk, parts, presence
+        self._broker, self._blockable = bus.ability(UsesBroker), bus.ability(BlockableBus)
         self._kept, self._clock, self._person_stopped = kept, clock, stopped
         self._falls, self._disk = FallWatch(), DiskWatch(folder)
         self._now = 0.0
@@ -116,12 +117,11 @@ class AlertPart(Part, Observer):
         """Robot and brain tell of the broker; the others need not all say the same."""
         if not {ROBOT_PART, BRAIN} & set(self._parts):
             return
-        broker, blockable = self._bus.ability(UsesBroker), self._bus.ability(BlockableBus)
-        blocked, before = blockable.blocked if blockable else "", self._blocked
+        blocked, before = self._blockable.blocked if self._blockable else "", self._blocked
         self._blocked = blocked
         if blocked and not before:
             self._desk("broker", f"the message broker is short of {blocked} and accepts no messages", "blocked")
-        if not (broker and broker.away):
+        if not (self._broker and self._broker.away):
             self._away = None
         elif self._away is None:
             self._away = self._clock()
