@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import inf
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -103,12 +104,11 @@ def test_a_process_that_can_not_begin_in_place_of_another_is_tried_once_more(
     monkeypatch.setattr(validation_worker, "take", lambda command: None)
     worker, tried = ValidationWorker(tmp_path), list[None]()
 
-    def running() -> None:
+    def start() -> None:
         tried.append(None)
         raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
 
-    monkeypatch.setattr(worker, "_process", object())
-    monkeypatch.setattr(worker, "_running", running)
+    monkeypatch.setattr(worker, "_process", SimpleNamespace(started=True, start=start))
     with pytest.raises(FatalFilesError, match="can't start: Resource temporarily unavailable"):
         worker.load({})
     assert len(tried) == 2

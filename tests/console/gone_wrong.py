@@ -4,21 +4,21 @@ import os
 import signal
 import sys
 
-from lumen.console.job_promises import OUT_OF_MEMORY, REFUSED
+from lumen.errors import LumenError
+from lumen.upkeep.judge_process import OUT_OF_MEMORY, answering
 
-match sys.argv[1]:
-    case "killed":
-        os.kill(os.getpid(), signal.SIGKILL)
-    case "refused":
-        sys.stdout.write("there is no such file")
-        sys.exit(REFUSED)
-    case "too large":
-        sys.exit(OUT_OF_MEMORY)
-    case "slow":
-        sys.stdin.read()
-        signal.pause()
-    case "poses":
-        sys.stdin.readline()
-        sys.exit(1)
-    case _:
-        sys.stdout.write(sys.stdin.read())
+with answering() as pipe:
+    match sys.argv[1]:
+        case "killed":
+            os.kill(os.getpid(), signal.SIGKILL)
+        case "refused":
+            pipe.send(LumenError("there is no such file"))
+        case "too large":
+            sys.exit(OUT_OF_MEMORY)
+        case "slow":
+            signal.pause()
+        case "poses":
+            pipe.receive()
+            sys.exit(1)
+        case _:
+            pipe.send(b"".join(iter(pipe.receive, None)))

@@ -10,16 +10,18 @@ from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
 import lumen
 from lumen.console import jobs
-from lumen.console.job_promises import OUT_OF_MEMORY, REFUSED
 from lumen.console.jobs import MAX_WAITING, Jobs
 from lumen.console.poses import Poses
 from lumen.console.requests import DeniedError
-from lumen.errors import BusError
+from lumen.errors import BusError, LumenError
+from lumen.upkeep import judge_process
+from lumen.upkeep.judge_process import Fault, NoAnswerError
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Served, Stream
 from tests.guarded import PIPE, Guarded
@@ -69,10 +71,10 @@ def test_who_waits_too_long_and_who_comes_too_late_is_told_so(monkeypatch: pytes
 
 
 def test_a_process_that_can_not_be_started_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    async def refused(*_: Any, **__: Any) -> None:
+    def refused(*_: Any, **__: Any) -> None:
         raise BlockingIOError(errno.EAGAIN, "Resource temporarily unavailable")
 
-    monkeypatch.setattr(asyncio, "create_subprocess_exec", refused)
+    monkeypatch.setattr(judge_process.subprocess, "Popen", refused)
     reason = "cannot start a process to compute this: Resource temporarily unavailable"
     assert reasons(done("echo", "echo")) == [(503, reason), (503, reason)]
 
@@ -88,26 +90,27 @@ def test_what_tells_a_job_may_fail() -> None:
 
 
 @for_each(
-    ("code", "wrote", "reason"),
+    ("error", "reason"),
     [
-        (REFUSED, b"there is no such model", "there is no such model"),
-        (OUT_OF_MEMORY, b"", "this needs more memory than the console allows: use `lumen` in a terminal"),
-        (1, b"[[0.1, ", "the process that computes this ended without an answer (exit code 1): try again, or use"),
+        (LumenError("there is no such model"), "there is no such model"),
+        (NoAnswerError(Fault.MEMORY, 77), "this needs more memory than the console allows: use `lumen` in a terminal"),
+        (
+            NoAnswerError(Fault.ENDED, 1),
+            "the process that computes this ended without an answer (exit code 1): try again, or use",
+        ),
     ],
 )
-def test_a_process_of_poses_that_has_ended_says_why(code: int, wrote: bytes, reason: str) -> None:
-    async def begin(job: str, home: str) -> Any:
+def test_a_process_of_poses_that_has_ended_says_why(error: Exception, reason: str) -> None:
+    def begin(job: str, home: str) -> Any:
         assert (job, home) == ("poses", "/home")
-        drained = asyncio.sleep
-        pipe = SimpleNamespace(write=lambda _: None, drain=lambda: drained(0), readline=lambda: drained(0, wrote))
-        return SimpleNamespace(stdin=pipe, stdout=pipe, returncode=code)
+        return Mock(ask=Mock(side_effect=error))
 
     watch = SimpleNamespace(keys=SimpleNamespace(home=lambda robot: "/home"))
     poses = Poses(watch, SimpleNamespace(begin=begin), "NAO")  # type: ignore[arg-type]
     with pytest.raises(DeniedError) as raised:
         asyncio.run(poses._asked(b"{}"))
     assert raised.value.reason.startswith(f"the robot cannot be drawn: {reason}")
-    assert poses._child is None, "the next look begins another one"
+    assert poses._process is None, "the next look begins another one"
 
 
 @pytest.mark.process
@@ -147,9 +150,10 @@ def test_poses_follow_the_joints_and_their_process_ends_with_the_looking(
     with Stream(browser, "/api/poses?robot=NAO") as stream:
         for angle in (0.5, -0.25):
             until(partial(turned, angle))
-        child = poses._child
-        assert child
-    until(lambda: child.returncode is not None)
+        process = poses._process
+        assert process
+        assert process.alive
+    until(lambda: not process.alive)
 
 
 def test_a_model_that_is_gone_is_said_and_what_draws_is_begun_anew(

@@ -1,15 +1,17 @@
 """The process that judged a start is kept for the first saved file, and not for ever."""
 
+import os
 import signal
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from lumen.app.reload import idle_process, validation_worker
+from lumen.app.reload import idle_process
 from lumen.app.reload.idle_process import end_idle, take
 from lumen.app.reload.validation_worker import COMMAND, ValidationWorker, load_apart
 from lumen.loading.files import read_files
+from lumen.upkeep import judge_process
 from tests.waiting import until
 
 pytestmark = pytest.mark.rest  # dear
@@ -23,14 +25,14 @@ def begun(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[list[int]
     """The numbers of the processes that were begun; no project is known from before."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     end_idle()
-    numbers, usual = list[int](), validation_worker.subprocess.Popen
+    numbers, usual = list[int](), judge_process.subprocess.Popen
 
     def noted(*given: object, **options: object) -> object:
         child = usual(*given, **options)  # type: ignore[call-overload]
         numbers.append(child.pid)
         return child
 
-    monkeypatch.setattr(validation_worker.subprocess, "Popen", noted)
+    monkeypatch.setattr(judge_process.subprocess, "Popen", noted)
     yield numbers
     end_idle()
 
@@ -52,21 +54,21 @@ def test_one_that_has_died_or_was_begun_otherwise_is_not_taken(copy: Path, begun
     worker.begin()
     worker.close()
     assert take(("another",)) is None
-    process = take(tuple(COMMAND))
-    assert process
-    process.child.send_signal(signal.SIGKILL)
-    process.child.wait()
-    idle_process.keep(process)
+    idle = take(tuple(COMMAND))
+    assert idle
+    os.kill(begun[-1], signal.SIGKILL)
+    until(lambda: not idle.process.alive)
+    idle_process.keep(idle)
     assert take(tuple(COMMAND)) is None
 
 
 def test_nobody_is_given_the_answer_to_a_question_that_was_interrupted(
     copy: Path, begun: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def interrupted(_: object) -> None:
+    def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(validation_worker, "receive", interrupted)
+    monkeypatch.setattr(judge_process, "receive", interrupted)
     with pytest.raises(KeyboardInterrupt):
         load_apart(copy, read_files(copy))
     assert take(tuple(COMMAND)) is None
@@ -76,7 +78,8 @@ def test_it_ends_where_nobody_wants_it(copy: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(idle_process, "LINGER", 0.05)
     worker = ValidationWorker(copy)
     worker.begin()
-    child = worker._running().child
+    process = worker._process
+    assert process.alive
     worker.close()
-    until(lambda: child.returncode is not None)
+    until(lambda: not process.started)
     assert take(tuple(COMMAND)) is None

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import pytest
 
-from lumen.app.reload import known_projects, validation_worker
+from lumen.app.reload import known_projects
 from lumen.app.reload.idle_process import end_idle
 from lumen.app.reload.validation_worker import ValidationWorker, load_apart
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
-from lumen.upkeep import cache_folder
+from lumen.upkeep import cache_folder, judge_process
 from tests.live.conftest import trimmed
 from tests.tour.conftest import copied
 
@@ -61,7 +61,7 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("a process is begun")
 
     end_idle()
-    monkeypatch.setattr(validation_worker.subprocess, "Popen", refused)
+    monkeypatch.setattr(judge_process.subprocess, "Popen", refused)
 
 
 @pytest.mark.usefixtures("kept")

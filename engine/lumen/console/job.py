@@ -1,46 +1,43 @@
 """One job of the console: `python -m lumen.console.job JOB PROJECT [ARGUMENTS]`; the last two as a folder and JSON,
 of which the first is a robot of `robots:`, empty where there is one.
 
-Its answer goes to the standard output, as JSON. It may take so much memory, and so much time; the system ends it where
-it takes more. `poses` alone goes on until there is nothing more to read.
+It is run by a `JudgeProcess`, and answers with JSON. Its memory and its time are limited; the system ends it if it
+needs more. Only `poses` gives several answers, one for each question.
 """
 
 import json
-import os
-import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from datetime import date
 from pathlib import Path
 from time import monotonic
-from typing import IO, Any
+from typing import Any
 
 import orjson
 
 from lumen.app.recalling import answer_from_journal
-from lumen.app.reload.judging_pipe import MAX_MEMORY
-from lumen.app.reload.validation_process import NICENESS, limit_memory, limit_time
 from lumen.app.replaying.journals import chosen
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import against
 from lumen.console.day_csv import day_csv
-from lumen.console.job_promises import JOB_TIME, NOTHING, OUT_OF_MEMORY, REFUSED
+from lumen.console.job_promises import JOB_TIME, NOTHING
 from lumen.console.kept_days import KeptDays
 from lumen.errors import LumenError
 from lumen.language.sayings import Saying
 from lumen.loading.files import read_files
 from lumen.rules import check_files
+from lumen.upkeep.judge_process import MAX_MEMORY, AnswerPipe, answering, limit_time
 
 TOO_LONG_AGO = "too long ago"
 REPLAY_TIME = 10.0
 """How long visits are played with the saved files [s]; the others are said to be unknown."""
 
 
-def day(root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
+def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
     """A day, for a page or as a `csv`: from this machine's files, or from pages of entries that are read (`told`)."""
     days, chosen_day = KeptDays(root, robot), date.fromisoformat(wanted) if wanted else None
-    found = days.told(_lines(), chosen_day) if whose == "told" else days.day(chosen_day)
+    found = days.told(_read(iter(pipe.receive, None)), chosen_day) if whose == "told" else days.day(chosen_day)
     if found is None:
         yield NOTHING
     elif form == "csv":
@@ -49,12 +46,12 @@ def day(root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[
         yield orjson.dumps(found.to_json())
 
 
-def why(root: Path, robot: str, question: str, what: str, at: str | None) -> Iterator[bytes]:
+def why(pipe: AnswerPipe, root: Path, robot: str, question: str, what: str, at: str | None) -> Iterator[bytes]:
     """Why something happened, or did not, from the journal."""
     yield orjson.dumps(answer_from_journal(str(root), question, what, at, TOO_LONG_AGO, robot), default=str)
 
 
-def replay(root: Path, robot: str) -> Iterator[bytes]:
+def replay(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
     """What the files on the disk would have done in the visits that are kept; nothing where that can't be said."""
     project = check_files(root, read_files(root, robot))[0]
     if project is None:
@@ -68,28 +65,30 @@ def replay(root: Path, robot: str) -> Iterator[bytes]:
         yield NOTHING
 
 
-def saying(root: Path, robot: str, behavior: str, state: str, row: str, language: str, text: str) -> Iterator[bytes]:
+def saying(
+    pipe: AnswerPipe, root: Path, robot: str, behavior: str, state: str, row: str, language: str, text: str
+) -> Iterator[bytes]:
     """Add a sentence of a visitor to the sayings, with the row that should have taken it."""
     from lumen.app.new_saying import write_saying
 
     yield orjson.dumps({"file": write_saying(root, Saying(behavior, state, row, language, text), robot).as_posix()})
 
 
-def shape(root: Path, robot: str) -> Iterator[bytes]:
+def shape(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
     """What the robot's links look like, and its stage."""
     from lumen.console.drawing import Drawing
 
     yield orjson.dumps(Drawing(root, robot).shape())
 
 
-def poses(root: Path, robot: str) -> Iterator[bytes]:
-    """Where its links are, a line for each line with joint angles; `null` for what can't be a robot's."""
+def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
+    """The poses of its links, one for each question with joint angles; `null` for any other question."""
     from lumen.console.drawing import Drawing
 
     drawing = Drawing(root, robot)
     limit_time(0.0)
-    for line in _lines():
-        yield orjson.dumps(drawing.pose(line)) + b"\n"
+    for angles in _read(pipe):
+        yield orjson.dumps(drawing.pose(angles))
 
 
 JOBS: dict[str, Callable[..., Iterable[bytes]]] = {
@@ -97,39 +96,22 @@ JOBS: dict[str, Callable[..., Iterable[bytes]]] = {
 }  # fmt: skip
 
 
-def _lines() -> Iterator[Any]:
-    for line in sys.stdin.buffer:
+def _read(questions: Iterable[bytes]) -> Iterator[Any]:
+    for question in questions:
         with suppress(ValueError):
-            yield orjson.loads(line)
+            yield orjson.loads(question)
 
 
-def main(name: str, root: str, arguments: str) -> int:
-    """Do a job; 0 where it has answered. What anybody prints goes to the terminal."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the console, which ends us
-    if hasattr(os, "nice"):
-        os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
-    limit_memory(MAX_MEMORY)
-    limit_time(JOB_TIME)
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    with suppress(BrokenPipeError):
-        return _do(answers, JOBS[name](Path(root), *json.loads(arguments)))
-    return 0
-
-
-def _do(answers: IO[bytes], job: Iterable[bytes]) -> int:
-    try:
-        for part in job:
-            answers.write(part)
-            answers.flush()
-    except LumenError as error:
-        answers.write(str(error).encode())
-        answers.flush()
-        return REFUSED
-    except MemoryError:
-        return OUT_OF_MEMORY
-    return 0
+def main(name: str, root: str, arguments: str) -> None:
+    """Do a job; a LumenError is an answer."""
+    with answering(MAX_MEMORY) as pipe:
+        limit_time(JOB_TIME)
+        try:
+            for answer in JOBS[name](pipe, Path(root), *json.loads(arguments)):
+                pipe.send(answer)
+        except LumenError as error:
+            pipe.send(LumenError(str(error)))  # not every subclass can be pickled
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:]))
+    main(*sys.argv[1:])

@@ -4,5 +4,3 @@ JOB_TIME = 240.0
 """The time limit of a job with its wait for those before it [s]; a small and busy machine needs minutes."""
 NOTHING = b"null"
 """The answer of a job that found nothing."""
-REFUSED, OUT_OF_MEMORY = 76, 77
-"""Exit codes: what it wrote is the reason why there is no answer; it was refused more memory."""

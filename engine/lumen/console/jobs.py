@@ -1,18 +1,17 @@
 """What takes much memory or time, in a process that ends with it: one at a time, and few that wait for their turn."""
 
 import asyncio
-import signal
 import sys
-from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncIterator, Iterable
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import orjson
 
-from lumen.console.job_promises import JOB_TIME, OUT_OF_MEMORY, REFUSED
+from lumen.console.job_promises import JOB_TIME
 from lumen.console.requests import DeniedError
+from lumen.errors import LumenError
+from lumen.upkeep.judge_process import Fault, JudgeProcess, NoAnswerError
 
 PROGRAM = "lumen.console.job"
 MAX_WAITING = 8
@@ -29,7 +28,7 @@ class Jobs:
         self._waiting = 0
 
     async def do(self, job: str, *arguments: Any, told: AsyncIterator[bytes] | None = None) -> bytes:
-        """What a job answers; it reads what it is `told`, line by line. What `told` raises is raised."""
+        """Return what a job answers; it reads what it is `told`, line by line. What `told` raises is raised."""
         if self._waiting >= MAX_WAITING:
             raise DeniedError(503, f"{MAX_WAITING} such requests are running already: try again in a moment")
         self._waiting += 1
@@ -41,62 +40,42 @@ class Jobs:
         finally:
             self._waiting -= 1
 
-    async def begin(self, job: str, *arguments: Any) -> Process:
-        """A process that does a job, until it was `ended`."""
+    def begin(self, job: str, *arguments: Any) -> JudgeProcess:
+        """Start a process that does a job, until it is ended."""
         line = [sys.executable, "-m", PROGRAM, job, str(self.root), orjson.dumps(arguments).decode()]
+        process = JudgeProcess(line, MAX_ANSWER)
         try:
-            return await asyncio.create_subprocess_exec(*line, stdin=PIPE, stdout=PIPE, limit=1 << 20)
+            process.start()
         except OSError as error:
             raise DeniedError(503, f"cannot start a process to compute this: {error.strerror}") from None
+        return process
 
     async def _done(self, job: str, arguments: Iterable[Any], told: AsyncIterator[bytes] | None) -> bytes:
-        child = await self.begin(job, *arguments)
-        telling = asyncio.ensure_future(_tell(child, told))
-        answer = bytearray()
+        process = self.begin(job, *arguments)
         try:
-            assert child.stdout
-            while part := await child.stdout.read(1 << 16):
-                answer += part
-                if len(answer) > MAX_ANSWER:
-                    raise DeniedError(503, f"the answer has more than {MAX_ANSWER >> 20} MB")
-            await telling
-            if code := await child.wait():
-                raise DeniedError(404 if code == REFUSED else 503, why_none(code, bytes(answer)))
-            return bytes(answer)
+            if told is not None:
+                async for line in told:
+                    await asyncio.to_thread(process.send, line)
+            return await _answer(process)
         finally:
-            telling.cancel()
-            await ended(child)
+            await asyncio.to_thread(process.end)
 
 
-async def _tell(child: Process, told: AsyncIterator[bytes] | None) -> None:
-    assert child.stdin
+async def _answer(process: JudgeProcess) -> bytes:
     try:
-        if told is not None:
-            async for line in told:
-                child.stdin.write(line + b"\n")
-                await child.stdin.drain()
-    except (BrokenPipeError, ConnectionResetError):
-        return  # it has ended: its exit code says why
-    finally:
-        child.stdin.close()
+        answer: bytes = await asyncio.to_thread(process.ask, None)
+    except (LumenError, NoAnswerError) as error:
+        raise DeniedError(404 if isinstance(error, LumenError) else 503, why_none(error)) from None
+    return answer
 
 
-async def ended(child: Process) -> None:
-    """Return once it has, killed where it has not."""
-    if child.returncode is None:
-        with suppress(ProcessLookupError):
-            child.kill()
-        await child.wait()
-
-
-def why_none(code: int, wrote: bytes) -> str:
-    """Why a process with that exit code has no answer, as a sentence."""
-    if code == REFUSED:
-        return wrote.decode("utf-8", "replace")
-    if code == OUT_OF_MEMORY:
+def why_none(error: LumenError | NoAnswerError) -> str:
+    """Why a job has no answer, as a sentence."""
+    if isinstance(error, LumenError):
+        return str(error)
+    if error.fault is Fault.SIZE:
+        return f"the answer has more than {MAX_ANSWER >> 20} MB"
+    if error.fault is Fault.MEMORY:
         return "this needs more memory than the console allows: use `lumen` in a terminal"
-    how = f"exit code {code}"
-    if code < 0:
-        with suppress(ValueError):
-            how = f"ended by {signal.Signals(-code).name}"
+    how = f"ended by {error.signal}" if error.signal else f"exit code {error.code}"
     return f"the process that computes this ended without an answer ({how}): try again, or use `lumen` in a terminal"

@@ -1,15 +1,16 @@
 """Where a robot's links are and what they look like, for who draws it; from processes that end when nobody looks."""
 
 import asyncio
-from asyncio.subprocess import Process
 from collections.abc import AsyncIterator
 
 import orjson
 
-from lumen.console.jobs import Jobs, ended, why_none
+from lumen.console.jobs import Jobs, why_none
 from lumen.console.known_robot import KnownRobot
 from lumen.console.requests import DeniedError
 from lumen.console.watch import Watch
+from lumen.errors import LumenError
+from lumen.upkeep.judge_process import JudgeProcess, NoAnswerError
 
 PERIOD = 1 / 15
 """How long after a pose the next is sent at the earliest [s]."""
@@ -29,7 +30,7 @@ class Poses:
     def __init__(self, watch: Watch, jobs: Jobs, robot: str) -> None:
         self._watch, self._jobs, self._robot = watch, jobs, robot
         self._shape: tuple[object, bytes] | None = None
-        self._child: Process | None = None
+        self._process: JudgeProcess | None = None
         self._turn, self._lookers = asyncio.Lock(), 0
         self._pose: tuple[int, bytes] = -1, b""
         self.closing = False
@@ -77,30 +78,20 @@ class Poses:
             return self._pose[1]
 
     async def _asked(self, joints: bytes) -> bytes:
-        """A line for a line, from the process, which is begun where there is none."""
-        if self._child is None:
-            self._child = await self._jobs.begin("poses", self._home)
-        child, line = self._child, b""
-        assert child.stdin
-        assert child.stdout
+        """Return the answer of the process; start one if necessary."""
+        if self._process is None:
+            self._process = self._jobs.begin("poses", self._home)
+        process = self._process
         try:
-            async with asyncio.timeout(POSE_TIME):
-                child.stdin.write(joints + b"\n")
-                await child.stdin.drain()
-                line = await child.stdout.readline()
-        except (TimeoutError, ConnectionError, ValueError):
-            pass
-        if line.endswith(b"\n"):
-            return line.rstrip()
-        self._child = None
-        if child.returncode is None and not line:
-            await asyncio.wait({asyncio.ensure_future(child.wait())}, timeout=1.0)
-        code = child.returncode
-        await ended(child)
-        raise DeniedError(503, f"the robot cannot be drawn: {why_none(code or 0, line)}")
+            answer: bytes = await asyncio.to_thread(process.ask, joints, POSE_TIME)
+        except (LumenError, NoAnswerError) as error:
+            self._process = None
+            process.end()
+            raise DeniedError(503, f"the robot cannot be drawn: {why_none(error)}") from None
+        return answer
 
     def _leave(self) -> None:
-        """End the process where nobody looks any more: it ends where there is nothing more to read."""
-        if not self._lookers and self._child and self._child.stdin:
-            self._child.stdin.close()
-            self._child = None
+        """End the process after the last viewer has left."""
+        if not self._lookers and self._process:
+            process, self._process = self._process, None
+            process.end()

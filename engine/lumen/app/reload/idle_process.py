@@ -5,58 +5,49 @@ one, which has everything imported and knows the files. So does the next start i
 """
 
 import atexit
-import subprocess
 import threading
 from typing import NamedTuple
 
 from lumen.app.reload.delta import DeltaDecoder
+from lumen.upkeep.judge_process import JudgeProcess
 
 LINGER = 10.0
 """How long it is kept [s]."""
 
 
-class JudgingProcess(NamedTuple):
-    """The process, how it was begun, and what unpacks the projects that it sends."""
+class IdleProcess(NamedTuple):
+    """A process, and what unpacks the projects that it sends."""
 
-    child: "subprocess.Popen[bytes]"
-    command: tuple[str, ...]
+    process: JudgeProcess
     receiver: DeltaDecoder
-
-    @property
-    def lives(self) -> bool:
-        return self.child.poll() is None
-
-    def end(self) -> None:
-        self.child.kill()
-        self.child.communicate()
 
 
 _turn = threading.Lock()
-_idle: list[tuple[JudgingProcess, threading.Timer]] = []
+_idle: list[tuple[IdleProcess, threading.Timer]] = []
 """The one that is kept, and what will end it; empty where there is none."""
 
 
-def keep(process: JudgingProcess) -> None:
+def keep(idle: IdleProcess) -> None:
     """Keep a process that waits for questions, in place of the one that was kept."""
     end_idle()
-    timer = threading.Timer(LINGER, _end, [process])
+    timer = threading.Timer(LINGER, _end, [idle])
     timer.daemon = True
     with _turn:
-        _idle.append((process, timer))
+        _idle.append((idle, timer))
     timer.start()
 
 
-def take(command: tuple[str, ...]) -> JudgingProcess | None:
-    """The process that was kept, if it lives and was begun so; whoever takes it ends it or has it kept again."""
+def take(command: tuple[str, ...]) -> IdleProcess | None:
+    """Return the process that was kept, if it runs this command; its new owner ends it or has it kept again."""
     with _turn:
-        if not _idle or _idle[0][0].command != command:
+        if not _idle or _idle[0][0].process.command != command:
             return None
-        process, timer = _idle.pop()
+        idle, timer = _idle.pop()
     timer.cancel()
-    if not process.lives:
-        process.end()
+    if not idle.process.alive:
+        idle.process.end()
         return None
-    return process
+    return idle
 
 
 @atexit.register
@@ -65,15 +56,15 @@ def end_idle() -> None:
     with _turn:
         found = [*_idle]
         _idle.clear()
-    for process, timer in found:
+    for idle, timer in found:
         timer.cancel()
-        process.end()
+        idle.process.end()
 
 
-def _end(process: JudgingProcess) -> None:
+def _end(idle: IdleProcess) -> None:
     with _turn:
-        mine = bool(_idle) and _idle[0][0] is process
+        mine = bool(_idle) and _idle[0][0] is idle
         if mine:
             _idle.clear()
     if mine:
-        process.end()
+        idle.process.end()

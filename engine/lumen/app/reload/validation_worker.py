@@ -6,26 +6,21 @@ already: some milliseconds. The child is our own program, and the pipe to it nob
 ended us: it is never tried here (docs/decisions/023).
 """
 
-import pickle
-import signal
-import subprocess
 import sys
-import threading
-import time
 from collections.abc import Mapping
 from contextlib import closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from lumen.app.reload.delta import Delta, DeltaDecoder
-from lumen.app.reload.idle_process import JudgingProcess, keep, take
-from lumen.app.reload.judging_pipe import ANSWER_TIMEOUT, MAX_MEMORY, OUT_OF_MEMORY, receive, send
+from lumen.app.reload.idle_process import IdleProcess, keep, take
 from lumen.app.reload.known_projects import keep as keep_known
 from lumen.app.reload.known_projects import recall
 from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
+from lumen.upkeep.judge_process import ANSWER_TIMEOUT, MAX_MEMORY, Fault, JudgeProcess, NoAnswerError
 
 if TYPE_CHECKING:
     from lumen.app.rehearsal import Rehearsal
@@ -70,8 +65,8 @@ class ValidationWorker:
 
     def __init__(self, root: Path, timeout: float = ANSWER_TIMEOUT) -> None:
         self._root, self._timeout = root.absolute(), timeout
-        self._process = take(tuple(COMMAND))
-        self._receiver = self._process.receiver if self._process else DeltaDecoder()
+        kept = take(tuple(COMMAND)) or IdleProcess(JudgeProcess(COMMAND), DeltaDecoder())
+        self._process, self._receiver = kept
 
     @property
     def packed(self) -> Delta:
@@ -80,21 +75,21 @@ class ValidationWorker:
 
     def warm(self, files: Mapping[str, bytes]) -> None:
         """Have a process that was not begun yet read what runs: of files that are saved later one will differ."""
-        if self._process is None:
+        if not self._process.started:
             with suppress(FatalFilesError):
                 self._load(files)
 
     def begin(self) -> None:
         """Begin the process: it takes about as long as files do to settle."""
         with suppress(OSError):
-            self._running()
+            self._process.start()
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
-        began = self._process
+        started = self._process.started
         try:
             return self._load(files)
         except FatalFilesError as error:
-            if began is None or error.overdue:
+            if not started or error.overdue:
                 raise
             return self._load(files)  # what it had judged before may have been too much, and not these
 
@@ -111,9 +106,9 @@ class ValidationWorker:
 
     def close(self) -> None:
         """Have the process kept for who needs one soon."""
-        process, self._process = self._process, None
-        if process:
-            keep(process)
+        if self._process.started:
+            keep(IdleProcess(self._process, self._receiver))
+            self._process = JudgeProcess(COMMAND)
 
     def _load(self, files: Mapping[str, bytes]) -> Loaded:
         parcel, diagnostics = self._ask("load", str(self._root), dict(files))
@@ -122,48 +117,14 @@ class ValidationWorker:
     def _ask(self, *question: Any) -> Any:
         """Its answer; raises what it raised, and FatalFilesError where it did not live to answer."""
         try:
-            process = self._running()
+            self._process.start()
         except OSError as error:
             raise FatalFilesError(f"the process that reads the files can't start: {error.strerror}") from None
-        child = process.child
-        began, timer = time.monotonic(), threading.Timer(self._timeout, child.kill)
-        timer.start()
         try:
-            assert child.stdin
-            assert child.stdout
-            send(child.stdin, question)
-            answer = receive(child.stdout)
-        except (OSError, EOFError, pickle.UnpicklingError):
-            self._process = None
-            process.end()
-            late = time.monotonic() - began >= self._timeout
-            how = f"it took more than {self._timeout:.0f} s" if late else _how(child.returncode)
-            raise FatalFilesError(f"the process that reads these files failed: {how}", overdue=late) from None
-        except BaseException:  # whoever is interrupted leaves an answer in the pipe, which is none to the next question
-            self._process = None
-            process.end()
-            raise
-        finally:
-            timer.cancel()
-        if isinstance(answer, Exception):
-            raise answer
-        return answer
-
-    def _running(self) -> JudgingProcess:
-        """The process, begun anew where there is none; raises OSError where the system has no room for it."""
-        if self._process and not self._process.lives:
-            self._process.end()
-            self._process = None
-        if self._process is None:
-            command = tuple(COMMAND)
-            child = subprocess.Popen(
-                command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                start_new_session=True,  # Ctrl-C is not for it
-            )
-            self._process = JudgingProcess(child, command, self._receiver)
-        return self._process
+            return self._process.ask(question, self._timeout)
+        except NoAnswerError as error:
+            how = f"the process that reads these files failed: {_how(error, self._timeout)}"
+            raise FatalFilesError(how, overdue=error.fault is Fault.LATE) from None
 
 
 def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:
@@ -180,11 +141,10 @@ def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:
         return loaded
 
 
-def _how(code: int) -> str:
-    """How a process ended, by its exit code."""
-    if code == OUT_OF_MEMORY:
+def _how(error: NoAnswerError, timeout: float) -> str:
+    """How the process ended, as a sentence."""
+    if error.fault is Fault.LATE:
+        return f"it took more than {timeout:.0f} s"
+    if error.fault is Fault.MEMORY:
         return f"it needed more than {MAX_MEMORY >> 20} MB of memory"
-    if code < 0:
-        with suppress(ValueError):
-            return f"it was ended by {signal.Signals(-code).name}"
-    return f"it ended with exit code {code}"
+    return f"it was ended by {error.signal}" if error.signal else f"it ended with exit code {error.code}"
