@@ -1,78 +1,105 @@
-"""A project judged in a process of its own: Python runs one thread at a time, and no answer waits for findings."""
+"""A project judged in a process of its own: Python runs one thread at a time, and no answer waits for findings.
+
+This file has both ends: the server's `Judge`, and `python -m lumen.lsp.judging`, which it runs.
+"""
 
 import asyncio
 import os
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import connection, get_context, parent_process
-from typing import Any
+import sys
+import traceback
+from functools import partial
+from queue import SimpleQueue
 
 from lumen.lsp.analysis import Analysis, Judgement
+from lumen.upkeep.judge_process import AnswerPipe, JudgeProcess, NoAnswerError, answering
 from lumen.upkeep.threads import WatchedThread
 
-_latest: Any = None
-"""In the judging process: the number of the question that was asked last."""
-
-
-class OutdatedError(Exception):
-    """Something was written while the project was being judged."""
+COMMAND = (sys.executable, "-P", "-m", "lumen.lsp.judging")
+"""`-P`: no module is imported from the folder in which the editor started the server."""
 
 
 class Judge:
     """Judges one project at a time, and gives up on a text as soon as there is a newer one.
 
-    The process is begun with the first question, and anew where a file has ended it.
+    The process is started with the first question, and again after a file has ended it.
     """
 
     def __init__(self) -> None:
-        self._context = get_context("spawn")
-        self._asked = self._context.Value("Q", 0, lock=False)
-        self._pool: ProcessPoolExecutor | None = None
+        self._process = JudgeProcess(COMMAND)
+        self._number = 0
+        self._current = False
 
     async def judge(self, analysis: Analysis) -> Judgement | None:
-        """What is to be said of a project; None where a newer question came, or its files end whoever reads them."""
-        self._asked.value += 1
-        if self._pool is None:
-            self._pool = ProcessPoolExecutor(1, self._context, _begin, (self._asked,))
-        pool = self._pool
+        """Return the findings of a project; None if a newer question came, or its files end the process."""
+        self.outdated()
+        self._current = True
+        question = self._number, analysis
+        self._process.start()
         try:
-            return await asyncio.wrap_future(pool.submit(_judge, analysis, self._asked.value))
-        except OutdatedError:
+            found: Judgement | None = await asyncio.to_thread(self._process.ask, question)
+        except NoAnswerError:
             return None
-        except BrokenProcessPool:
-            if self._pool is pool:
-                self._pool = None
-            return None
+        return found
 
     def outdated(self) -> None:
-        """What is being judged is another by now."""
-        self._asked.value += 1
+        """Give up on the text that is being judged."""
+        self._number += 1
+        if self._current:  # not on the loop: the process may still read the question
+            self._current = False
+            asyncio.get_running_loop().run_in_executor(None, self._process.send, (self._number, None))
 
     def close(self) -> None:
-        """End the process; what it is at is not waited for."""
-        self.outdated()
-        if self._pool:
-            self._pool.shutdown(wait=False, cancel_futures=True)
+        """End the process, even while it judges."""
+        self._process.end()
 
 
-def _begin(latest: Any) -> None:
-    """Prepare the judging process: it ends with the server, whose pipe to the editor it keeps out of."""
-    global _latest
-    _latest = latest
-    os.dup2(2, 1)
-    WatchedThread("server", _end_with_server).start()
+class OutdatedError(Exception):
+    """A newer question came while the project was being judged."""
 
 
-def _end_with_server() -> None:
-    if server := parent_process():
-        connection.wait([server.sentinel])
-    os._exit(0)
+class Questions:
+    """The questions of a server, each with its number; `None` as question makes those before it outdated."""
+
+    def __init__(self, pipe: AnswerPipe) -> None:
+        self._pipe = pipe
+        self._newest = 0
+        self._waiting: SimpleQueue[tuple[int, Analysis]] = SimpleQueue()
+
+    def answer(self) -> None:
+        """Answer until the server ends or closes the pipe, which ends this process at once."""
+        WatchedThread("questions", self._read).start()
+        while True:
+            self._pipe.answer(partial(self._judged, *self._waiting.get()))
+
+    def _read(self) -> None:
+        try:
+            while True:
+                number, analysis = self._pipe.receive()
+                self._newest = max(self._newest, number)
+                if analysis is not None:
+                    self._waiting.put((number, analysis))
+        except EOFError:
+            os._exit(0)
+        except BaseException:  # a fault of ours: the server waits for an answer, or for the end
+            traceback.print_exc()
+            os._exit(1)
+
+    def _judged(self, number: int, analysis: Analysis) -> Judgement | None:
+        def between() -> None:
+            if self._newest != number:
+                raise OutdatedError
+
+        try:
+            between()
+            return analysis.judged(between)
+        except OutdatedError:
+            return None
 
 
-def _judge(analysis: Analysis, question: int) -> Judgement:
-    def between() -> None:
-        if _latest.value != question:
-            raise OutdatedError
+def main() -> None:
+    with answering() as pipe:
+        Questions(pipe).answer()
 
-    between()
-    return analysis.judged(between)
+
+if __name__ == "__main__":
+    main()
