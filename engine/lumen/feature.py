@@ -266,6 +266,10 @@ class Phase(IntEnum):
     """Parts that keep or show what the behaviour did."""
 
 
+PART_CONDITIONS = {"whole": False, "brain": False, "follows": False, "role": True, "option": True}
+"""The conditions of a part, and whether a name follows each."""
+
+
 class PartRow(NamedTuple):
     """A part of an exhibition: `make` is an import string of a function that takes the services made so far.
 

@@ -20,6 +20,7 @@ from lumen.feature import PartRow, Phase
 from lumen.language.events import Event
 from tests import ROOT
 from tests.exhibits import project
+from tests.tables import for_each
 
 HERE = "tests.app.test_compose"
 
@@ -88,6 +89,26 @@ def test_rows_that_wait_for_each_other_are_named() -> None:
 def test_an_unknown_condition_is_named() -> None:
     with pytest.raises(ValueError, match="there is no condition `hole`"):
         plan().meets("hole")
+
+
+@for_each(
+    ("when", "wrong"), [("brian", "brian"), ("brain:NAO", "brain:NAO"), ("role", "role"), ("whole role:", "role:")]
+)
+def test_a_row_with_an_unknown_condition_is_refused(when: str, wrong: str) -> None:
+    with pytest.raises(ValueError, match=f"the part `a` has the unknown condition `{wrong}`: use whole"):
+        PartRow("a", Phase.SERVE, "", when)
+
+
+def test_a_row_after_itself_is_refused() -> None:
+    with pytest.raises(ValueError, match="the part `a` comes after itself"):
+        PartRow("a", Phase.SERVE, "", after="a")
+
+
+def test_a_part_that_watches_must_be_an_observer(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_rows(monkeypatch, PartRow("greeter", Phase.SERVE, f"{HERE}:Greeter"))
+    monkeypatch.setattr(Greeter, "watches", True)
+    with pytest.raises(TypeError, match="the part Greeter watches the behaviour: derive it from Observer, too"):
+        compose(plan())
 
 
 def test_the_part_of_another_package_is_ticked_before_the_brain(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -72,10 +72,11 @@ class Services:
     def add(self, place: int, *parts: Part) -> None:
         """Let parts take part, after those of lower places and after those that are at this place already.
 
-        A part that `watches` hears of the behaviour's steps, if that is in this process.
+        A part that `watches` hears of the behaviour's steps, if that is in this process. Raises TypeError if such a
+        part is not an `Observer`.
         """
         self._places |= dict.fromkeys(parts, place)
-        if self.plan.brain and (watching := [part for part in parts if isinstance(part, Observer) and part.watches]):
+        if watching := [_observer(part) for part in parts if part.watches and self.plan.brain]:
             self.behavior.loop.observers += watching
         self.node.parts[:] = sorted([*self.node.parts, *parts], key=self._places.__getitem__)
 
@@ -135,3 +136,9 @@ class Services:
     def _pace(self, realtime: float) -> None:
         if behavior := self.get(LiveBehavior):
             behavior.trace.pace(realtime)
+
+
+def _observer(part: Part) -> Observer:
+    if not isinstance(part, Observer):
+        raise TypeError(f"the part {type(part).__name__} watches the behaviour: derive it from Observer, too")
+    return part
