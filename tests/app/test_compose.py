@@ -105,10 +105,11 @@ def test_a_row_after_itself_is_refused() -> None:
 
 
 def test_a_part_that_watches_must_be_an_observer(monkeypatch: pytest.MonkeyPatch) -> None:
-    with_rows(monkeypatch, PartRow("greeter", Phase.SERVE, f"{HERE}:Greeter"))
     monkeypatch.setattr(Greeter, "watches", True)
+    services = compose(plan())
     with pytest.raises(TypeError, match="the part Greeter watches the behaviour: derive it from Observer, too"):
-        compose(plan())
+        services.add(0, Greeter(services))
+    services.node.close()
 
 
 def test_the_part_of_another_package_is_ticked_before_the_brain(monkeypatch: pytest.MonkeyPatch) -> None:

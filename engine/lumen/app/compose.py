@@ -1,5 +1,6 @@
 """Puts an exhibition together: the parts that its plan asks for, in the order of their rows."""
 
+import logging
 import time
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
@@ -9,13 +10,19 @@ from lumen.app.claiming import CLAIM_INTERVAL
 from lumen.app.parts.part import Part
 from lumen.app.plan import Plan
 from lumen.app.services import Services
+from lumen.errors import LumenError
 from lumen.feature import PartRow, resolve, rows
+from lumen.loading.broken_features import blamed
+
+_log = logging.getLogger(__name__)
 
 
 def compose(plan: Plan) -> Services:
     """Make an exhibition of its plan: all parts but those that wait until it has claimed what it is (`start`).
 
     Raises BusError if the bus can't be reached, and whatever a part's maker raises; then all that was made is closed.
+    But if code of an installed package fails, its part is left out, which is logged; that package raises a LumenError
+    to refuse the start.
     """
     services = Services(plan)
     _make(services, claimed=False)
@@ -50,9 +57,19 @@ def _make(services: Services, *, claimed: bool) -> None:
         undo.callback(services.node.close)
         for place, row in enumerate(part_rows()):
             if row.claimed == claimed and all(map(services.plan.meets, row.when.split())):
-                made = resolve(row.make)(services)
-                services.add(place, *([made] if isinstance(made, Part) else made or ()))
+                _add(services, place, row)
         undo.pop_all()
+
+
+def _add(services: Services, place: int, row: PartRow) -> None:
+    try:
+        made = resolve(row.make)(services)
+        services.add(place, *([made] if isinstance(made, Part) else made or ()))
+    except LumenError:
+        raise
+    except Exception as error:
+        feature = next(feature for feature, each in rows("parts") if each is row)
+        _log.exception("the part `%s` is left out: %s", row.name, blamed(feature, row.make, error))
 
 
 @cache

@@ -75,8 +75,9 @@ class Services:
         A part that `watches` hears of the behaviour's steps, if that is in this process. Raises TypeError if such a
         part is not an `Observer`.
         """
+        watching = [_observer(part) for part in parts if part.watches and self.plan.brain]
         self._places |= dict.fromkeys(parts, place)
-        if watching := [_observer(part) for part in parts if part.watches and self.plan.brain]:
+        if watching:
             self.behavior.loop.observers += watching
         self.node.parts[:] = sorted([*self.node.parts, *parts], key=self._places.__getitem__)
 

@@ -1,6 +1,8 @@
 """Features that were installed beside Lumen and can't be used."""
 
-from lumen.feature import distribution_of, resolve, rows
+from collections.abc import Iterator
+
+from lumen.feature import Feature, distribution_of, resolve, rows
 from lumen.loading.broken_features import broken, broken_features
 from lumen.loading.draft import ProjectDraft
 
@@ -8,11 +10,15 @@ from lumen.loading.draft import ProjectDraft
 def check(draft: ProjectDraft) -> None:
     """Report each distribution whose feature, or a row of it, is ignored."""
     draft.loose += broken_features()
-    for feature, module in rows("codes"):
+    for feature, where in _imported():
         if distribution := distribution_of(feature):
             try:
-                resolve(module)
+                resolve(where)
             except Exception as error:  # of code that is not ours
-                draft.loose.append(
-                    broken(distribution, f"its module `{module}` raised {type(error).__name__}: {error}")
-                )
+                draft.loose.append(broken(distribution, f"its module `{where}` raised {type(error).__name__}: {error}"))
+
+
+def _imported() -> Iterator[tuple[Feature, str]]:
+    """Iterate over the import strings that nothing else of lint imports."""
+    yield from rows("codes")
+    yield from ((feature, row.make) for feature, row in rows("parts"))
