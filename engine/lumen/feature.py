@@ -332,6 +332,12 @@ class Feature(NamedTuple):
     senses: Mapping[str, SenseRow] = {}
     voices: Mapping[str, str] = {}
     """For `lumen run --voice NAME`, the class: a `lumen.app.voice.RobotVoice`, made as `Speaker` there."""
+    forgets: tuple[str, ...] = ()
+    """Functions and classes that forget a person (`lumen memory forget NAME`), while an exhibition runs.
+
+    A function gets a `PersonName` (`lumen.language.people`). A class has a method `forget` that gets it: the part or
+    service of that class forgets, if the process has one.
+    """
 
 
 class FeatureFault(NamedTuple):

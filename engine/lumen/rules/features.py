@@ -21,4 +21,5 @@ def check(draft: ProjectDraft) -> None:
 def _imported() -> Iterator[tuple[Feature, str]]:
     """Iterate over the import strings that nothing else of lint imports."""
     yield from rows("codes")
+    yield from rows("forgets")
     yield from ((feature, row.make) for feature, row in rows("parts"))

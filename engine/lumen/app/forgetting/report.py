@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from lumen.buses.queues import SIDE_QUEUES
+from lumen.feature import distribution_of, rows
 from lumen.language.routes import Carried, Direction, Route
 
 
@@ -33,6 +34,7 @@ class Forgetting:
 
 
 FILES_ELSEWHERE = "each machine that runs a part has its own files: run the command there, too"
+OF_A_PACKAGE = "what it keeps itself: it forgets only while an exhibition runs"
 COPIES = "videos, sounds and transcripts of runs, recordings that were moved, copies and backups of these files"
 
 
@@ -49,5 +51,8 @@ def out_of_reach(routes: Iterable[Route], broker: bool) -> Iterator[ForgottenPla
         yield ForgottenPlace(
             f"the broker's {SIDE_QUEUES}", "messages that no process could use, for up to 7 days and an hour"
         )
+    for distribution in dict.fromkeys(distribution_of(feature) for feature, _ in rows("forgets")):
+        if distribution:
+            yield ForgottenPlace(f"the installed package `{distribution.name}`", OF_A_PACKAGE)
     yield ForgottenPlace("other machines", FILES_ELSEWHERE)
     yield ForgottenPlace("other files", COPIES)

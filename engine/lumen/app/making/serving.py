@@ -1,5 +1,6 @@
 """The parts that serve the behaviour: its journal, people to forget, saved files, and operators."""
 
+from lumen.app.forgetting.added import FeatureForgetter
 from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
 from lumen.app.parts.hosted_robot import HostedRobotPart, stopped_there
@@ -33,12 +34,12 @@ def journal(services: Services) -> None:
 
 def forgetting(services: Services) -> ForgettingPart | None:
     """Make the part that forgets a visitor, if this process knows any."""
-    project, bus = services.plan.project, services.bus
+    project, bus, added = services.plan.project, services.bus, FeatureForgetter(services.get)
     if services.plan.brain:
-        forget = services.behavior.forget, services[RunRecords].forget
+        forget = services.behavior.forget, services[RunRecords].forget, added.forget
         return ForgettingPart(project, bus, *forget, needs=services.needs)
     robot = services.get(HostedRobotPart)
-    return ForgettingPart(project, bus, robot.forget) if robot else None
+    return ForgettingPart(project, bus, robot.forget, added.forget) if robot else None
 
 
 def reload(services: Services) -> ReloadPart:

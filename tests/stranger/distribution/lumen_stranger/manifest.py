@@ -7,6 +7,8 @@ from lumen.feature import (
     FunctionRow,
     Importer,
     ModuleRow,
+    PartRow,
+    Phase,
     RobotOption,
     RobotRow,
     Section,
@@ -28,6 +30,8 @@ FEATURE = Feature(
     exporters={"states": Exporter("behavior", "lumen_stranger.lists:write_states")},
     format_tables={"lists of states": "lumen_stranger.lists:KNOWN"},
     codes=("lumen_stranger.lamp",),
+    parts=(PartRow("guest book", Phase.WATCH, "lumen_stranger.guests:make", "brain"),),
+    forgets=("lumen_stranger.guests:GuestBook", "lumen_stranger.guests:forget"),
     sections={
         "lamp": Section(
             read="lumen_stranger.lamp:read_lamp",

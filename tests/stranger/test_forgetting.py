@@ -1,0 +1,92 @@
+"""A stranger's feature forgets a person, in each process that forgets; a faulty one keeps no other from forgetting."""
+
+import logging
+import shutil
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.app.forgetting.added import FeatureForgetter
+from lumen.app.forgetting.report import OF_A_PACKAGE, out_of_reach
+from lumen.feature import resolve
+from lumen.language.people import PersonName
+from lumen.language.stories import Visitor
+from lumen.loading.files import read_files
+from lumen.rules import check_files
+from tests import ROOT
+from tests.alerts.halls import Hall
+from tests.alerts.servers import Web
+from tests.stranger.installing import Installed
+
+MANIFEST = """
+from lumen.feature import Feature
+
+FEATURE = Feature(name="guests", forgets=("guest_list:gone", "guest_list:fails", "guest_list:forget"))
+"""
+GUESTS = """
+FORGOTTEN = []
+
+def fails(person):
+    raise ValueError(f"{person.key} is not a guest")
+
+def forget(person):
+    FORGOTTEN.append(person)
+"""
+
+
+def forgotten(module: str) -> list[str]:
+    return [person.key for person in resolve(f"{module}:FORGOTTEN")]
+
+
+@pytest.mark.process
+def test_a_part_and_a_function_forget_a_person(stranger: Path, tmp_path: Path) -> None:
+    root = shutil.copytree(ROOT / "examples/minimal", tmp_path / "minimal")
+    with lumen.open(root, robot="recording") as exhibition:
+        book = exhibition.services[resolve("lumen_stranger.guests:GuestBook")]
+        exhibition.visitor.arrive(Visitor())
+        for sentence in ("I am Ani", "I am Budi"):
+            exhibition.visitor.speak(sentence)
+            exhibition.run(seconds=1)
+        assert book.sentences == ["I am Ani", "I am Budi"]
+        exhibition.services.bus.publish("lumen.NAO.persistence.forgotten", {"name": "Ani"})
+        exhibition.run(seconds=1)
+        assert book.sentences == ["I am Budi"]
+    assert forgotten("lumen_stranger.guests") == ["ani"]
+
+
+@pytest.mark.process
+@pytest.mark.network
+def test_a_process_with_the_robot_forgets_what_it_has(stranger: Path, tmp_path: Path) -> None:
+    with closing(Web()) as web, closing(Hall(tmp_path, web)) as hall:
+        robot = hall.part("robot")
+        assert not [part for part in robot.parts if part.name == "guest book"]
+        hall.bus.publish("lumen.TINY.persistence.forgotten", {"name": "Ani"})
+        hall.until(lambda: forgotten("lumen_stranger.guests") == ["ani"])
+
+
+def test_if_one_feature_fails_the_others_forget_and_the_log_has_no_name(
+    installed: Installed, caplog: pytest.LogCaptureFixture
+) -> None:
+    installed.write("lumen-guests", MANIFEST, guest_list=GUESTS)
+    FeatureForgetter(lambda kind: None).forget(PersonName("Ani"))
+    assert forgotten("guest_list") == ["ani"]
+    assert [record.getMessage() for record in caplog.records] == [
+        f"a person is not forgotten by `guest_list:{name}` of the package lumen-guests 1.0: {kind}"
+        for name, kind in (("gone", "AttributeError"), ("fails", "ValueError"))
+    ]
+    assert {record.levelno for record in caplog.records} == {logging.ERROR}
+    assert "ani" not in caplog.text.lower()
+
+
+def test_lumen_memory_forget_names_the_package(installed: Installed) -> None:
+    installed.write("lumen-guests", MANIFEST, guest_list=GUESTS)
+    assert ("the installed package `lumen-guests`", OF_A_PACKAGE) in out_of_reach((), broker=False)
+
+
+def test_lint_reports_what_cannot_be_imported(installed: Installed) -> None:
+    installed.write("lumen-guests", MANIFEST, guest_list=GUESTS)
+    base = ROOT / "tests/lint/pages/base"
+    [finding] = check_files(base, read_files(base))[1]
+    assert "its module `guest_list:gone` raised AttributeError" in finding.message
