@@ -137,10 +137,14 @@ def test_a_rule_of_lumen_that_raises_ends_lint(project: Path, monkeypatch: pytes
         list(found(project))
 
 
-def test_a_code_without_a_page_is_explained_by_its_summary(installed: Installed) -> None:
+def test_a_code_without_a_page_is_explained_by_its_summary(
+    installed: Installed, capsys: pytest.CaptureFixture[str]
+) -> None:
     installed.write("faulty", FAULTY, faulty_rules=FAULTY_RULES)
     assert codes()["later"].family == "names"
     assert page("later").what == "Found by a rule after a faulty one."
+    main(["explain", "later"])
+    assert capsys.readouterr().out == "later  warning, names\n\nFound by a rule after a faulty one.\n"
 
 
 @pytest.mark.parametrize("module", ["1 / 0", "import not_installed"])

@@ -91,6 +91,11 @@ def test_a_sound_project_has_no_findings(project: Path) -> None:
             "squint: soon",
             "bad-duration | `soon` is not a duration | write a number and its unit, such as `500ms`, `20s` or `2min`",
         ),
+        (
+            "blink: 2",
+            "squint: 2",
+            "wrong-type | `squint` should be a text, not a number | write the unit too: `2s`, or `2ms`",
+        ),
         ("times: 3, ", "", "missing-key | `blink` needs the key `times` | How often"),
         ("wiggle: true", "wiggle: {far: 2}", "wrong-value | `wiggle` can't be `{'far': 2}` | allowed: `true`"),
         (

@@ -75,11 +75,11 @@ def _as_json(found: Page) -> dict[str, Any]:
 def _text(found: Page, on: bool) -> str:
     severity, family = codes()[found.code].severity, codes()[found.code].family
     title = f"{paint(found.code, 'bold', SEVERITY_COLOURS[severity], on=on)}  {severity}, {family}"
-    wrong = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.wrong)
-    right = "\n\n".join("\n".join(_sheet(sheet, on)) for sheet in found.right)
-    return "\n\n".join(
-        (title, found.what, found.why, paint("Wrong:", "bold", on=on), wrong, paint("Right:", "bold", on=on), right)
-    )
+    blocks = [title, found.what, found.why]
+    for heading, sheets in (("Wrong:", found.wrong), ("Right:", found.right)):
+        if sheets:
+            blocks += [paint(heading, "bold", on=on), *("\n".join(_sheet(sheet, on)) for sheet in sheets)]
+    return "\n\n".join(filter(None, blocks))
 
 
 def _sheet(sheet: Example, on: bool) -> Iterator[str]:

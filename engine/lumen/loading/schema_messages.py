@@ -203,9 +203,10 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
         parts = re.split(r" *(?:,|(?<=\d)-) *", value) if isinstance(value, str) else [str(value)]
         return f"write it in brackets: `[{', '.join(parts)}]`"
     if "string" in wanted and isinstance(value, bool | int | float):
-        if any(seconds(example) is not None for example in schema.get("examples", ())):
+        examples = schema.get("examples", ())
+        if schema.get("format") == "duration" or any(seconds(example) is not None for example in examples):
             return duration_hint(value)
-        if any(str(example).endswith("/s") for example in schema.get("examples", ())) and not isinstance(value, bool):
+        if any(str(example).endswith("/s") for example in examples) and not isinstance(value, bool):
             return f"write the unit too: `{value:g}/s` or `{value:g}/min`"
         written = str(value).lower() if isinstance(value, bool) else f"{value}"
         return f'put it in quotes: "{written}"'
