@@ -462,7 +462,18 @@ def _fault(row: Any) -> str:
             return f"there is no kind of value `{wrong[0]}`: there are {', '.join(VALUE_KINDS)}" if wrong else ""
         case Section(risk=risk) if risk not in (risks := get_args(RiskName)):
             return f"a section has no risk `{risk}`: choose one of {', '.join(risks)}"
+        case PartRow(name=name, after=after) if name == after:
+            return f"the part `{name}` comes after itself: name another part in `after`"
+        case PartRow(name=name, when=when):
+            forms = ", ".join(f"{kind}:NAME" if named else kind for kind, named in PART_CONDITIONS.items())
+            wrong = [condition for condition in when.split() if not _is_condition(condition)]
+            return f"the part `{name}` has the unknown condition `{wrong[0]}`: use {forms}" if wrong else ""
     return ""
+
+
+def _is_condition(text: str) -> bool:
+    kind, colon, name = text.partition(":")
+    return PART_CONDITIONS.get(kind) == bool(colon and name)
 
 
 def _kinds() -> Iterator[str]:

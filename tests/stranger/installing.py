@@ -2,7 +2,7 @@
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from subprocess import CompletedProcess
 
@@ -43,29 +43,41 @@ def installed(tmp_path: Path) -> Iterator[Installed]:
 @pytest.fixture(scope="session")
 def stranger_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder into which `lumen-stranger` is installed, outside the engine's tree."""
-    folder = tmp_path_factory.mktemp("stranger")
-    options = "--quiet", "--no-deps", "--no-index", "--no-build-isolation", "--disable-pip-version-check"
-    run_guarded(
-        [sys.executable, "-m", "pip", "install", *options, "--target", folder, SOURCES],
-        check=True, timeout=HANG, capture_output=True, text=True,
-    )  # fmt: skip
-    return folder
+    return install(SOURCES, tmp_path_factory.mktemp("stranger"))
 
 
 @pytest.fixture
 def stranger(stranger_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """`lumen-stranger`, found by this process and by those that it starts; the folder that it is in."""
-    monkeypatch.setenv("PYTHONPATH", f"{stranger_folder}:{ROOT / 'engine'}")
-    with on_path(stranger_folder):
+    with used(stranger_folder, monkeypatch):
         yield stranger_folder
 
 
 @pytest.fixture
 def stranger_lumen(stranger: Path) -> Lumen:
     """`lumen` in a process of its own beside the stranger's distribution: `stranger_lumen(folder, "lint")`."""
+    return call_lumen
 
-    def call(folder: Path, *words: str) -> "CompletedProcess[str]":
-        command = [sys.executable, "-m", "lumen", *words]
-        return run_guarded(command, cwd=folder, timeout=HANG, capture_output=True, text=True)
 
-    return call
+def install(sources: Path, folder: Path) -> Path:
+    """Build the distribution of these sources, install it into a folder, and return the folder."""
+    options = "--quiet", "--no-deps", "--no-index", "--no-build-isolation", "--disable-pip-version-check"
+    run_guarded(
+        [sys.executable, "-m", "pip", "install", *options, "--target", folder, sources],
+        check=True, timeout=HANG, capture_output=True, text=True,
+    )  # fmt: skip
+    return folder
+
+
+@contextmanager
+def used(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Let this process, and those that it starts, find the distributions in a folder."""
+    monkeypatch.setenv("PYTHONPATH", f"{folder}:{ROOT / 'engine'}")
+    with on_path(folder):
+        yield
+
+
+def call_lumen(folder: Path, *words: str) -> "CompletedProcess[str]":
+    """Run `lumen` in a process of its own, in a folder."""
+    command = [sys.executable, "-m", "lumen", *words]
+    return run_guarded(command, cwd=folder, timeout=HANG, capture_output=True, text=True)

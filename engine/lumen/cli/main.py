@@ -16,7 +16,7 @@ from lumen.cli.intermixed import Help, Intermixed
 from lumen.cli.streams import complain, finish, hush, open_streams
 from lumen.cli.suggesting import Suggesting, parse
 from lumen.errors import LumenError, ProjectError
-from lumen.feature import Subcommand, owner, resolve, table
+from lumen.feature import Subcommand, found, owner, resolve, table
 from lumen.upkeep.garbage import gc_paused
 
 STARTED = time.monotonic()
@@ -31,11 +31,11 @@ def ready() -> float:
 
 def subcommands() -> dict[str, Subcommand]:
     """Return all subcommands, in the order in which `lumen --help` lists them."""
-    found: Mapping[str, Subcommand] = table("subcommands")
+    listed: Mapping[str, Subcommand] = table("subcommands")
     order: list[str] = []
-    for name, row in found.items():
+    for name, row in listed.items():
         order.insert(order.index(row.after) + 1 if row.after in order else len(order), name)
-    return {name: found[name] for name in order}
+    return {name: listed[name] for name in order}
 
 
 def command_line(wanted: Collection[str]) -> Suggesting:
@@ -52,7 +52,7 @@ def command_line(wanted: Collection[str]) -> Suggesting:
     parser = Suggesting(
         prog="lumen",
         description="Describe the behaviour of a humanoid robot in YAML, and run it.",
-        epilog="Run `lumen VERB --help` for the options of a verb.",
+        epilog=f"Run `lumen VERB --help` for the options of a verb.{_packages()}",
         formatter_class=Help,
     )
     parser.add_argument("--version", action="version", version=f"lumen {lumen.__version__}")
@@ -65,6 +65,11 @@ def command_line(wanted: Collection[str]) -> Suggesting:
         if verb in wanted:
             _configure(command, verb, row)
     return parser
+
+
+def _packages() -> str:
+    named = ", ".join(map(str, dict.fromkeys(found().installed.values())))
+    return f" Installed packages with features: {named}." if named else ""
 
 
 def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:

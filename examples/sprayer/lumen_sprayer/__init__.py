@@ -1,0 +1,1 @@
+"""A feature of Lumen: a sprayer of scents beside the robot."""
