@@ -1,5 +1,6 @@
 """The interfaces of the runtime to the world: robot, bus and clock, and the readings that they exchange."""
 
+from abc import abstractmethod
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -188,6 +189,7 @@ class SkillPerformer(Protocol):
         ...
 
 
+@runtime_checkable
 class Robot(Protocol):
     """A robot. No method blocks. If the robot can't do something, no method raises: an event says so.
 
@@ -295,16 +297,11 @@ class PerformsVerbs(Protocol):
 
 
 @runtime_checkable
-class MeetsVisitors(Protocol):
-    """A robot in a world in which visitors can be placed: at least these two methods of a `Hall`."""
-
-    def place(self, visitor: Visitor | None) -> None: ...
-
-    def face(self) -> tuple[float, float] | None: ...
-
-
 class Hall(Protocol):
-    """What a story may do to a simulated world."""
+    """A world in which visitors can be placed; a robot with these methods is its own hall.
+
+    `FeelsTouch`, `HearsVisitors` and `HasCharger` are abilities that only some halls have.
+    """
 
     def place(self, visitor: Visitor | None) -> None:
         """Place or move a visitor, or (None) remove them."""
@@ -314,16 +311,31 @@ class Hall(Protocol):
         """The position of the visitor's face in the top camera's image now [px], None if it can't be seen."""
         ...
 
+
+@runtime_checkable
+class FeelsTouch(Protocol):
+    """A hall whose visitors can touch the robot."""
+
     def touch(self, sensor: str, pressed: bool) -> None:
-        """Press or release a tactile sensor."""
+        """Press or release a tactile sensor. Raises UsageError if that is impossible."""
         ...
+
+
+@runtime_checkable
+class HearsVisitors(Protocol):
+    """A hall whose robot notices that a visitor speaks."""
 
     def sound(self) -> None:
         """Let the visitor be heard: a robot that hears from where may look there."""
         ...
 
+
+@runtime_checkable
+class HasCharger(Protocol):
+    """A hall with a charger for the robot."""
+
     def plug(self, plugged: bool) -> None:
-        """Plug the charger in, or unplug it."""
+        """Plug the charger in, or unplug it. Raises UsageError if that is impossible."""
         ...
 
 
@@ -405,6 +417,7 @@ class Outgoing(NamedTuple):
     origin: MessageOrigin = UNKNOWN_ORIGIN
 
 
+@runtime_checkable
 class Bus(Protocol):
     """Messages by topic: `*` in a pattern stands for one word of the key, `#` for any number.
 
@@ -416,10 +429,12 @@ class Bus(Protocol):
         """Return this bus as one with that ability; None if it lacks it. A wrapper passes the question inward."""
         return self if isinstance(self, kind) else None
 
+    @abstractmethod
     def carry(self, routes: Mapping[str, Route]) -> None:
         """From now on, carry messages with these keys as their routes say, and all others as telemetry."""
         ...
 
+    @abstractmethod
     def prepare(self, routes: Mapping[str, Route]) -> None:
         """Prepare `carry`, and subscribing to the incoming routes, so that neither has to wait later.
 
@@ -428,6 +443,7 @@ class Bus(Protocol):
         """
         ...
 
+    @abstractmethod
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         """Call `handler` with each matching message, one by one, in the order published; the result ends it.
 
@@ -451,6 +467,7 @@ class Bus(Protocol):
         """
         self.send(Outgoing(key, body, reply_to, correlation_id, ttl, origin))
 
+    @abstractmethod
     def send(self, message: Outgoing) -> None:
         """Send a message as `publish` does.
 
@@ -459,6 +476,7 @@ class Bus(Protocol):
         """
         ...
 
+    @abstractmethod
     def reply(self, message: Message, body: Any) -> None:
         """Send an answer to the message's `reply_to`, with its `correlation_id`; does nothing without a `reply_to`.
 
@@ -466,6 +484,7 @@ class Bus(Protocol):
         """
         ...
 
+    @abstractmethod
     def close(self) -> None:
         """Deliver the published messages and end; a second call does nothing."""
         ...

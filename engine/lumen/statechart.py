@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import UsageError
-from lumen.interpreters.arguments import need, need_map, need_path, need_text
+from lumen.interpreters.arguments import need, need_map, need_methods, need_path, need_text
 from lumen.interpreters.statechart import (
     Snapshot,
     Step,
@@ -147,8 +147,8 @@ class Interpreter(Generic[C]):
         observe: Callable[[Step], None] = _unobserved,
     ) -> None:
         need(machine, machines.MachineDefinition, "the argument `machine`", "a Machine")
-        if clock is not None and not isinstance(clock, Clock):
-            raise UsageError(f"a clock needs `now` and `wait`, but {clock!r} does not have them")
+        if clock is not None:
+            need_methods(clock, Clock, "a clock")
         if not callable(observe):
             raise UsageError(f"`observe` must be a function, which {observe!r} is not")
         self.machine = machine

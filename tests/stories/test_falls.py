@@ -20,7 +20,7 @@ def project() -> Any:
 
 def player(project: Any, story: str) -> StoryPlayer:
     nothing: Any = SimpleNamespace(project=project)
-    return StoryPlayer(project.stories[story], nothing, nothing, nothing)
+    return StoryPlayer(project.stories[story], nothing, nothing)
 
 
 def test_a_fall_that_the_story_does_not_speak_of_fails_it(project: Any) -> None:

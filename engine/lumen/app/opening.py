@@ -7,6 +7,7 @@ from lumen.app.plan import Plan
 from lumen.app.setup import Setup, runs_in_real_time, set_up, set_up_with
 from lumen.app.stories import stories_of
 from lumen.errors import UsageError
+from lumen.interpreters.arguments import need_methods
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, Clock, Robot
@@ -31,9 +32,11 @@ def open(
     its end. Time is that of the robot's own world, `speed` times real time or as fast as it can (`max`); with a `clock`
     it is what that one says. `story` is a scripted visitor. Use it in a `with` block, or `close` it.
 
-    Raises UsageError for a name that is none, ProjectError for files with errors, BusError and RobotError where those
-    can't be reached.
+    Raises UsageError for a name that is none, or an object that lacks a method, ProjectError for files with errors,
+    BusError and RobotError where those can't be reached.
     """
+    if not isinstance(bus, str):
+        need_methods(bus, Bus, "a bus")
     project = load(path)
     found = None
     if story is not None:
@@ -63,6 +66,7 @@ def _setup(project: Project, robot: str | Robot, clock: Clock | None, speed: str
     except ValueError:
         raise UsageError(f'`speed` must be a multiple of real time or "max", not `{speed}`') from None
     if not isinstance(robot, str):
+        need_methods(robot, Robot, "a robot")
         return set_up_with(BoundedRobot(robot, project.body), clock, pace)
     hurried = "1" if speed == "max" and runs_in_real_time(robot) else speed
     setup = set_up(robot, project, hurried, story)

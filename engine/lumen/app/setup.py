@@ -2,17 +2,17 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from lumen.clocks.real import RealClock
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import UsageError
-from lumen.feature import RobotOption, RobotRow, owner, table
+from lumen.feature import Feature, RobotOption, RobotRow, owner, table
+from lumen.interpreters.arguments import need_methods
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.broken_features import called
-from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, MeetsVisitors, Robot
+from lumen.loading.broken_features import called, faulty, need_made
+from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, Robot
 from lumen.robots.bounded_robot import BoundedRobot, ability
 from lumen.runtime.tracking import TrackingService
 
@@ -97,14 +97,31 @@ def set_up_house(
     row = _row(kind)
     requests = {n: RobotRequest(project, speed, stories[n], imperfections) for n, project in projects.items()}
     if row.set_up_house:
-        setups: dict[str, Setup] = called(owner("robots", kind), row.set_up_house, requests)
+        feature = owner("robots", kind)
+        setups: dict[str, Setup] = called(feature, row.set_up_house, requests)
+        if not isinstance(setups, Mapping) or setups.keys() != requests.keys():
+            raise faulty(feature, f"`{row.set_up_house}` returned {setups!r} instead of a Setup for each robot's name")
+        for setup in setups.values():
+            _check(feature, row.set_up_house, setup)
         return {name: _bounded(row, setup, projects[name]) for name, setup in setups.items()}
     return {name: _alone(kind, row, request) for name, request in requests.items()}
 
 
 def _alone(kind: str, row: RobotRow, request: RobotRequest) -> Setup:
-    setup: Setup = called(owner("robots", kind), row.set_up, request)
+    feature = owner("robots", kind)
+    setup: Setup = called(feature, row.set_up, request)
+    _check(feature, row.set_up, setup)
     return _bounded(row, setup, request.project)
+
+
+def _check(feature: Feature, where: str, setup: Setup) -> None:
+    """Raise LumenError if a robot's function returned no setup, or objects that lack a method."""
+    if not isinstance(setup, Setup):
+        raise faulty(feature, f"`{where}` returned {setup!r} instead of a `lumen.app.setup.Setup`")
+    need_made(feature, where, setup.robot, Robot, "a robot")
+    need_made(feature, where, setup.clock, Clock, "a clock")
+    if setup.hall is not None:
+        need_made(feature, where, setup.hall, Hall, "a hall")
 
 
 def _bounded(row: RobotRow, setup: Setup, project: Project) -> Setup:
@@ -146,10 +163,13 @@ def _row(kind: str, options: Mapping[str, str] = NO_OPTIONS) -> RobotRow:
 def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = None) -> Setup:
     """A robot that somebody made, on their clock; without one on its own time, `pace` times real time at most.
 
-    A robot that can `advance` lives through the time that passes; one that has a face before it (`face`) is its own
-    hall. One that can neither has the time of the world outside.
+    A robot that can `advance` lives through the time that passes, any other one has the time of the world outside. A
+    robot with the methods of a `Hall` is its own hall. Raises UsageError if the robot or the clock lacks a method.
     """
-    hall: Any = ability(robot, MeetsVisitors)
+    need_methods(robot, Robot, "a robot")
+    if clock is not None:
+        need_methods(clock, Clock, "a clock")
+    hall = ability(robot, Hall)
     living = ability(robot, Advances)
     advance = living.advance if living else None
     if clock is None:

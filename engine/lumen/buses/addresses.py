@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from lumen.errors import BusAddressError
 from lumen.feature import BusRow, owner, table
-from lumen.loading.broken_features import called
+from lumen.loading.broken_features import called, need_made
 from lumen.ports import Bus
 
 
@@ -15,7 +15,9 @@ def open_bus(url: str, sender: str) -> Bus:
     """
     row = row_of(url)
     if row and "://" in url:
-        bus: Bus = called(owner("buses", url.partition(":")[0]), row.open, url, sender)
+        feature = owner("buses", url.partition(":")[0])
+        bus: Bus = called(feature, row.open, url, sender)
+        need_made(feature, row.open, bus, Bus, "a bus")
         return bus
     schemes: Mapping[str, BusRow] = table("buses")
     begins = [f"`{scheme}://`" for scheme, row in schemes.items() if row.example]

@@ -14,6 +14,19 @@ def need(value: Any, kind: type | tuple[type, ...], what: str, meant: str) -> No
         raise UsageError(f"{what} must be {meant}, not {_shown(value)}")
 
 
+def need_methods(value: Any, kind: type, what: str) -> None:
+    """Raises UsageError if the value lacks a method of a protocol."""
+    if missing := missing_methods(value, kind):
+        names = f"the method `{missing[0]}`" if len(missing) == 1 else f"the methods {', '.join(missing)}"
+        raise UsageError(f"{what} needs {names} (`lumen.ports.{kind.__name__}`), which {_shown(value)} does not have")
+
+
+def missing_methods(value: Any, kind: type) -> list[str]:
+    """Return the methods of a protocol that a value lacks."""
+    names = dir(value)
+    return [name for name in vars(kind) if not name.startswith("_") and name not in names]
+
+
 def need_map(value: Any, what: str) -> None:
     """Raises UsageError where it is no map with texts as keys."""
     need(value, Mapping, what, "a map")

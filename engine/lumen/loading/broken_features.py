@@ -3,8 +3,9 @@
 from typing import Any
 
 from lumen.distributions import Distribution
-from lumen.errors import LumenError
+from lumen.errors import LumenError, UsageError
 from lumen.feature import Feature, FeatureFault, distribution_of, found, resolve
+from lumen.interpreters.arguments import need_methods
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place
 from lumen.loading.project_folders import MAIN_FILE
 
@@ -58,8 +59,23 @@ def blamed(feature: Feature, where: str, error: Exception) -> LumenError:
 
     Raises `error` itself if the feature comes with Lumen.
     """
+    if distribution_of(feature) is None:
+        raise error
+    return faulty(feature, f"its module `{where}` raised {type(error).__name__}: {error}")
+
+
+def faulty(feature: Feature, message: str) -> LumenError:
+    """Return an error about a fault of a feature; it names the distribution, if the feature was installed with one."""
     distribution = distribution_of(feature)
     if distribution is None:
-        raise error
-    finding = broken(distribution, f"its module `{where}` raised {type(error).__name__}: {error}")
+        return LumenError(f"the feature `{feature.name}` is faulty: {message}")
+    finding = broken(distribution, message)
     return LumenError(f"{finding.message} ({finding.hint})")
+
+
+def need_made(feature: Feature, where: str, value: Any, kind: type, what: str) -> None:
+    """Raise LumenError if what an import string made lacks a method of a protocol."""
+    try:
+        need_methods(value, kind, what)
+    except UsageError as error:
+        raise faulty(feature, f"`{where}` made a wrong object: {error}") from None

@@ -33,7 +33,7 @@ from lumen.language.stories import (
     TouchSensor,
     VisitorAction,
 )
-from lumen.ports import Bus, Hall
+from lumen.ports import Bus
 from lumen.runtime.loop import Observer
 from lumen.runtime.sending import send
 from lumen.runtime.story_answers import QUESTION_WITHIN, answered
@@ -102,13 +102,12 @@ class StoryPlayer(Observer):
         self,
         story: Story,
         exhibition: StoryEnvironment,
-        hall: Hall,
         walker: VisitorActor,
         tell: Callable[[VisitorAction], None] = lambda _: None,
     ) -> None:
         self.story = story
         self.position = 0
-        self._exhibition, self._hall, self._walker = exhibition, hall, walker
+        self._exhibition, self._walker = exhibition, walker
         self._tell = tell
         self._witness = StoryObservations()
         self._missed: tuple[UnmetExpectation, ...] = ()
@@ -227,7 +226,7 @@ class StoryPlayer(Observer):
             case Speak(text, language):
                 self._walker.speak(text, language)
             case TouchSensor(sensor, pressed):
-                self._hall.touch(sensor, pressed)
+                self._walker.touch(sensor, pressed)
             case Happen(name, data):
                 self._exhibition.happen(Event(name, data, now, cause=Cause("person", sender=VISITOR)))
             case Press(label):

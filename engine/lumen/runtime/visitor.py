@@ -3,10 +3,11 @@
 import logging
 from dataclasses import replace
 
+from lumen.errors import UsageError
 from lumen.language.causes import VISITOR, MessageOrigin
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.ports import Bus, Hall
+from lumen.ports import Bus, FeelsTouch, Hall, HearsVisitors
 from lumen.runtime.sending import send
 
 _log = logging.getLogger(__name__)
@@ -36,8 +37,8 @@ class VisitorActor:
 
     @property
     def sensors(self) -> tuple[str, ...]:
-        """The tactile sensors of the robot before them."""
-        return self._project.body.tactile
+        """The tactile sensors of the robot that they can touch."""
+        return self._project.body.tactile if isinstance(self._hall, FeelsTouch) else ()
 
     def use(self, project: Project) -> None:
         """Speak on the routes of this project from now on."""
@@ -57,13 +58,16 @@ class VisitorActor:
 
     def speak(self, text: str, language: str = "") -> None:
         """Say something the speech module understands at once."""
-        self._hall.sound()
+        if isinstance(self._hall, HearsVisitors):
+            self._hall.sound()
         body = {"name": "visitor", "result": text, "date": "", "language": language}
         if reason := send(self._bus, self._project, SPEECH_ROUTE, body, MessageOrigin(sender=VISITOR)):
             _log.warning("the visitor's words were not sent: %s", reason)
 
     def touch(self, sensor: str, pressed: bool) -> None:
-        """Lay a hand on a tactile sensor, or take it away. Raises UsageError where that can't be."""
+        """Press or release a tactile sensor. Raises UsageError if that is impossible."""
+        if not isinstance(self._hall, FeelsTouch):
+            raise UsageError(f"a visitor can't touch this robot: `{type(self._hall).__name__}` has no method `touch`")
         self._hall.touch(sensor, pressed)
 
     def tick(self, now: float) -> None:

@@ -7,8 +7,10 @@ from lumen.app.parts.kept_hold import KeptHold
 from lumen.app.parts.robot import RobotPart
 from lumen.app.parts.visitor import VisitorPart
 from lumen.app.services import Services
+from lumen.errors import UsageError
 from lumen.language.events import Event
-from lumen.ports import RobotCommand
+from lumen.language.stories import Story, TouchSensor
+from lumen.ports import FeelsTouch, RobotCommand
 from lumen.robots.command_receiver import CommandListener
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE
 from lumen.runtime.home import home_of
@@ -36,11 +38,19 @@ def behavior(services: Services) -> None:
 
 
 def visitor(services: Services) -> VisitorPart | None:
-    """Make the visitor in the hall around the robot, if it stands in one."""
-    if (hall := services.setup.hall) is None:
+    """Make the visitor in the hall around the robot, if it stands in one.
+
+    Raises UsageError if a story needs another hall.
+    """
+    hall, story = services.setup.hall, services.plan.story
+    if story and hall is None:
+        raise UsageError(f"the story `{story.name}` needs a robot with the methods `place` and `face`: docs/python.md")
+    if story and _touches(story) and not isinstance(hall, FeelsTouch):
+        raise UsageError(f"the story `{story.name}` touches the robot, which needs the method `touch`: docs/python.md")
+    if hall is None:
         return None
     loop, tell = services.behavior.loop, services.narrator.visitor_action
-    return VisitorPart(services.project, services.bus, hall, loop, services.plan.story, tell)
+    return VisitorPart(services.project, services.bus, hall, loop, story, tell)
 
 
 def robot(services: Services) -> RobotPart:
@@ -90,3 +100,7 @@ class _Noticing(CommandListener):
 
     def noticed(self, event: Event) -> None:
         self._behavior.loop.happen(event)
+
+
+def _touches(story: Story) -> bool:
+    return any(isinstance(step.action, TouchSensor) for step in story.steps)

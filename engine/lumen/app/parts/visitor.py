@@ -39,7 +39,7 @@ class VisitorPart(Part):
         tell: Callable[[VisitorAction], None],
     ) -> None:
         self.actor, self.environment = VisitorActor(project, hall, bus), environment
-        self.player = StoryPlayer(story, environment, hall, self.actor, tell) if story else None
+        self.player = StoryPlayer(story, environment, self.actor, tell) if story else None
 
     @property
     def over(self) -> bool:

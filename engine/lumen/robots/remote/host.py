@@ -11,7 +11,7 @@ from lumen.errors import BusError, LumenError
 from lumen.language.events import Event, robot_events
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.ports import Bus, Hall, Message, Robot
+from lumen.ports import Bus, FeelsTouch, Hall, HasCharger, HearsVisitors, Message, Robot
 from lumen.robots.command_receiver import CommandListener
 from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, key_of, publish_on
 from lumen.robots.server import RobotServer
@@ -100,16 +100,17 @@ class RobotHost(CommandListener):
                 hall.place(None)
             case {"visitor": dict(place)} if (visitor := _visitor(place)) is not None:
                 hall.place(visitor)
-            case {"sensor": str(sensor), "pressed": bool(pressed)}:
+            case {"sensor": str(sensor), "pressed": bool(pressed)} if isinstance(hall, FeelsTouch):
                 hall.touch(sensor, pressed)
             case {"sound": True}:
-                hall.sound()
-            case {"plugged": bool(plugged)}:
+                if isinstance(hall, HearsVisitors):
+                    hall.sound()
+            case {"plugged": bool(plugged)} if isinstance(hall, HasCharger):
                 hall.plug(plugged)
             case {"event": str(name)} if name in robot_events():
                 self.notice(Event(name, body.get("data"), now))
             case _:
-                _log.warning("an action of the visitor was refused: unknown action %s", str(body)[:80])
+                _log.warning("an action of the visitor was refused: this hall has no action %s", str(body)[:80])
 
     def _look(self, hall: Hall, now: float) -> None:
         face = hall.face()
