@@ -152,8 +152,8 @@ class VerbRow(NamedTuple):
     without `$ref`s; if it has one required property, that can be written short: `blink: 3`. Properties that the YAML
     leaves out get their `default`. `result` is the JSON Schema of what the performer returns. `takes` is how long it
     takes, a duration that can contain expressions of the arguments: `{{ times * 0.4 }}s`. `parts` are those of the body
-    that it needs to itself (`lumen.robots.body_parts`). One that `moves` the robot is refused while the robot rests. If
-    not `cancel`, the performer continues after a stop or after its state was left; in either case the robot does not
+    that it needs to itself (`lumen.language.body_parts`). One that `moves` the robot is refused while the robot rests.
+    If not `cancel`, the performer continues after a stop or after its state was left; in either case the robot does not
     wait for it.
     """
 

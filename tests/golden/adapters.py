@@ -21,11 +21,11 @@ from lumen.interpreters.replay.forking import fork
 from lumen.interpreters.replay.replaying import replay
 from lumen.interpreters.routing import matches
 from lumen.interpreters.statechart import deserialize, serialize
+from lumen.language.body_parts import WHOLE_BODY
 from lumen.language.command_data import command_data
 from lumen.language.commands import Say
 from lumen.language.gestures import merged
 from lumen.ports import Live, Perform, Sense
-from lumen.robots.body_parts import WHOLE_BODY
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.home import Home

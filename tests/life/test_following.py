@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 import lumen
 from lumen.interpreters.projection import Vector3, centring, seen
 from lumen.interpreters.tracking import Tracker
+from lumen.language.body_parts import HEAD, WHOLE_BODY
 from lumen.language.life import LifeStyle
 from lumen.language.stories import Visitor
 from lumen.ports import Live
-from lumen.robots.body_parts import HEAD, WHOLE_BODY
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation import SimulatedRobot
 from tests import ROOT

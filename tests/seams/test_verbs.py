@@ -12,6 +12,7 @@ from lumen.feature import table
 from lumen.formats.behavior_data import plain_action
 from lumen.interpreters.changes.actions import described
 from lumen.language.actions import Action, ComputedAction
+from lumen.language.body_parts import PARTS
 from lumen.language.commands import (
     BodyCommand,
     Command,
@@ -54,7 +55,6 @@ from lumen.ports import (
     Tactile,
     Whereabouts,
 )
-from lumen.robots.body_parts import PARTS
 from lumen.robots.command_codec import decode_command, encode_command
 from lumen.robots.command_table import COMMANDS, row_of
 from lumen.robots.recording import RecordingRobot

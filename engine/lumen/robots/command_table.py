@@ -15,6 +15,7 @@ from lumen.feature import VerbRow
 from lumen.interpreters.added_verbs import time_taken
 from lumen.interpreters.bounds import nearest_angles
 from lumen.language.added_verbs import added_verbs, argument_schema, arguments_of
+from lumen.language.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
 from lumen.language.commands import (
     Channel,
     Do,
@@ -39,7 +40,6 @@ from lumen.language.skills import lack_of
 from lumen.loading.schema import faults
 from lumen.loading.sounds import MAX_SOUND_DURATION
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
-from lumen.robots.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
 from lumen.robots.command_parameters import CommandParameters, shown
 from lumen.robots.motion_codec import decode_motion, encode_motion
 

@@ -18,13 +18,13 @@ from lumen.interpreters.life import (
     sway,
 )
 from lumen.interpreters.life.looking import TOUCHED
+from lumen.language.body_parts import ARMS, HEAD, LEGS, part_of
 from lumen.language.commands import Say
 from lumen.language.gestures import WordTime
 from lumen.language.life import STILL_STYLE, LifeStyle
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES
 from lumen.ports import Live
-from lumen.robots.body_parts import ARMS, HEAD, LEGS, part_of
 from lumen.robots.gesture_player import GesturePlayer
 from lumen.robots.joint_offsets import approach
 

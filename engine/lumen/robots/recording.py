@@ -9,6 +9,7 @@ from lumen.errors import RobotFailedError, UsageError
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import Vector3, centring, seen
 from lumen.language.added_verbs import added_verbs, whole_result
+from lumen.language.body_parts import LEGS, WHOLE_BODY, part_of
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Do, Look, Move, Posture, Say, Walk
 from lumen.language.diagnostics import did_you_mean
@@ -17,7 +18,6 @@ from lumen.language.robots import Body
 from lumen.language.routes import BATTERY, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.body_parts import LEGS, WHOLE_BODY, part_of
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_table import added_verb, parts_of, row_of
 from lumen.robots.cues import CueNotifier

@@ -12,6 +12,7 @@ from lumen.errors import RobotRefusedError, UsageError
 from lumen.interpreters.life import vigour
 from lumen.interpreters.projection import centring
 from lumen.language.added_verbs import added_verbs
+from lumen.language.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest, Say
 from lumen.language.diagnostics import did_you_mean
@@ -23,7 +24,6 @@ from lumen.language.roles import HEAD_ROLES, BaseKind
 from lumen.language.routes import BATTERY, IMAGE, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Image, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.executor import Activity, Executor
 from lumen.robots.life_layer import LifeLayer
