@@ -232,6 +232,10 @@ def test_a_story_of_a_recorded_visit_contains_its_result(
             "its verb `hop` is ignored: `result` is not a JSON Schema",
         ),
         (
+            '"hop": VerbRow(performer="a", parts=("legs", "feet"))',
+            "its verb `hop` is ignored: `parts` has `feet`, which is no part of a body: there are `arms`, `ears`, ",
+        ),
+        (
             '"hop": VerbRow(performer="a", takes="long")',
             "its verb `hop` is ignored: `takes` is `long`, which is no duration",
         ),

@@ -8,7 +8,9 @@ from lumen.feature import Feature, VerbRow, rows
 from lumen.interpreters.expressions import Scope, compile_template, split_template, substituted
 from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.added_verbs import added_verbs, argument_schema
+from lumen.language.body_parts import PARTS
 from lumen.language.commands import Do
+from lumen.language.diagnostics import did_you_mean
 from lumen.language.durations import seconds
 from lumen.language.verbs import is_built_in
 
@@ -32,6 +34,8 @@ def _fault(name: str, row: VerbRow) -> str:
     for field, schema in (("arguments", argument_schema(row)), ("result", row.result)):
         if not JsonSchema(schema).is_sound:
             return f"`{field}` is not a JSON Schema"
+    if unknown := [part for part in row.parts if part not in PARTS]:
+        return f"`parts` has `{unknown[0]}`, which is no part of a body: {did_you_mean(unknown[0], PARTS, 'there are')}"
     try:
         computed = _duration(row, row.arguments.get("properties", ()))
     except ExpressionError as error:
