@@ -218,6 +218,10 @@ class Subcommand(NamedTuple):
     after: str = ""
 
 
+IMPORTED_KINDS = ("behavior", "controller", "motion")
+EXPORTED_KINDS = ("behavior", "controller", "diagram", "project")
+
+
 class Importer(NamedTuple):
     """A kind of file of another tool that `lumen import` converts to one of ours.
 
@@ -447,8 +451,20 @@ def wrong_rows(feature: Feature) -> Iterator[str]:
         rows_of = tuple(value.values() if isinstance(value, Mapping) else value)
         if wrong := [each for each in rows_of if not isinstance(each, get_origin(row) or row)]:
             yield f"`{kind}` of its manifest has the row `{wrong[0]!r}`, which is no `{row.__name__}`"
+        elif fields := [fault for each in rows_of if isinstance(each, tuple) for fault in _wrong_fields(each)]:
+            yield f"a row of `{kind}` of its manifest has {fields[0]}"
         else:
             yield from (f"`{kind}` of its manifest is faulty: {fault}" for each in rows_of if (fault := _fault(each)))
+
+
+def _wrong_fields(row: Any) -> Iterator[str]:
+    """Describe each field of a row that has another type than its class declares."""
+    for name, declared in get_type_hints(type(row)).items():
+        kind, value = get_origin(declared) or declared, getattr(row, name)
+        if isinstance(kind, type) and not isinstance(value, kind):
+            yield f"`{name}={value!r}`, which is no {kind.__name__.lower()}"
+        elif kind is tuple and (wrong := [each for each in value if not isinstance(each, get_args(declared)[0])]):
+            yield f"`{wrong[0]!r}` in `{name}`, which is no {get_args(declared)[0].__name__}"
 
 
 def _fault(row: Any) -> str:
@@ -462,6 +478,10 @@ def _fault(row: Any) -> str:
             return f"there is no kind of value `{wrong[0]}`: there are {', '.join(VALUE_KINDS)}" if wrong else ""
         case Section(risk=risk) if risk not in (risks := get_args(RiskName)):
             return f"a section has no risk `{risk}`: choose one of {', '.join(risks)}"
+        case Importer(kind=kind) if kind not in IMPORTED_KINDS:
+            return f"no file is imported as `{kind}`: choose one of {', '.join(IMPORTED_KINDS)}"
+        case Exporter(kind=kind) if kind not in EXPORTED_KINDS:
+            return f"nothing is exported of the kind `{kind}`: choose one of {', '.join(EXPORTED_KINDS)}"
         case PartRow(name=name, after=after) if name == after:
             return f"the part `{name}` comes after itself: name another part in `after`"
         case PartRow(name=name, when=when):

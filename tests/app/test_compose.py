@@ -16,7 +16,7 @@ from lumen.app.services import Services
 from lumen.app.setup import set_up
 from lumen.clocks.real import RealClock
 from lumen.errors import UsageError
-from lumen.feature import PartRow, Phase
+from lumen.feature import Feature, PartRow, Phase, wrong_rows
 from lumen.language.events import Event
 from tests import ROOT
 from tests.exhibits import project
@@ -95,13 +95,13 @@ def test_an_unknown_condition_is_named() -> None:
     ("when", "wrong"), [("brian", "brian"), ("brain:NAO", "brain:NAO"), ("role", "role"), ("whole role:", "role:")]
 )
 def test_a_row_with_an_unknown_condition_is_refused(when: str, wrong: str) -> None:
-    with pytest.raises(ValueError, match=f"the part `a` has the unknown condition `{wrong}`: use whole"):
-        PartRow("a", Phase.SERVE, "", when)
+    [fault] = wrong_rows(Feature("a", parts=(PartRow("a", Phase.SERVE, "", when),)))
+    assert f"the part `a` has the unknown condition `{wrong}`: use whole" in fault
 
 
 def test_a_row_after_itself_is_refused() -> None:
-    with pytest.raises(ValueError, match="the part `a` comes after itself"):
-        PartRow("a", Phase.SERVE, "", after="a")
+    [fault] = wrong_rows(Feature("a", parts=(PartRow("a", Phase.SERVE, "", after="a"),)))
+    assert "the part `a` comes after itself" in fault
 
 
 def test_a_part_that_watches_must_be_an_observer(monkeypatch: pytest.MonkeyPatch) -> None:

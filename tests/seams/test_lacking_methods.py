@@ -47,7 +47,7 @@ states:
     onDone: waiting
 """
 STORY = """\
-title: Somebody says hello and goodbye
+title: A visitor says hello and goodbye
 steps:
   - visitor: arrives
   - expect: {state: greeting}

@@ -76,7 +76,7 @@ FAULTY = {
     ),
     "an option of another type": (
         with_row("robots", 'RobotRow(options=("name",))'),
-        "its manifest `lumen_greeter:FEATURE` raised AttributeError: 'str' object has no attribute 'name'",
+        "a row of `robots` of its manifest has `'name'` in `options`, which is no RobotOption",
     ),
     "no kind of value": (
         with_row("functions", 'FunctionRow("waving:wave", ("text|colour",), "text")'),
@@ -87,6 +87,18 @@ FAULTY = {
         with_row("sections", 'Section(read="waving:read", risk="great")'),
         "`sections` of its manifest is faulty: a section has no risk `great`: choose one of cosmetic, behavior, motion,"
         " wiring, restart",
+    ),
+    "a field of another type": (
+        GOOD.replace("import Feature", "import *").replace(
+            'extras=("waving",)', 'verbs={"wave": VerbRow(performer="a", parts="arms")}'
+        ),
+        "a row of `verbs` of its manifest has `parts='arms'`, which is no tuple",
+    ),
+    "a list with an entry of another type": (
+        GOOD.replace("import Feature", "import *").replace(
+            'extras=("waving",)', 'verbs={"wave": VerbRow(performer="a", parts=(1,))}'
+        ),
+        "a row of `verbs` of its manifest has `1` in `parts`, which is no str",
     ),
     "a name of Lumen's": (
         GOOD.replace('"greeter"', '"core"'),

@@ -37,6 +37,8 @@ def open(
     """
     if not isinstance(bus, str):
         need_methods(bus, Bus, "a bus")
+    if clock is not None:
+        need_methods(clock, Clock, "a clock")
     project = load(path)
     found = None
     if story is not None:

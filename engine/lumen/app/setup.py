@@ -7,7 +7,6 @@ from lumen.clocks.real import RealClock
 from lumen.clocks.simulated import SimulatedClock
 from lumen.errors import UsageError
 from lumen.feature import Feature, RobotOption, RobotRow, owner, table
-from lumen.interpreters.arguments import need_methods
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -164,11 +163,8 @@ def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = N
     """A robot that somebody made, on their clock; without one on its own time, `pace` times real time at most.
 
     A robot that can `advance` lives through the time that passes, any other one has the time of the world outside. A
-    robot with the methods of a `Hall` is its own hall. Raises UsageError if the robot or the clock lacks a method.
+    robot with the methods of a `Hall` is its own hall.
     """
-    need_methods(robot, Robot, "a robot")
-    if clock is not None:
-        need_methods(clock, Clock, "a clock")
     hall = ability(robot, Hall)
     living = ability(robot, Advances)
     advance = living.advance if living else None

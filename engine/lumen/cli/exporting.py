@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 import lumen
@@ -14,7 +15,7 @@ from lumen.errors import UsageError
 from lumen.feature import Exporter, owner, table
 from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
 from lumen.language.projects import Project
-from lumen.loading.broken_features import resolved
+from lumen.loading.broken_features import called
 from lumen.loading.document import Document
 from lumen.loading.files import on_disk
 from lumen.loading.yaml_reader import parse
@@ -49,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     root = shown_project(options.project)
     project = lumen.load(root)
     row: Exporter = table("exporters")[options.target]
-    write = resolved(owner("exporters", options.target), row.write)
+    write = partial(called, owner("exporters", options.target), row.write)
     if row.kind == "project":
         write_result(write(project), options.output)
         return 0

@@ -77,11 +77,11 @@ def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:
         with gc_paused():
             module = resolve(row.module)
         module.configure(command)
+        command.set_defaults(run=module.run)
     except Exception as error:
         from lumen.loading.broken_features import blamed  # only if it is needed
 
         raise blamed(owner("subcommands", verb), row.module, error) from error
-    command.set_defaults(run=module.run)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -110,7 +110,7 @@ def _run(options: argparse.Namespace) -> int:
 
     logging.basicConfig(format="%(levelname)s: %(message)s", level=logging.WARNING)
     try:
-        return int(options.run(options))
+        return _exit_code(options.verb, options.run(options))
     except ProjectError as error:
         from lumen.cli.report import report
 
@@ -125,19 +125,38 @@ def _run(options: argparse.Namespace) -> int:
         return 0
     except KeyboardInterrupt:
         return 130
-    except OSError as error:
-        if error.errno == errno.ENOSPC:
-            hush(sys.stdout)
-            complain(f"lumen {options.verb}: can't print: no space left on device")
-        elif error.errno == errno.ENAMETOOLONG:
-            complain(f"lumen {options.verb}: a name is too long for this system: {str(error.filename)[:40]}…")
-        elif "No usable temporary directory" in str(error):
-            complain(f"lumen {options.verb}: no folder for temporary files is writable: set TMPDIR to one that is")
-        elif not _somewhere():
-            complain(f"lumen {options.verb}: the current folder no longer exists: `cd` to another one")
-        else:
+    except Exception as error:
+        from lumen.loading.broken_features import fault_of_package
+
+        if not (reason := _reason(error) or fault_of_package(error)):
             raise
+        complain(f"lumen {options.verb}: {reason}")
         return 2
+
+
+def _exit_code(verb: str, returned: object) -> int:
+    """Return what a subcommand returned. Raises LumenError with the name of its package if that is no exit code."""
+    if isinstance(returned, int):
+        return returned
+    from lumen.loading.broken_features import faulty
+
+    raise faulty(owner("subcommands", verb), f"`run` of its subcommand returned {returned!r}, which is no exit code")
+
+
+def _reason(error: Exception) -> str:
+    """Return why this machine can't run the subcommand, and what to do; empty for any other error."""
+    if not isinstance(error, OSError):
+        return ""
+    if error.errno == errno.ENOSPC:
+        hush(sys.stdout)
+        return "can't print: no space left on device"
+    if error.errno == errno.ENAMETOOLONG:
+        return f"a name is too long for this system: {str(error.filename)[:40]}…"
+    if "No usable temporary directory" in str(error):
+        return "no folder for temporary files is writable: set TMPDIR to one that is"
+    if not _somewhere():
+        return "the current folder no longer exists: `cd` to another one"
+    return ""
 
 
 def _somewhere() -> bool:

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from lumen.feature import Importer, owner, resolve, table
+from lumen.feature import Importer, distribution_of, owner, resolve, table
 from lumen.formats.known import FormatTable
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.broken_features import resolved
+from lumen.loading.broken_features import faulty, resolved
 
 
 class FileReader(Protocol):
@@ -32,10 +32,21 @@ def endings(kind: str) -> tuple[str, ...]:
 def reader(ending: str) -> Any:
     """Return the function that reads files with that ending, which has a row.
 
-    Raises LumenError if a package that was installed beside Lumen has it, and can't be imported.
+    Raises LumenError with the name of the package if that was installed beside Lumen and can't be imported; so does
+    the function if it returns something else.
     """
     name = ending.lower()
-    return resolved(owner("importers", name), table("importers")[name].read)
+    feature, where = owner("importers", name), table("importers")[name].read
+    read = resolved(feature, where)
+
+    def checked(*arguments: Any, **named: Any) -> Any:
+        match read(*arguments, **named):
+            case (dict(), _) as converted:
+                return converted
+            case other:
+                raise faulty(feature, f"`{where}` returned {other!r} instead of data and diagnostics")
+
+    return checked if distribution_of(feature) else read
 
 
 def format_tables() -> Mapping[str, FormatTable]:

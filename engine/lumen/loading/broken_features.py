@@ -1,12 +1,14 @@
 """Findings about features that were installed beside Lumen and can't be used."""
 
+from traceback import walk_tb
 from typing import Any
 
-from lumen.distributions import Distribution
+from lumen.distributions import Distribution, distributions
 from lumen.errors import LumenError, UsageError
 from lumen.feature import Feature, FeatureFault, distribution_of, found, resolve
 from lumen.interpreters.arguments import need_methods
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place
+from lumen.loading.packaged import PACKAGE
 from lumen.loading.project_folders import MAIN_FILE
 
 BROKEN_FEATURE = Code("broken-feature", "features", WARNING, "an installed feature, or a part of it, can't be used")
@@ -39,7 +41,7 @@ def resolved(feature: Feature, where: str) -> Any:
         raise blamed(feature, where, error) from error
 
 
-def called(feature: Feature, where: str, *arguments: Any) -> Any:
+def called(feature: Feature, where: str, *arguments: Any, **named: Any) -> Any:
     """Return what the function of an import string of a feature returns.
 
     Raises LumenError as that function does, or with the name of the distribution if a feature is faulty that was
@@ -47,7 +49,7 @@ def called(feature: Feature, where: str, *arguments: Any) -> Any:
     """
     function = resolved(feature, where)
     try:
-        return function(*arguments)
+        return function(*arguments, **named)
     except LumenError:
         raise
     except Exception as error:
@@ -71,6 +73,24 @@ def faulty(feature: Feature, message: str) -> LumenError:
         return LumenError(f"the feature `{feature.name}` is faulty: {message}")
     finding = broken(distribution, message)
     return LumenError(f"{finding.message} ({finding.hint})")
+
+
+def fault_of_package(error: BaseException) -> str:
+    """Return the fault that ended the program, if code of a package that was installed beside Lumen raised it.
+
+    The innermost call of Lumen's code or of a package's decides; the text is empty if that is Lumen's.
+    """
+    packages = {package: each for each in distributions() for package in each.packages}
+    calls = [(frame.f_globals.get("__name__", ""), line) for frame, line in walk_tb(error.__traceback__)]
+    for module, line in reversed(calls):
+        package = module.partition(".")[0]
+        if package == PACKAGE.name:
+            return ""
+        if package in packages:
+            what = f"line {line} of `{module}` raised {type(error).__name__}: {error}"
+            finding = broken(packages[package], what)
+            return f"{finding.message} ({finding.hint})"
+    return ""
 
 
 def need_made(feature: Feature, where: str, value: Any, kind: type, what: str) -> None:

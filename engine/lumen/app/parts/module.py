@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from lumen.app.claiming import presence_of
-from lumen.app.parts.module_factory import make_module
+from lumen.app.parts.module_factory import blamed_module, make_module
 from lumen.app.parts.part import Part
+from lumen.errors import LumenError
 from lumen.language.counts import counted
 from lumen.language.events import Event
 from lumen.language.modules import EYES
@@ -39,6 +41,7 @@ class ModulePart(Part):
         awaited: bool = False,
     ) -> None:
         self.name = name
+        self._tell = tell
         self._modules = {project.robot: make_module(name, project, bus, lambda text: tell(name, text), folder)}
         self._presences: list[Presence] = []
         for robot in project.served[1:] if name == EYES else ():
@@ -49,8 +52,9 @@ class ModulePart(Part):
         self.patient = not self._awaited
 
     def begin(self, now: float) -> None:
-        for module in self._modules.values():
-            module.begin()
+        for robot, module in tuple(self._modules.items()):
+            if not self._done(module.begin):
+                del self._modules[robot]
         for presence in self._presences:
             presence.settle()
 
@@ -63,9 +67,9 @@ class ModulePart(Part):
 
     def use(self, project: Project) -> None:
         """Go on with this bundle; which robots are served is said at the start."""
-        own = next(iter(self._modules))
+        own = next(iter(self._modules), "")
         for robot, module in self._modules.items():
-            module.use(project if robot == own else _of_another(project, robot))
+            self._done(partial(module.use, project if robot == own else _of_another(project, robot)))
 
     def summary(self) -> Iterator[str]:
         for robot, module in self._modules.items():
@@ -76,9 +80,20 @@ class ModulePart(Part):
 
     def close(self) -> None:
         for module in self._modules.values():
-            module.close()
+            self._done(module.close)
         for presence in self._presences:
             presence.close()
+
+    def _done(self, call: Callable[[], None]) -> bool:
+        """Call a method of a module; report the fault of another package, and return whether there was none."""
+        try:
+            call()
+        except LumenError:
+            raise
+        except Exception as error:
+            self._tell(self.name, str(blamed_module(self.name, error)))
+            return False
+        return True
 
 
 def _of_another(project: Project, robot: str) -> Project:

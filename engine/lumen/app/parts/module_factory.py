@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from lumen.errors import UsageError
+from lumen.errors import LumenError, UsageError
 from lumen.feature import owner, table
 from lumen.language.projects import Project
-from lumen.loading.broken_features import resolved
+from lumen.loading.broken_features import blamed, faulty, resolved
 from lumen.modules.module import Module
 from lumen.ports import Bus
 
@@ -15,10 +15,23 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
     """Return a module that has not begun; it keeps its files in `folder`, or none if that is None.
 
     Raises UsageError if there is no such module, ModuleError if it lacks something that it needs,
-    LumenError with the name of the installed package if it can't be imported.
+    LumenError with the name of the installed package if its code is faulty.
     """
     modules = table("modules")
     if name not in modules:
         raise UsageError(f"no module `{name}`: there are {', '.join(modules)}")
-    kind: type[Module] = resolved(owner("modules", name), modules[name].module)
-    return kind.make(project, bus, tell, folder)
+    feature, where = owner("modules", name), modules[name].module
+    kind = resolved(feature, where)
+    if not (isinstance(kind, type) and issubclass(kind, Module)):
+        raise faulty(feature, f"its module `{where}` is no subclass of `lumen.modules.module.Module`")
+    try:
+        return kind.make(project, bus, tell, folder)
+    except LumenError:
+        raise
+    except Exception as error:
+        raise blamed(feature, where, error) from error
+
+
+def blamed_module(name: str, error: Exception) -> LumenError:
+    """Return an error that names the package whose module raised `error`; raise that one if the module is Lumen's."""
+    return blamed(owner("modules", name), table("modules")[name].module, error)

@@ -5,7 +5,7 @@ from typing import Protocol
 
 from lumen.app.lint.findings import Findings
 from lumen.feature import owner, table
-from lumen.loading.broken_features import resolved
+from lumen.loading.broken_features import called
 
 
 class Renderer(Protocol):
@@ -22,7 +22,7 @@ def finding_formats() -> tuple[str, ...]:
 def render(format: str, found: Sequence[Findings], *, coloured: bool = False) -> str:
     """Return the findings in that format; empty if there are none and the format has no summary.
 
-    Raises LumenError if a package that was installed beside Lumen has the format, and can't be imported.
+    Raises LumenError with the name of the package if a format is faulty that was installed beside Lumen.
     """
-    renderer: Renderer = resolved(owner("finding_formats", format), table("finding_formats")[format])
-    return renderer(found, coloured=coloured)
+    where: str = table("finding_formats")[format]
+    return str(called(owner("finding_formats", format), where, found, coloured=coloured))

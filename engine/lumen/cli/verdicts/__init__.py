@@ -2,7 +2,7 @@
 
 from lumen.app.verdict import Verdict
 from lumen.feature import owner, table
-from lumen.loading.broken_features import resolved
+from lumen.loading.broken_features import called
 
 
 def verdict_formats() -> tuple[str, ...]:
@@ -13,6 +13,6 @@ def verdict_formats() -> tuple[str, ...]:
 def render(format: str, verdict: Verdict) -> str:
     """Return the verdict in that format.
 
-    Raises LumenError if a package that was installed beside Lumen has the format, and can't be imported.
+    Raises LumenError with the name of the package if a format is faulty that was installed beside Lumen.
     """
-    return str(resolved(owner("verdict_formats", format), table("verdict_formats")[format])(verdict))
+    return str(called(owner("verdict_formats", format), table("verdict_formats")[format], verdict))

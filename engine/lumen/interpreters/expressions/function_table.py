@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
-from lumen.feature import FunctionRow, resolve, table
+from lumen.feature import FunctionRow, distribution_of, owner, resolve, table
 from lumen.interpreters.expressions.functions import CAUGHT, caught
 from lumen.interpreters.expressions.kinds import KINDS, MAP, NUMBER, FaultError, WrongKindError, kind_of
 from lumen.interpreters.expressions.operators import bounded
@@ -55,12 +55,13 @@ def example_of(name: str) -> str:
 
 @cache
 def fault_of(name: str) -> str:
-    """Return why the code of a function can't be imported; empty if it can."""
+    """Return why the code of a function can't be imported, with the package that it is in; empty if it can."""
     rows = table("functions")
     try:
-        return "" if name not in rows or callable(resolve(rows[name].call)) else "it is not a function"
+        fault = "" if name not in rows or callable(resolve(rows[name].call)) else "it is not a function"
     except Exception as error:  # of code that is not ours
-        return f"{type(error).__name__}: {error}"
+        fault = f"{type(error).__name__}: {error}"
+    return fault and f"{fault} (package {distribution_of(owner('functions', name))})"
 
 
 def _function(name: str, row: FunctionRow) -> Function:

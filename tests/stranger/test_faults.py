@@ -1,0 +1,162 @@
+"""Faulty code of a package ends with a sentence that names the package; an exhibition goes on without its module."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from lumen.app.exhibition import Exhibition
+from lumen.app.making.modules import ModulesPlan
+from lumen.app.plan import Plan
+from lumen.app.rehearsal import RehearsalTrace
+from lumen.app.setup import set_up
+from lumen.cli.main import main
+from lumen.project import load
+from tests import ROOT
+from tests.stranger.installing import Installed
+
+MANIFEST = """\
+from lumen.feature import *
+
+FEATURE = Feature(name="faulty", {row})
+"""
+ROBOT = """\
+from lumen.app.rehearsal import RehearsalTrace
+from lumen.app.setup import set_up_with
+
+
+class Robot:
+    def start(self, id, command): 1 / 0
+    def cancel(self, id): pass
+    def poll(self): return ()
+    def begun(self): return ()
+    def read(self, sense): return None
+    def close(self): pass
+
+
+def make(request):
+    return set_up_with(Robot())
+"""
+BUS = "from lumen.buses.memory import MemoryBus\n\n\nclass make(MemoryBus):\n    def send(self, message): 1 / 0\n"
+RUN = "run --robot recording --speed max --story visitor"
+FAULTS = {
+    "robot without a method": (
+        "robots={'bot': RobotRow('faulty_code:make')}",
+        ROBOT.replace("def begun", "def beguns"),
+        "run --robot bot",
+        "`faulty_code:make` made a wrong object: a robot needs the method `begun`",
+    ),
+    "robot that is no setup": (
+        "robots={'bot': RobotRow('faulty_code:make')}",
+        "def make(request): return 7",
+        "run --robot bot",
+        "`faulty_code:make` returned 7 instead of a `lumen.app.setup.Setup`",
+    ),
+    "robot that raises": (
+        "robots={'bot': RobotRow('faulty_code:make')}",
+        ROBOT,
+        "run --robot bot",
+        "line 6 of `faulty_code` raised ZeroDivisionError: division by zero",
+    ),
+    "no bus": (
+        "buses={'box': BusRow('faulty_code:make', ('box://',), '', True)}",
+        "def make(address, sender): return 7",
+        f"{RUN} --bus box://",
+        "`faulty_code:make` made a wrong object: a bus needs the methods ",
+    ),
+    "bus that raises": (
+        "buses={'box': BusRow('faulty_code:make', ('box://',), '', True)}",
+        BUS.replace("def send", "def __init__(self, address, sender): super().__init__()\n    def send"),
+        f"{RUN} --bus box://",
+        "line 6 of `faulty_code` raised ZeroDivisionError: division by zero",
+    ),
+    "importer": (
+        "importers={'.odd': Importer('behavior', 'faulty_code:read')}",
+        "def read(*given): 1 / 0",
+        "import a.odd",
+        "line 1 of `faulty_code` raised ZeroDivisionError: division by zero",
+    ),
+    "importer of nothing": (
+        "importers={'.odd': Importer('behavior', 'faulty_code:read')}",
+        "def read(*given): pass",
+        "import a.odd",
+        "`faulty_code:read` returned None instead of data and diagnostics",
+    ),
+    "exporter": (
+        "exporters={'odd': Exporter('behavior', 'faulty_code:write')}",
+        "def write(machine): pass",
+        "export odd",
+        "its module `faulty_code:write` raised TypeError: write() takes 1 positional argument but 2 were given",
+    ),
+    "format of findings": (
+        "finding_formats={'odd': 'faulty_code:render'}",
+        "def render(found): pass",
+        "lint --format odd",
+        "its module `faulty_code:render` raised TypeError: render() got an unexpected keyword argument 'coloured'",
+    ),
+    "subcommand without run": (
+        "subcommands={'odd': Subcommand('be odd', 'faulty_code')}",
+        "def configure(parser): pass",
+        "odd",
+        "its module `faulty_code` raised AttributeError: module 'faulty_code' has no attribute 'run'",
+    ),
+    "subcommand that raises": (
+        "subcommands={'odd': Subcommand('be odd', 'faulty_code')}",
+        "def configure(parser): pass\ndef run(options): open('missing')",
+        "odd",
+        "line 2 of `faulty_code` raised FileNotFoundError: ",
+    ),
+    "subcommand without an exit code": (
+        "subcommands={'odd': Subcommand('be odd', 'faulty_code')}",
+        "def configure(parser): pass\ndef run(options): pass",
+        "odd",
+        "`run` of its subcommand returned None, which is no exit code",
+    ),
+}
+
+
+@pytest.fixture
+def hall(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    root = shutil.copytree(ROOT / "examples/minimal", tmp_path / "hall")
+    (root / "a.odd").write_text("odd")
+    monkeypatch.chdir(root)
+    return root
+
+
+@pytest.mark.parametrize("case", FAULTS)
+def test_faulty_code_ends_with_a_sentence_that_names_its_package(
+    case: str, installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    row, code, words, fault = FAULTS[case]
+    installed.write("faulty", MANIFEST.format(row=row), version="1.2", faulty_code=code)
+    assert main(words.split()) == 2
+    verb, told = words.split()[0], capsys.readouterr().err.splitlines()[-1]
+    assert told.startswith(f"lumen {verb}: the installed package `faulty` 1.2 is faulty: {fault}")
+
+
+MODULE = "from lumen.modules.module import Module\n\n\nclass Mood(Module):\n    "
+MODULES = {
+    "is no module": ("class Mood: pass", "is no subclass of `lumen.modules.module.Module`"),
+    "can't be made": (f"{MODULE}def __init__(self, *given): 1 / 0", "raised ZeroDivisionError"),
+    "can't begin": (f"{MODULE}def begin(self): 1 / 0", "raised ZeroDivisionError"),
+    "lists no routes": (f"{MODULE}hears = ('heard',)", "raised TypeError"),
+    "can't end": (f"{MODULE}def hears(self): return {{}}\n    def close(self): 1 / 0", "raised ZeroDivisionError"),
+}
+
+
+@pytest.mark.parametrize("case", MODULES)
+def test_an_exhibition_goes_on_without_a_faulty_module(case: str, installed: Installed, hall: Path) -> None:
+    code, fault = MODULES[case]
+    row = "modules={'mood': ModuleRow('faulty_code:Mood')}"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=code)
+    main_file = hall / "lumen.yaml"
+    main_file.write_text(f"{main_file.read_text()}\nmodules: {{mood: {{here: true}}}}\n")
+    project = load(hall)
+    narrator = RehearsalTrace(lambda: 0.0, lambda: project.machine, None)
+    plan = Plan(project, set_up("recording", project, "max"), narrator=narrator, options={"modules": ModulesPlan()})
+    with Exhibition(plan) as exhibition:
+        exhibition.start()
+        assert exhibition.run(seconds=1.0) == pytest.approx(1.0)
+    (line,) = [text for _, who, text in narrator.lines if who == "mood"]
+    assert "the installed package `faulty` 1.0 is faulty" in line
+    assert fault in line
