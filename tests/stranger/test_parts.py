@@ -100,5 +100,5 @@ def test_lint_reports_a_row_that_cannot_be_used(
 ) -> None:
     write(installed, "return None", MANIFEST.replace(old, new))
     [message] = findings(minimal)
-    assert message.startswith("the installed package `lumen-counter` 1.0 is faulty: its ")
+    assert message.startswith("the installed package `lumen-counter` 1.0 is faulty: ")
     assert told in message
