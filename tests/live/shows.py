@@ -8,7 +8,7 @@ from typing import Any
 import lumen
 from lumen.app.rehearsal import Rehearsal
 from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.reloader import Reloader, ReloadOptions
 from lumen.app.reload.requests import COMMAND, STATUS
 from lumen.app.reload.saved_files import ReloadPart
 from lumen.app.reload.validation_process import failure
@@ -80,11 +80,8 @@ class Live:
         self.reloading = Reloader(
             self.show.behavior,
             transcript,
-            mode=mode,
+            ReloadOptions(mode, QUIET, HANG, seen),
             records=self.records,
-            quiet=QUIET,
-            budget=HANG,
-            seen=seen,
             worker=None if apart else Here(folder),
         )
         parts = self.show.node.parts

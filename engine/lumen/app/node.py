@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, ExitStack, closing
+from dataclasses import dataclass
 from math import ceil, inf
 
 from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals, refuse_silence
@@ -29,15 +30,28 @@ NAP = 0.2
 """How long it sleeps at most where nothing is due [s]: what nobody wakes it for waits no longer than that."""
 
 
+@dataclass(frozen=True, slots=True)
+class NodeTime:
+    """The way in which the time of a process passes.
+
+    `speed` is that of its time, if those of other processes must be the same. With `leaps` it passes over ticks in
+    which nothing happens. `paced` is called when it begins or ends to keep less than real time, with how much of it.
+    """
+
+    speed: float | None = None
+    leaps: bool = False
+    paced: Callable[[float], None] = lambda _: None
+
+
+EVERY_TICK = NodeTime()
+
+
 class Node:
     """Ticks its parts in their order until one is over or somebody ends it.
 
     With a `presence` it is one of several processes, or a whole exhibition that others on the same bus can see: it
-    begins when it has claimed what it is. `speed` is that of its time; those of the others have to be the same.
-    The functions in `before` are called at each tick with its time [s], before the parts. With `leaps` it passes over
-    ticks in which nothing happens, as `run` does in real time: there it sleeps until something is due, or until `nap`
-    ends because a message has come. `paced` is called when it begins or ends to keep less than real time, with how much
-    of it.
+    begins when it has claimed what it is. The functions in `before` are called at each tick with its time [s], before
+    the parts. In real time `run` sleeps until something is due, or until `nap` ends because a message has come.
     """
 
     def __init__(
@@ -48,17 +62,15 @@ class Node:
         narrator: Narrator,
         *,
         presence: Presence | None = None,
-        speed: float | None = None,
         nap: Nap | None = None,
         before: Sequence[Callable[[float], None]] = (),
-        paced: Callable[[float], None] = lambda _: None,
-        leaps: bool = False,
+        time_passes: NodeTime = EVERY_TICK,
     ) -> None:
-        self._project, self._clock, self._narrator, self._speed = project, clock, narrator, speed
+        self._project, self._clock, self._narrator, self._time = project, clock, narrator, time_passes
         self._dozes = clock if isinstance(clock, Dozes) else None
         self.bus, self.presence = bus, presence
         self.parts: list[Part] = []
-        self._before, self._paced, self._leaps = before, paced, leaps
+        self._before = before
         self._nap = nap or Nap()
         self.now, self._asked = clock.now(), time.monotonic()
         self._begun: list[Part] = []
@@ -127,7 +139,7 @@ class Node:
 
     def tick(self) -> float:
         """Wait for the next tick and live through it; its time [s]."""
-        if self._leaps:
+        if self._time.leaps:
             self._leap()
         self._clock.wait(self.now + TICK_PERIOD)
         self.now = self._clock.now()
@@ -244,9 +256,9 @@ class Node:
 
     def _check_speed(self) -> None:
         """Raises UsageError where the others' time runs at another speed."""
-        for peer in self.presence.peers() if self.presence and self._speed else ():
+        for peer in self.presence.peers() if self.presence and self._time.speed else ():
             theirs = peer.said.get("speed")
-            if isinstance(theirs, int | float) and theirs != self._speed:
+            if isinstance(theirs, int | float) and theirs != self._time.speed:
                 raise UsageError(
                     f"{where_it_runs(peer)} is running at {theirs:g} × real time: pass --speed {theirs:g} here, too"
                 )
@@ -270,7 +282,7 @@ class Node:
             return  # whose time it is says so
         if line := self.pace.tick():
             self._narrator.line("time", line)
-            self._paced(self.pace.realtime)
+            self._time.paced(self.pace.realtime)
 
     def _heed(self) -> None:
         """What the first interrupt asks for; where nobody has anything to do for it, it ends."""

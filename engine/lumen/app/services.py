@@ -8,7 +8,7 @@ from lumen.app.claiming import presence_of
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.nap import Nap
 from lumen.app.narrator import Narrator
-from lumen.app.node import Node
+from lumen.app.node import Node, NodeTime
 from lumen.app.parts.part import Part
 from lumen.app.parts.robot import RobotPart
 from lumen.app.plan import Plan
@@ -46,11 +46,9 @@ class Services:
             self.clock,
             self.narrator,
             presence=self.presence,
-            speed=plan.speed if plan.roles else None,
             nap=self.nap,
             before=plan.before,
-            paced=self._pace,
-            leaps=plan.leaps,
+            time_passes=NodeTime(plan.speed if plan.roles else None, plan.leaps, self._pace),
         )
         self._provided: list[object] = []
         self._places: dict[Part, int] = {}

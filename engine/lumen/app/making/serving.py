@@ -4,14 +4,14 @@ from lumen.app.forgetting.added import FeatureForgetter
 from lumen.app.parts.alerting import AlertPart
 from lumen.app.parts.forgetting import ForgettingPart
 from lumen.app.parts.hosted_robot import HostedRobotPart, stopped_there
-from lumen.app.parts.operating import OperatorPart
+from lumen.app.parts.operating import OperatorPart, RunState
 from lumen.app.parts.part import Part
 from lumen.app.parts.recording import RecordingPart
 from lumen.app.parts.robot import RobotPart
 from lumen.app.recovery.recording import record_inputs
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.reloader import Reloader, ReloadOptions
 from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.services import Services
 from lumen.app.status import LastReload
@@ -46,7 +46,7 @@ def reload(services: Services) -> ReloadPart:
     """Make the part that takes saved files."""
     mode, directory = services.plan.options["reload"], directory_of(services)
     take = directory.reloader if directory else Reloader
-    reloader = take(services.behavior, services.narrator, mode=mode, wake=services.nap.end)
+    reloader = take(services.behavior, services.narrator, ReloadOptions(mode), wake=services.nap.end)
     services.provide(reloader)
     return ReloadPart(reloader, services.needs)
 
@@ -81,9 +81,7 @@ def operator(services: Services) -> OperatorPart:
         services.narrator,
         services[JournalWriter],
         services[RunRecords],
-        stopped=stopped,
-        realtime=lambda: services.node.pace.realtime,
-        reloaded=reloaded,
+        RunState(stopped, lambda: services.node.pace.realtime, reloaded),
         marking=recording.marking if recording else str,
         kept=directory.home.folder if directory and directory.home and services.lasts else None,
         needs=services.needs,

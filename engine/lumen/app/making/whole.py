@@ -4,7 +4,7 @@ from lumen.app.live_behavior import LiveBehavior
 from lumen.app.parts.brain import BrainPart
 from lumen.app.parts.foreign_commands import ForeignCommands
 from lumen.app.parts.kept_hold import KeptHold
-from lumen.app.parts.robot import RobotPart
+from lumen.app.parts.robot import RobotPart, RunBefore
 from lumen.app.parts.visitor import VisitorPart
 from lumen.app.services import Services
 from lumen.errors import UsageError
@@ -67,8 +67,7 @@ def robot(services: Services) -> RobotPart:
         listeners,
         services.presence,
         silent=plan.silent,
-        kept=KeptHold(directory.home.folder) if directory and services.lasts else None,
-        begun=begun or None,
+        before=RunBefore(KeptHold(directory.home.folder) if directory and services.lasts else None, begun or None),
     )
 
 

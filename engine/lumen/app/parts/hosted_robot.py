@@ -10,7 +10,7 @@ from lumen.app.narrator import Narrator
 from lumen.app.parts.foreign_commands import ForeignCommands, words
 from lumen.app.parts.guard import BrainGuard
 from lumen.app.parts.kept_hold import KeptHold, forget_hold
-from lumen.app.parts.robot import RobotPart, Urgency
+from lumen.app.parts.robot import RobotPart, RunBefore, Urgency
 from lumen.app.setup import Setup
 from lumen.buses.validated import ValidatedBus
 from lumen.language.commands import Rest, Start
@@ -49,8 +49,8 @@ class HostedRobotPart(RobotPart):
         kept = KeptHold(self._home)
         listeners = (_CommandsOfOthers(narrator, self), Urgency(setup), kept)
         self._host = RobotHost(project, setup.robot, bus, setup.hall, listeners)
-        begun = self._home / DEDUPLICATION_FILE
-        super().__init__(project, bus, setup, (), presence, server=self._host.server, kept=kept, begun=begun)
+        before = RunBefore(kept, self._home / DEDUPLICATION_FILE)
+        super().__init__(project, bus, setup, (), presence, server=self._host.server, before=before)
         self._narrator, self._others, self._setup = narrator, presence, setup
         self._guard: BrainGuard | None = None
         self._interrupted = False

@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -61,14 +62,22 @@ Responder = Callable[[Message, float], dict[str, Any]]
 """Answers a valid request at a time [s]."""
 
 
+@dataclass(frozen=True, slots=True)
+class RunState:
+    """What other parts tell of the run: who stopped the robot, how much of real time is kept, and the last reload."""
+
+    stopped: Callable[[], StoppedBy | None]
+    realtime: Callable[[], float]
+    reloaded: Callable[[], LastReload | None] = lambda: None
+
+
 class OperatorPart(Part, Observer):
     """Answers `lumen status` and `lumen goto` between two steps; it stands before the brain, whose `needs` it has.
 
     What is asked of the past, `lumen why`, is answered on another thread, from `steps` that it keeps, and from what
     `journal` writes.
 
-    `stopped` says who stopped the robot, `realtime` how much of real time is kept, `reloaded` what came of saved files
-    last; `records` keep an entry of the journal, and what people decided. The folder `kept` has what outlives the run:
+    `records` keep an entry of the journal, and what people decided. The folder `kept` has what outlives the run:
     whether the language model is silenced. `marking` returns the answer to a mark,
     which the recorder hears by itself; empty where nothing is recorded.
     """
@@ -82,17 +91,14 @@ class OperatorPart(Part, Observer):
         narrator: Narrator,
         journal: JournalWriter,
         records: DecisionRecords,
+        run: RunState,
         *,
-        stopped: Callable[[], StoppedBy | None],
-        realtime: Callable[[], float],
-        reloaded: Callable[[], LastReload | None] = lambda: None,
         marking: Callable[[], str] = str,
         kept: Path | None = None,
         needs: Sequence[str] = (),
     ) -> None:
         self.needs, self._behavior, self._narrator, self._record = needs, behavior, narrator, records.write
-        self._stopped, self._realtime, self._reloaded = stopped, realtime, reloaded
-        self._marking = marking
+        self._run, self._marking = run, marking
         self._since = 0.0
         self._came: deque[Message] = deque(maxlen=MAX_PENDING_REQUESTS)
         self._bus = behavior.loop.bus
@@ -193,9 +199,9 @@ class OperatorPart(Part, Observer):
             loop.runtime.snapshot,
             self._since,
             battery=loop.robot.read(Sense.BATTERY),
-            stopped=self._stopped(),
-            realtime=self._realtime(),
-            reloaded=self._reloaded(),
+            stopped=self._run.stopped(),
+            realtime=self._run.realtime(),
+            reloaded=self._run.reloaded(),
             ears=self._ears,
         )
 
@@ -241,7 +247,7 @@ class OperatorPart(Part, Observer):
             step = entered_directly(loop.project.machine, loop.runtime.snapshot, state, event)
         except LumenError as error:
             return refusal(str(error))
-        stopped = self._stopped()
+        stopped = self._run.stopped()
         said = {"exited": list(step.exited), "entered": list(step.entered), "stopped_by": stopped and stopped.by}
         if only:
             return {"verdict": "possible", **said}

@@ -1,7 +1,7 @@
 """The robot: its senses on the bus, and a face detector where the hall around it is simulated."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 
@@ -24,11 +24,24 @@ from lumen.runtime.perception import FaceDetector
 from lumen.runtime.presence import ROBOT_PART, Presence
 
 
+@dataclass(frozen=True, slots=True)
+class RunBefore:
+    """What the run before left: `kept` holds the robot if it was stopped, `begun` is the file of the commands begun.
+
+    Those commands are not performed again.
+    """
+
+    kept: KeptHold | None = None
+    begun: Path | None = None
+
+
+NO_RUN = RunBefore()
+
+
 class RobotPart(Part, Observer):
     """A robot that the brain of this node commands directly; modules command it through `server`.
 
-    `listeners` hear of the commands that come from elsewhere; `kept` holds the robot if the run before left it stopped,
-    and `begun` is the file of the commands that run had begun, which are not performed again.
+    `listeners` hear of the commands that come from elsewhere.
 
     It watches the brain's loop: what the robot says and answers is on the bus, too. On a bus of its own a tick waits
     until its readings are published, so that a run is the same each time, and publishes them itself if time goes as
@@ -49,25 +62,24 @@ class RobotPart(Part, Observer):
         *,
         server: RobotServer | None = None,
         silent: bool = False,
-        kept: KeptHold | None = None,
-        begun: Path | None = None,
+        before: RunBefore = NO_RUN,
     ) -> None:
-        self._silent, self._presence, self._kept, self._begun = silent, presence, kept, begun
+        self._silent, self._presence, self._before = silent, presence, before
         self.robot = setup.robot
         self.server = server or RobotServer(
             self._sensed(project),
             setup.robot,
             bus,
-            listeners=(*listeners, Urgency(setup), *filter(None, [kept])),
+            listeners=(*listeners, Urgency(setup), *filter(None, [before.kept])),
             direct=presence is None and isinstance(setup.clock, HasSpeed) and setup.clock.speed is None,
         )
         self.faces = FaceDetector(project, setup.hall, bus) if setup.hall else None
 
     def begin(self, now: float) -> None:
-        if self._begun:
-            self.server.recall(DeduplicationLog(self._begun))
-        if self._kept:
-            self._kept.restore(self.server.hold)
+        if self._before.begun:
+            self.server.recall(DeduplicationLog(self._before.begun))
+        if self._before.kept:
+            self._before.kept.restore(self.server.hold)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self.server.sample(now)

@@ -3,6 +3,7 @@
 import logging
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from lumen.app.live_behavior import LiveBehavior
@@ -10,7 +11,7 @@ from lumen.app.narrator import Narrator
 from lumen.app.parts.kept_hold import forget_hold
 from lumen.app.recovery.previous_run import recover, rested
 from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.reloader import Reloader, ReloadOptions
 from lumen.app.reload.report import ReloadReport
 from lumen.app.reload.validation_worker import load_apart
 from lumen.buses.addresses import within_process
@@ -74,12 +75,16 @@ class RunDirectory:
         return next((report.after for report in self.news if report.verdict == "refused"), "")
 
     def reloader(
-        self, behavior: LiveBehavior, narrator: Narrator, *, mode: str, wake: Callable[[], None] = lambda: None
+        self,
+        behavior: LiveBehavior,
+        narrator: Narrator,
+        options: ReloadOptions,
+        *,
+        wake: Callable[[], None] = lambda: None,
     ) -> Reloader:
         """Return the reloader of this run, which judges saved files in another process; `wake` as it says there."""
-        return Reloader(
-            behavior, narrator, mode=mode, records=self.records, applied=self.announce, seen=self.refused, wake=wake
-        )
+        options = replace(options, seen=self.refused)
+        return Reloader(behavior, narrator, options, records=self.records, applied=self.announce, wake=wake)
 
     def begin_run(
         self, behavior: LiveBehavior, url: str, reloader: Reloader | None, *, fresh: bool

@@ -4,7 +4,7 @@ import logging
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -38,30 +38,39 @@ MODES = ("auto", "manual", "off")
 """Take saved files at once; only judge them, and wait for `lumen reload --apply`; leave them alone."""
 
 
+@dataclass(frozen=True, slots=True)
+class ReloadOptions:
+    """The way in which saved files are used: one of `MODES`, and the times of the watcher and of stories [s]."""
+
+    mode: str = "auto"
+    quiet: float = QUIET_PERIOD
+    budget: float = BUDGET
+    seen: str = ""
+    """The hash of the files that the start refused; they are not judged until they change."""
+
+
+AUTO = ReloadOptions()
+
+
 class Reloader:
     """Has saved files judged, and stages every good bundle; hears what operators ask for.
 
-    `worker` judges them; else another process does. `quiet` [s] and `budget` [s] are those of the watcher and of
-    stories; `applied` is told of each bundle that becomes active. `seen` is the hash of files that are there and not to
-    be taken until they change, where those are not the ones that run. `wake` is called, on any thread, when files have
-    been judged.
+    `worker` judges them; else another process does. `applied` is told of each bundle that becomes active. `wake` is
+    called, on any thread, when files have been judged.
     """
 
     def __init__(
         self,
         behavior: LiveBehavior,
         narrator: Narrator,
+        options: ReloadOptions = AUTO,
         *,
-        mode: str = "auto",
         records: RunRecords | None = None,
         applied: Callable[[Project], None] = lambda _: None,
-        seen: str = "",
         wake: Callable[[], None] = lambda: None,
         worker: FileJudge | None = None,
-        quiet: float = QUIET_PERIOD,
-        budget: float = BUDGET,
     ) -> None:
-        self._behavior, self._mode = behavior, mode
+        self._behavior, self._mode = behavior, options.mode
         self._records = records or RunRecords(None)
         self._notifier = ReloadNotifier(behavior, narrator, self._records)
         self._queue = MigrationQueue(behavior, self._notifier, self._records, applied)
@@ -69,15 +78,15 @@ class Reloader:
         self._came: deque[Message] = deque(maxlen=WAITING)
         project = behavior.loop.project
         self._worker = worker or ValidationWorker(Path(project.root))
-        self._validator = BundleValidator(self._worker, lambda: self._running, budget)
+        self._validator = BundleValidator(self._worker, lambda: self._running, options.budget)
         self._watcher: FileWatcher[Validation | list[Rehearsal]] = FileWatcher(
             Path(project.root),
             read_files(Path(project.root), project.one_of_several),
             self._judge,
-            hash=seen or project.hash,
-            quiet=quiet,
+            hash=options.seen or project.hash,
+            quiet=options.quiet,
             robot=project.one_of_several,
-            hints=mode != "off",
+            hints=options.mode != "off",
             leisure=self._advise,
             noticed=self._worker.begin,
             early=self._validator.warm,
