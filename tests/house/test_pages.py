@@ -106,6 +106,17 @@ def test_the_names_of_a_numbered_item_stand_in_the_files_that_it_names() -> None
     assert lost == []
 
 
+def test_a_name_in_a_file_is_defined_there() -> None:
+    placed = re.findall(r"`([\w.]+)` (?:in|of) `(\w+/[\w/]+\.py)`", prose(ARCHITECTURE))
+    assert len(placed) > 30
+    lost = []
+    for name, path in placed:
+        text = "".join(file.read_text(encoding="utf-8") for file in found(path))
+        if not all(re.search(rf"(?m)^ *(?:(?:class|def) )?{part}\b", text) for part in name.split(".")):
+            lost.append(f"{name} in {path}")
+    assert lost == []
+
+
 def test_the_floors_are_those_of_the_contract_in_its_order() -> None:
     contracts = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"][
         "contracts"
