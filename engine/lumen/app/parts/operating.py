@@ -64,7 +64,7 @@ Responder = Callable[[Message, float], dict[str, Any]]
 
 @dataclass(frozen=True, slots=True)
 class RunState:
-    """What other parts tell of the run: who stopped the robot, how much of real time is kept, and the last reload."""
+    """The state of the run: the person who stopped the robot, the share of real time that is kept, the last reload."""
 
     stopped: Callable[[], StoppedBy | None]
     realtime: Callable[[], float]

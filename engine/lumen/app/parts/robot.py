@@ -26,9 +26,9 @@ from lumen.runtime.presence import ROBOT_PART, Presence
 
 @dataclass(frozen=True, slots=True)
 class RunBefore:
-    """What the run before left: `kept` holds the robot if it was stopped, `begun` is the file of the commands begun.
+    """The traces of the previous run.
 
-    Those commands are not performed again.
+    `kept` holds the robot if a person had stopped it. `begun` is the file of the commands that are not performed again.
     """
 
     kept: KeptHold | None = None

@@ -55,8 +55,8 @@ AUTO = ReloadOptions()
 class Reloader:
     """Has saved files judged, and stages every good bundle; hears what operators ask for.
 
-    `worker` judges them; else another process does. `applied` is told of each bundle that becomes active. `wake` is
-    called, on any thread, when files have been judged.
+    `worker` judges them; else another process does. `applied` is called with each bundle that becomes active, and
+    `wake`, on any thread, when files have been judged.
     """
 
     def __init__(
