@@ -89,7 +89,7 @@ class JudgeProcess:
             start_new_session=True,  # Ctrl-C is not for it
         )
 
-    def ask(self, question: Any, timeout: float | None = None) -> Any:
+    def ask(self, question: Any, timeout: float = threading.TIMEOUT_MAX) -> Any:
         """Return the answer, or raise it if it is an exception.
 
         Raises NoAnswerError if the process ends without one, or is ended because it needs more than `timeout` [s].
@@ -97,18 +97,20 @@ class JudgeProcess:
         with self._asking:
             if (child := self._child) is None:
                 raise NoAnswerError(Fault.ENDED, 0)
-            began = time.monotonic()
+            began, timer = time.monotonic(), threading.Timer(timeout, child.kill)
+            timer.start()
             try:
-                with _killed_after(child, timeout):
-                    self._send(child, question)
-                    answer = self._received(child)
+                self._send(child, question)
+                answer = self._received(child)
             except (OSError, EOFError, pickle.UnpicklingError, _SizeError) as error:
                 self._end(child)
-                late = timeout is not None and time.monotonic() - began >= timeout
+                late = time.monotonic() - began >= timeout
                 raise NoAnswerError(_fault(error, child.returncode, late=late), child.returncode) from None
             except BaseException:  # the answer is still to come, and would be taken for that to the next question
                 self._end(child)
                 raise
+            finally:
+                timer.cancel()
         if isinstance(answer, Exception):
             raise answer
         return answer
@@ -228,19 +230,6 @@ def _limit_memory(most: int) -> None:
 
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_AS, (most, most))
-
-
-@contextmanager
-def _killed_after(child: "subprocess.Popen[bytes]", seconds: float | None) -> Iterator[None]:
-    if seconds is None:
-        yield
-        return
-    timer = threading.Timer(seconds, child.kill)
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
 
 
 def _fault(error: Exception, code: int, *, late: bool) -> Fault:
