@@ -11,6 +11,7 @@ from lumen.app.parts.visitor import RemoteVisitorPart
 from lumen.app.processes.bundles import BundleFollower
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.services import Services
+from lumen.interpreters.bounds import analyse
 from lumen.language.projects import Project
 from lumen.robots.person_hold import StoppedBy
 from lumen.runtime.presence import Presence
@@ -45,6 +46,7 @@ def robot(services: Services) -> HostedRobotPart:
     """Make a robot whose brain is in another process, or finds it over the bus in this one."""
     noticed = services.noticed if not services.plan.brain else lambda _: None
     project, bus, setup = services.plan.project, services.bus, services.setup
+    analyse(project.motions.values(), project.body)  # now, so that the first motion waits for nothing
     return HostedRobotPart(project, bus, setup, _presence(services), services.narrator, noticed)
 
 

@@ -28,7 +28,7 @@ def journal(services: Services) -> None:
     records = directory.records if directory else RunRecords(None)
     rehearsed = plan.story is not None or directory is None
     services.provide(records, record_inputs(services.behavior, records, story=plan.story, rehearsed=rehearsed))
-    if directory and not plan.story:
+    if directory and (plan.roles or not plan.story):
         analyse(plan.project.motions.values(), plan.project.body)
 
 
@@ -89,8 +89,12 @@ def operator(services: Services) -> OperatorPart:
 
 
 def records(services: Services) -> RecordsPart:
-    """Make the part that keeps where the behaviour stands, and writes the journal to its end."""
-    lasts = directory_of(services) is not None and services.plan.story is None
+    """Make the part that keeps where the behaviour stands, and writes the journal to its end.
+
+    A story keeps nothing in one process; in a brain's own process it goes on after a crash.
+    """
+    plan = services.plan
+    lasts = directory_of(services) is not None and (plan.story is None or bool(plan.roles))
     return RecordsPart(services[RunRecords], services.behavior, services.needs, lasts=lasts)
 
 
