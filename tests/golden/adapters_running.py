@@ -116,7 +116,7 @@ def described(node: Node) -> dict[str, Any]:
         "parts": [_part(node, part) for part in node.parts],
         "observers": [_word(one, {**OBSERVERS, **PARTS}) for one in _observers(node)],
         "each tick before the parts": [_callable(one) for one in node._before],
-        "leaps": node._leaps,
+        "leaps": node._time.leaps,
     }
 
 
