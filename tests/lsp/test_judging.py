@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from lumen.lsp.analysis import Analysis, Judgement
-from lumen.lsp.judging import Judge, Questions
+from lumen.lsp.judging import Judge, JudgingQuestions
 from tests.waiting import HANG
 
 
@@ -73,7 +73,7 @@ def test_a_second_question_makes_the_first_outdated() -> None:
 
 
 def test_a_judgement_ends_when_a_newer_number_has_come() -> None:
-    questions = Questions(SimpleNamespace())  # type: ignore[arg-type]
+    questions = JudgingQuestions(SimpleNamespace())  # type: ignore[arg-type]
     done = Judgement((), {})
 
     def judged(between: Callable[[], None], newest: int) -> Judgement:

@@ -1,5 +1,6 @@
 """The stranger's distribution, built and installed into a folder of its own, for processes and for this one."""
 
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -28,6 +29,7 @@ class Installed:
         """Install a distribution whose module of its name is the manifest, and use it from now on."""
         module = name.replace("-", "_")
         files = {f"{name}.py": text for name, text in {module: manifest, **modules}.items()}
+        shutil.rmtree(self.folder / "__pycache__", ignore_errors=True)  # Python sees no change within a second
         write_distribution(self.folder, name, f"{module}:FEATURE", files, version)
         self._contexts.close()
         self._contexts.enter_context(on_path(self.folder))

@@ -123,6 +123,7 @@ def hall(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return root
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("case", FAULTS)
 def test_faulty_code_ends_with_a_sentence_that_names_its_package(
     case: str, installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str]

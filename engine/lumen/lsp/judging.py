@@ -57,7 +57,7 @@ class OutdatedError(Exception):
     """A newer question came while the project was being judged."""
 
 
-class Questions:
+class JudgingQuestions:
     """The questions of a server, each with its number; `None` as question makes those before it outdated."""
 
     def __init__(self, pipe: AnswerPipe) -> None:
@@ -98,7 +98,7 @@ class Questions:
 
 def main() -> None:
     with answering() as pipe:
-        Questions(pipe).answer()
+        JudgingQuestions(pipe).answer()
 
 
 if __name__ == "__main__":

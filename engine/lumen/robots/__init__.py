@@ -12,7 +12,6 @@ How a command is performed:
     command_table.py      what every robot knows of each command: a row for each
     command_bounds.py     each command is brought within the limits and speeds of the body
     joint_ways.py         to the posture that a motion begins in, and back after a cancel
-    body_parts.py         which parts of the body a command owns
     executor.py           a command waits until its parts are free, then runs until it is done
     person_hold.py        a robot that a person stopped moves for nobody, until a person lets it
     cues.py               the words and sounds of a motion, as their times come
