@@ -1,4 +1,4 @@
-"""What `lumen run` says of a bus that can't be reached, for one robot and for several."""
+"""The message of `lumen run` about a bus that can't be reached, for one robot and for several."""
 
 from pathlib import Path
 

@@ -36,9 +36,9 @@ def start(exhibitions: Sequence[Services]) -> None:
 
 
 def claim(exhibitions: Sequence[Services]) -> None:
-    """Wait until nobody else on the bus has answered that it is one of these robots, or has one of these roles.
+    """Wait for answers of other processes that are one of these robots, or have one of these roles.
 
-    Raises UsageError if somebody has.
+    Raises UsageError if one answers.
     """
     waiting = [one.node for one in exhibitions]
     while waiting := [node for node in waiting if node.claims()]:

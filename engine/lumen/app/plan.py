@@ -18,13 +18,13 @@ class Plan:
     """One robot's exhibition in this process: all of it, or the `roles` of one process of several.
 
     `setup` is the robot, None if another process has it; then `clock` is the time. With a `story` its visitor plays it.
-    The bus is an address or an open bus, which ends with the exhibition. `narrator` tells what happens. `language` is
+    The bus is an address or an open bus, which ends with the exhibition. `narrator` prints what happens. `language` is
     the one that the robot speaks first, empty for the project's. `speed` is a multiple of real time for one process of
     several, whose others have to have the same.
 
     A `silent` one publishes nothing of the behaviour, and of the senses only those that the behaviour hears of. With
     `leaps` it passes over ticks in which nothing happens. The functions in `before` are called at each tick with its
-    time [s], before the parts. `options` say what else is wanted, by the name that a part's row asks for.
+    time [s], before the parts. `options` has the other wishes, by the names in the rows of parts.
     """
 
     project: Project

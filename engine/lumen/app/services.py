@@ -98,17 +98,17 @@ class Services:
 
     @property
     def lasts(self) -> bool:
-        """Whether the run has a home for what it keeps: no story does, and no guest of another run."""
+        """Whether the run keeps files in a home: not for a story, nor as a guest of another run."""
         directory = self.plan.options.get("directory")
         return bool(directory and directory.home) and self.plan.story is None
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """What the parts wait for that serve the behaviour: its robot, if that may be in another process."""
+        """The parts that those around the behaviour wait for: its robot, if that may be in another process."""
         return (ROBOT_PART,) if self.plan.roles else ()
 
     def tell(self, who: str) -> Callable[[str], None]:
-        """Return a function that tells lines about somebody."""
+        """Return a function that prints lines about a part."""
         return partial(self.narrator.line, who)
 
     def noticed(self, event: Event) -> None:
@@ -123,7 +123,7 @@ class Services:
         return presence_of(plan.project, self.bus, roles, self._said)
 
     def _said(self) -> dict[str, Any]:
-        """What others hear of this process besides that it is there."""
+        """The fields of the presence that others get from this process."""
         robot = self.get(RobotPart)
         body: dict[str, Any] = {"bundle": self.project.hash}
         if self.plan.roles:

@@ -42,7 +42,7 @@ class Setup:
 
 @dataclass(frozen=True)
 class RobotRequest:
-    """What a robot is set up for.
+    """A request for a robot.
 
     `speed` is one of `SPEEDS`. `imperfections` replace the project's, None for none. `options` are those of the robot's
     row that were given, by their names.

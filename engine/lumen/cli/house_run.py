@@ -117,7 +117,7 @@ class HouseRun:
         return plan_of(self._options, one, self._parts, self._url, setup, clock, transcript, greeting=typed)
 
     def _failure(self) -> str:
-        """Why the story failed; empty if it did not, or if there is none."""
+        """The reason why the story failed; empty if it did not, or without a story."""
         visitor = self.made[self._first].get(VisitorPart)
         return visitor.player.failure if visitor and visitor.player else ""
 

@@ -40,7 +40,7 @@ def running(made: Sequence[Services], project: Project) -> Project:
 
 
 def leave(made: Iterable[Services]) -> None:
-    """End these exhibitions so that the next run goes on where they were."""
+    """End these exhibitions, and let the next run continue from there."""
     for one in made:
         one.node.interrupt(2, leave=True)
 

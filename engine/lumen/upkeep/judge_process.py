@@ -17,9 +17,9 @@ from enum import Enum
 from typing import IO, Any
 
 MAX_MEMORY = 1 << 30
-"""How much memory a process under limits can use [bytes]; a behaviour of ten thousand states needs a third."""
+"""The memory limit of a process [bytes]; a behaviour of ten thousand states needs a third."""
 ANSWER_TIMEOUT = 60.0
-"""How long a judgement of a project's files may take [s]."""
+"""The time limit for judging the files of a project [s]."""
 NICENESS = 5
 """How far a process under limits gives way to others, above all to the robot (`nice`)."""
 OUT_OF_MEMORY = 77

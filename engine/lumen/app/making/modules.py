@@ -17,7 +17,7 @@ from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART
 class ModulesPlan:
     """How modules take part: what they keep is in `folder`, None if nothing lasts.
 
-    If they are `awaited`, each tick waits for the eyes, so that what they see does not depend on the machine.
+    If they are `awaited`, each tick waits for the eyes, so that their faces do not depend on the machine.
     """
 
     folder: Path | None = None
@@ -35,13 +35,13 @@ def modules(services: Services) -> list[Part]:
 
 
 def troubles(services: Services) -> ModuleTroublesPart:
-    """Make the part that tells what modules elsewhere can't do."""
+    """Make the part that prints the troubles of modules in other processes."""
     own = [part.name for part in services.node.parts if isinstance(part, ModulePart)]
     return ModuleTroublesPart(services.project, services.bus, services.narrator.line, own)
 
 
 def _module(services: Services, name: str) -> Part | None:
-    """Make a module. In an exhibition one that can't work is told of, and the others take part.
+    """Make a module. An exhibition reports one that can't work, and runs without it.
 
     Raises ModuleError if the process is to be that module.
     """

@@ -62,7 +62,7 @@ def narrator(services: Services) -> None:
 
 
 def brain(services: Services) -> RemoteBrainPart:
-    """Make the part that lets the behaviour take its steps."""
+    """Make the part that steps the behaviour."""
     directory: RunDirectory = services.plan.options["directory"]
     return RemoteBrainPart(
         services[LiveBehavior],

@@ -91,7 +91,7 @@ def operator(services: Services) -> OperatorPart:
 def records(services: Services) -> RecordsPart:
     """Make the part that keeps where the behaviour stands, and writes the journal to its end.
 
-    A story keeps nothing in one process; in a brain's own process it goes on after a crash.
+    A story keeps nothing in one process; in a brain's own process it continues after a crash.
     """
     plan = services.plan
     lasts = directory_of(services) is not None and (plan.story is None or bool(plan.roles))

@@ -24,7 +24,7 @@ def recording(services: Services) -> RecordingPart:
 
 
 def alerts(services: Services) -> AlertPart:
-    """Make the part that has people told of what goes wrong."""
+    """Make the part that sends alerts about trouble."""
     plan, desk = services.plan, services.plan.options["alerts"]
     directory, recording = directory_of(services), services.get(RecordingPart)
     records = directory.records if directory else RunRecords(None)
@@ -42,6 +42,6 @@ def alerts(services: Services) -> AlertPart:
 
 
 def refusals(services: Services) -> RefusalPart:
-    """Make the part that has people told of refused files."""
+    """Make the part that sends alerts about refused files."""
     desk: AlertDesk = services.plan.options["alerts"]
     return RefusalPart(services[Reloader], desk)

@@ -38,7 +38,7 @@ def behavior(services: Services) -> None:
 
 
 def visitor(services: Services) -> VisitorPart | None:
-    """Make the visitor in the hall around the robot, if it stands in one.
+    """Make the visitor in the hall around the robot, if it has one.
 
     Raises UsageError if a story needs another hall.
     """
@@ -79,7 +79,7 @@ def narrator(services: Services) -> None:
 
 
 def brain(services: Services) -> BrainPart:
-    """Make the part that lets the behaviour take its steps."""
+    """Make the part that steps the behaviour."""
 
     def recover() -> Resumption | FreshStart:
         from lumen.app.making.serving import recovered  # rehearsals have no run before

@@ -203,7 +203,7 @@ class SimulatedRobot:
 
     @cached_property
     def _senses(self) -> Mapping[str, Callable[[], Reading | None]]:
-        """What measures each sense."""
+        """The method that measures each sense."""
         return {
             IMAGE: self._image,
             JOINT: self._joints,
