@@ -13,7 +13,7 @@ from lumen.modules.audio_track import AudioTrack
 
 @dataclass(frozen=True, slots=True)
 class FilmPlan:
-    """A video of a simulated robot: its file, its sound, its size (width, height) [px], and its progress on the terminal."""
+    """A video of a simulated robot: its file, sound, size (width, height) [px], and progress on the terminal."""
 
     path: Path
     track: AudioTrack | None = None
