@@ -58,7 +58,9 @@ def line(name: str, project: Project, snapshot: Any, doings: Doings, status: Any
     view = NowView()
 
     def take() -> Any:
-        return moment(project, snapshot, 1.0, doings, position=1, approvals=Approvals(), events=0, status=status)
+        return moment(
+            project, snapshot, 1.0, doings, position=1, approvals=Approvals(), model=None, events=0, status=status
+        )
 
     taken, told = milliseconds(take), milliseconds(lambda: view.tell(take()))
     size = len(json.dumps(view.tell(take()))) / 1000

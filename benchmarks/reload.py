@@ -31,7 +31,7 @@ from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
 from lumen.app.plan import Plan
 from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader
+from lumen.app.reload.reloader import Reloader, ReloadOptions
 from lumen.app.reload.report import ReloadReport
 from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.setup import Setup
@@ -167,7 +167,7 @@ class Soak:
         home = Home(root / ".lumen")
         home.hold()
         records = RunRecords(home)
-        self.reloading = Reloader(self.show.behavior, narrator, records=records, quiet=quiet)
+        self.reloading = Reloader(self.show.behavior, narrator, ReloadOptions(quiet=quiet), records=records)
         parts = self.show.node.parts
         parts.insert(parts.index(self.show.brain), ReloadPart(self.reloading))
         parts += [RecordsPart(records, self.show.behavior, lasts=True), LookPart(self.look)]

@@ -25,10 +25,9 @@ from patterns import importable, imports, measured
 from lumen.buses.checking import SchemaCheck
 from lumen.interpreters.json_schema import JsonSchema
 from lumen.loading.files import read_files
-from lumen.loading.project_folders import FILE_KINDS
+from lumen.loading.project_folders import FILE_KINDS, kind_of
 from lumen.loading.schema import load_schema
 from lumen.loading.yaml_reader import parse
-from lumen.lsp.grammar import kind_of
 
 Schema = Mapping[str, Any]
 Fits = Callable[[Any], object]
