@@ -38,8 +38,13 @@ def on_path(folder: Path) -> Iterator[None]:
 
 
 def _forget() -> None:
-    """Let Lumen find its features again: forget what its functions with a cache returned."""
+    """Let Lumen find its features again: forget what its functions with a cache returned.
+
+    The process that waits to judge files knows the features of its own start, so it ends.
+    """
     invalidate_caches()
+    if idle := sys.modules.get("lumen.app.reload.idle_process"):
+        idle.end_idle()
     for name, module in list(sys.modules.items()):
         if name.partition(".")[0] == "lumen":
             for value in list(vars(module).values()):

@@ -6,7 +6,6 @@ from typing import Any
 from lumen.distributions import Distribution, distributions
 from lumen.errors import LumenError, UsageError
 from lumen.feature import Feature, FeatureFault, distribution_of, found, resolve
-from lumen.interpreters.arguments import need_methods
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place
 from lumen.loading.packaged import PACKAGE
 from lumen.loading.project_folders import MAIN_FILE
@@ -95,6 +94,8 @@ def fault_of_package(error: BaseException) -> str:
 
 def need_made(feature: Feature, where: str, value: Any, kind: type, what: str) -> None:
     """Raise LumenError if what an import string made lacks a method of a protocol."""
+    from lumen.interpreters.arguments import need_methods  # kept findings need no interpreters
+
     try:
         need_methods(value, kind, what)
     except UsageError as error:
