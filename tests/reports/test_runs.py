@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import lumen
+from lumen.app.compose import begin
 from lumen.app.exhibition import Exhibition
 from lumen.app.parts.brain import BrainPart
 from lumen.app.parts.remote_brain import RemoteHold
@@ -18,7 +19,6 @@ from lumen.app.rehearsal import RehearsalTrace, rehearse
 from lumen.app.services import Services
 from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
-from lumen.cli import run as running
 from lumen.cli.main import main
 from lumen.console.entry_words import OTHERS, text_of
 from lumen.interpreters.statechart import Step
@@ -368,13 +368,13 @@ def test_a_stop_comes_before_what_it_cancels_and_is_no_trouble(tmp_path: Path) -
 def test_a_run_that_a_person_stopped_says_so_at_its_end(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    root, begin = exhibition(tmp_path, STOPPED, WAIT), running.begin
+    root = exhibition(tmp_path, STOPPED, WAIT)
 
     def stopped(shows: Sequence[Services]) -> None:
         begin(shows)
         shows[0][BrainPart].rest("ada on stand")
 
-    monkeypatch.setattr(running, "begin", stopped)
+    monkeypatch.setattr("lumen.cli.run.begin", stopped)
     assert run(root, "--for", "1s") == 0
     told = capsys.readouterr().out
     assert "\nStopped by ada on stand: 0:01 of simulated time" in told
