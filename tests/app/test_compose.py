@@ -6,7 +6,7 @@ import pytest
 
 import lumen
 from lumen.app import compose as composing
-from lumen.app.compose import begin, compose, ordered, part_rows, start
+from lumen.app.compose import begin, claim, compose, ordered, part_rows, start
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.parts.brain import BrainPart
 from lumen.app.parts.part import Part
@@ -140,6 +140,17 @@ def test_a_process_of_several_has_the_parts_of_its_role(monkeypatch: pytest.Monk
     assert services.presence
     assert services.presence.parts == ("lights",)
     assert services.get(LiveBehavior) is None
+    services.node.close()
+
+
+def test_others_have_the_whole_time_to_answer_however_long_the_parts_took(monkeypatch: pytest.MonkeyPatch) -> None:
+    services = compose(Plan(project(), roles=("lights",), clock=RealClock()))
+    services.node._asked -= 60.0
+    assert services.presence
+    asked = []
+    monkeypatch.setattr(composing.time, "sleep", asked.append)
+    claim([services])
+    assert asked
     services.node.close()
 
 

@@ -41,6 +41,8 @@ def claim(exhibitions: Sequence[Services]) -> None:
     Raises UsageError if one answers.
     """
     waiting = [one.node for one in exhibitions]
+    for node in waiting:
+        node.ask()  # to make the parts may have taken longer than others have to answer
     while waiting := [node for node in waiting if node.claims()]:
         time.sleep(CLAIM_INTERVAL)
 

@@ -6,7 +6,7 @@ from contextlib import AbstractContextManager, ExitStack, closing
 from dataclasses import dataclass
 from math import ceil, inf
 
-from lumen.app.claiming import CLAIM_DURATION, CLAIM_INTERVAL, refuse_rivals, refuse_silence
+from lumen.app.claiming import CLAIM_DURATION, refuse_rivals, refuse_silence
 from lumen.app.living import ROUNDING, live
 from lumen.app.nap import Nap
 from lumen.app.narrator import Narrator
@@ -113,14 +113,12 @@ class Node:
         self._interrupts += times
         self._leaving = leave
 
-    def claim(self) -> None:
-        """Be what it is to be. Raises UsageError where another process is that already."""
+    def ask(self) -> None:
+        """Ask from now on whether another process is what this one is to be."""
         self._asked = time.monotonic()
-        while self.claims():
-            time.sleep(CLAIM_INTERVAL)
 
     def claims(self) -> bool:
-        """Whether it still waits for others to say that they are what it is to be; raises what `claim` raises."""
+        """Whether it still waits for others to say that they are what it is to be. Raises UsageError if one says so."""
         if self.presence is None or self.presence.settled:
             return False
         self.presence.tick()
@@ -128,8 +126,7 @@ class Node:
         return not self.presence.settled
 
     def begin(self) -> None:
-        """Begin the parts that need nobody else, once it has claimed what it is. Raises what `claim` raises."""
-        self.claim()
+        """Begin the parts that need no other process, once it has claimed what it is."""
         self._begin(self.now)
 
     def run(self, period: float | None = None) -> float:
