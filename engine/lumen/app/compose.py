@@ -42,7 +42,7 @@ def claim(exhibitions: Sequence[Services]) -> None:
     """
     waiting = [one.node for one in exhibitions]
     for node in waiting:
-        node.ask()  # to make the parts may have taken longer than others have to answer
+        node.ask()  # making the parts can take longer than the time for objections
     while waiting := [node for node in waiting if node.claims()]:
         time.sleep(CLAIM_INTERVAL)
 

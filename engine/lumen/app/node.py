@@ -114,11 +114,11 @@ class Node:
         self._leaving = leave
 
     def ask(self) -> None:
-        """Ask from now on whether another process is what this one is to be."""
+        """Start the time within which another process can object to this process's roles."""
         self._asked = time.monotonic()
 
     def claims(self) -> bool:
-        """Whether it still waits for others to say that they are what it is to be. Raises UsageError if one says so."""
+        """Whether other processes can still object to this process's roles. Raises UsageError if one objects."""
         if self.presence is None or self.presence.settled:
             return False
         self.presence.tick()
@@ -126,7 +126,7 @@ class Node:
         return not self.presence.settled
 
     def begin(self) -> None:
-        """Begin the parts that need no other process, once it has claimed what it is."""
+        """Begin the parts that need no other process, after `claims` has returned False."""
         self._begin(self.now)
 
     def run(self, period: float | None = None) -> float:
