@@ -100,4 +100,4 @@ def test_publishing_on_a_bus_of_ones_own_arrives_as_one_message() -> None:
     wrapped(bus).publish("lumen.x", {"a": 1}, reply_to="lumen.me", correlation_id="7", ttl=2.0)
     (sent,) = bus.sent
     assert sent[:5] == ("lumen.x", {"a": 1}, "lumen.me", "7", 2.0)
-    assert sent.origin.id
+    assert sent.id

@@ -15,7 +15,7 @@ from typing import Any
 from lumen.buses.bodies import JSON, check_key, check_subscription, encode
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import OutageLog
-from lumen.buses.identities import filled
+from lumen.buses.identities import origin_of
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.packing import packed
 from lumen.buses.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of
@@ -110,7 +110,7 @@ class AmqpBus(Bus):
     def send(self, message: Outgoing) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: publishing is no longer possible")
-        key, body, reply_to, correlation_id, ttl, origin = message
+        key, body, reply_to, correlation_id, ttl, *_ = message
         for name in (key, reply_to, correlation_id):
             check_key(name)
         route = self._routes.get(key)
@@ -133,7 +133,7 @@ class AmqpBus(Bus):
                 deadline,
                 keep=keep,
                 must=must,
-                origin=filled(origin, self.sender),
+                origin=origin_of(message, self.sender),
                 headers=form.headers if form else None,
             )
         )

@@ -58,7 +58,10 @@ def _object(body: dict[Any, Any], depth: int) -> dict[str, Any]:
     own = {}
     for key, value in body.items():
         kind = type(value)
-        if kind is int or kind is float:
+        if kind is float:
+            if not isfinite(value):
+                _number(value)
+        elif kind is int:
             if not MIN_INTEGER <= value <= MAX_INTEGER:
                 _number(value)
         elif kind not in _SCALARS:

@@ -1,19 +1,15 @@
 """Ids of messages, and what is believed of the ids, senders and times that come in."""
 
-import secrets
-from itertools import count
 from time import time as now
 
 from lumen.language.causes import MessageOrigin
 from lumen.language.numbers import is_number
+from lumen.ports import NUMBERS, PREFIX, Outgoing
 
 MAX_IDENTITY_BYTES = 255
 """How long an id or a sender may be [bytes]: AMQP's bound on a short string."""
 MAX_TIME = 253_402_300_800.0
 """The end of the year 9999 [s since 1970]."""
-
-PREFIX, NUMBERS = secrets.token_hex(5), count(1)
-"""What every id of this process begins with, and what makes it one of its own."""
 
 
 def new_id() -> str:
@@ -21,10 +17,9 @@ def new_id() -> str:
     return f"{PREFIX}-{next(NUMBERS)}"
 
 
-def filled(origin: MessageOrigin, sender: str) -> MessageOrigin:
-    """What a message of ours says of itself; what `origin` leaves empty is filled in."""
-    id, own, time, cause = origin
-    return MessageOrigin(id or new_id(), own or sender, time or now(), cause)
+def origin_of(message: Outgoing, sender: str) -> MessageOrigin:
+    """Return where a message comes from; the id, the sender and the time are filled in if the message lacks them."""
+    return MessageOrigin(message.id or new_id(), message.sender or sender, message.time or now(), message.cause)
 
 
 def believed(id: object = "", sender: object = "", time: object = 0.0, cause: object = "") -> MessageOrigin:

@@ -18,7 +18,7 @@ from typing import Any
 from weakref import WeakValueDictionary
 
 from lumen.buses.bodies import check_key, check_subscription, copied
-from lumen.buses.identities import NUMBERS, PREFIX, new_id
+from lumen.buses.identities import new_id
 from lumen.errors import BusClosedError, Refused
 from lumen.interpreters.routing import matches
 from lumen.language.routes import Route
@@ -96,6 +96,20 @@ class _Hub:
                 (listeners, Message(message.reply_to, text, "", message.correlation_id, new_id(), "", time()))
             )
 
+    def hand_over(self, subscriptions: tuple[_Subscription, ...], message: Message) -> None:
+        """Call the handlers, and answer the sender for each that refuses."""
+        last = subscriptions[-1]
+        for subscription in subscriptions:
+            if not subscription.active:
+                continue
+            try:
+                own = message if subscription is last else message._replace(body=copied(message.body))
+                subscription.handler(own)
+            except Refused as error:
+                self.refuse(message, str(error))
+            except Exception:
+                _log.exception("a subscriber of `%s` failed on `%s`", subscription.pattern, message.key)
+
     def deliver(self) -> None:
         """Empty the queue, unless somebody is at it already.
 
@@ -108,8 +122,7 @@ class _Hub:
                 while queue:
                     item = queue.popleft()
                     if type(item) is tuple:
-                        for message, reason in _hand_over(*item):
-                            self.refuse(message, reason)
+                        self.hand_over(*item)
                     else:
                         item()  # type: ignore[operator]
                 if self.drops.untold:
@@ -117,23 +130,6 @@ class _Hub:
             finally:
                 self.deliverer = 0
                 delivering.release()
-
-
-def _hand_over(subscriptions: tuple[_Subscription, ...], message: Message) -> list[tuple[Message, str]]:
-    """Call the handlers; which of them refuse, and why."""
-    last = subscriptions[-1]
-    refused: list[tuple[Message, str]] = []
-    for subscription in subscriptions:
-        if not subscription.active:
-            continue
-        try:
-            own = message if subscription is last else message._replace(body=copied(message.body))
-            subscription.handler(own)
-        except Refused as error:
-            refused.append((message, str(error)))
-        except Exception:
-            _log.exception("a subscriber of `%s` failed on `%s`", subscription.pattern, message.key)
-    return refused
 
 
 _shared: WeakValueDictionary[str, _Hub] = WeakValueDictionary()
@@ -181,18 +177,15 @@ class MemoryBus(Bus):
     def send(self, message: Outgoing) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: publishing is no longer possible")
-        key, body, reply_to, correlation_id, _, origin = message
+        key, body, reply_to, correlation_id, _, id, sender, sent_at, cause = message
         own = copied(body)
         hub = self._hub
         listeners = hub.listeners.get(key)
         if listeners is None:
             listeners = hub.find(key)
         if listeners:
-            id, sender, when, cause = origin  # as `filled` fills it in, without making another
-            id = id or f"{PREFIX}-{next(NUMBERS)}"
-            filled = (id, sender or self.sender, when or time(), cause)
-            sent = _new(Message, (key, own, reply_to, correlation_id, *filled))
-            hub.queue.append((listeners, sent))
+            origin = (id or new_id(), sender or self.sender, sent_at or time(), cause)  # as `origin_of` gives it
+            hub.queue.append((listeners, _new(Message, (key, own, reply_to, correlation_id, *origin))))
             if len(hub.queue) > MAX_QUEUED_MESSAGES:
                 hub.shed()
             hub.deliver()

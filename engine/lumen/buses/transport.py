@@ -9,12 +9,12 @@ from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import OutageLog
 from lumen.buses.consumer import Consumer
 from lumen.buses.dispatcher import FLUSH_MARK, Dispatcher
-from lumen.buses.identities import filled
+from lumen.buses.identities import new_id
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.publisher import Publisher
 from lumen.buses.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY
 from lumen.buses.subscriptions import Delivery
-from lumen.language.causes import UNKNOWN_ORIGIN
+from lumen.language.causes import MessageOrigin
 from lumen.language.routing_keys import KEY_PREFIXES
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import RateLimiter
@@ -66,7 +66,7 @@ class Transport:
                 TEXT if text else JSON,
                 correlation_id=correlation_id,
                 deadline=deadline,
-                origin=filled(UNKNOWN_ORIGIN, sender),
+                origin=MessageOrigin(new_id(), sender, time.time()),
             )
         )
 

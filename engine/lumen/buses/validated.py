@@ -8,9 +8,7 @@ from typing import Any
 from lumen.buses.aliases import COPY, Aliases
 from lumen.buses.bodies import check_subscription
 from lumen.buses.checking import SchemaCheck, body_checks
-from lumen.buses.identities import NUMBERS, PREFIX
 from lumen.errors import BadMessageError, Refused
-from lumen.language.causes import MessageOrigin
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.language.routing_keys import KEY_PREFIXES
@@ -20,13 +18,7 @@ from lumen.upkeep.drops import ReasonLog
 OnRefused = Callable[[str, str], object]
 """Called for a message that was not handed on, with its key and the reason."""
 
-_new = tuple.__new__
-
 _log = logging.getLogger(__name__)
-
-
-def _nothing() -> None:
-    """Do nothing: no loop waits for messages."""
 
 
 class ValidatedBus(Bus):
@@ -39,8 +31,8 @@ class ValidatedBus(Bus):
 
     `arrived` is called, on any thread, when a subscriber has taken a message.
 
-    On a bus in this process a message of ours comes back as it went, with its id the very same object, which nobody
-    else can make: that one is not checked again for each subscriber.
+    On a bus in this process a message that was sent here comes back with the very same object as its id: it is not
+    checked again for each subscriber.
     """
 
     def __init__(
@@ -48,7 +40,7 @@ class ValidatedBus(Bus):
         bus: Bus,
         project: Project,
         on_refused: OnRefused | None = None,
-        arrived: Callable[[], None] = _nothing,
+        arrived: Callable[[], None] | None = None,
     ) -> None:
         self._bus, self._listeners = bus, bus.ability(KnowsListeners)
         self._on_refused = on_refused or ReasonLog(_log, "a message on `%(key)s` was refused: %(reason)s")
@@ -91,13 +83,15 @@ class ValidatedBus(Bus):
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         check_subscription(pattern, handler)
+        arrived = self._arrived
 
         def checked(message: Message) -> None:
             if message.id is not self._passed and (reason := self._wrong(message.key, message.body)):
                 self._on_refused(message.key, reason)
                 raise Refused(reason)
             handler(message)
-            self._arrived()
+            if arrived:
+                arrived()
 
         listening = _Listening(pattern, checked, self._bus.subscribe(pattern, checked))
         self._listening.append(listening)
@@ -113,18 +107,14 @@ class ValidatedBus(Bus):
         return undo
 
     def send(self, message: Outgoing) -> None:
-        key, body, reply_to, correlation_id, ttl, origin = message
+        key, body = message.key, message.body
         check = self._checks.get(key)
         if (check is None or not check.fits(body)) and (reason := self._wrong(key, body)):
             raise BadMessageError(f"a message on `{key}` cannot be sent: {reason}")
-        id, sender, when, cause = origin
-        if not id:
-            self._passed = id = f"{PREFIX}-{next(NUMBERS)}"
-            origin = _new(MessageOrigin, (id, sender, when, cause))
-            message = _new(Outgoing, (key, body, reply_to, correlation_id, ttl, origin))
+        self._passed = message.id
         self._bus.send(message)
         if (alias := self._aliases.names.get(key)) and self._aliases.used:
-            self._bus.send(message._replace(key=alias, origin=origin._replace(id=f"{id}{COPY}")))
+            self._bus.send(message._replace(key=alias, id=f"{message.id}{COPY}"))
 
     def reply(self, message: Message, body: Any) -> None:
         self._bus.reply(message, body)
@@ -170,7 +160,7 @@ def by_key(project: Project) -> dict[str, Route]:
 
 
 def validated(
-    bus: Bus, project: Project, on_refused: OnRefused | None = None, arrived: Callable[[], None] = _nothing
+    bus: Bus, project: Project, on_refused: OnRefused | None = None, arrived: Callable[[], None] | None = None
 ) -> ValidatedBus:
     """Return the bus, with everything on it checked against the project's message schemas."""
     return ValidatedBus(bus, project, on_refused, arrived)

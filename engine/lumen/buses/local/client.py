@@ -12,7 +12,7 @@ from itertools import count
 from typing import Any
 
 from lumen.buses.bodies import check_key, check_subscription, encode
-from lumen.buses.identities import filled
+from lumen.buses.identities import origin_of
 from lumen.buses.local.address import ANSWER_TIMEOUT, LocalAddress
 from lumen.buses.local.frames import (
     CLIENT,
@@ -95,12 +95,13 @@ class LocalBusClient(Bus):
     def send(self, message: Outgoing) -> None:
         if self._closed:
             raise BusClosedError("the bus is closed: publishing is no longer possible")
-        key, body, reply_to, correlation_id, ttl, origin = message
+        key, body, reply_to, correlation_id, ttl, *_ = message
         for name in (key, reply_to, correlation_id):
             check_key(name)
         if self.gone.is_set():
             raise BusClosedError("the exhibition has ended")
-        self._put(framed(["publish", key, reply_to, correlation_id, ttl, *filled(origin, self.sender)], encode(body)))
+        origin = origin_of(message, self.sender)
+        self._put(framed(["publish", key, reply_to, correlation_id, ttl, *origin], encode(body)))
 
     def returns(self, handler: Callable[[str], None]) -> None:
         self._returned = handler

@@ -60,7 +60,7 @@ class Window:
         page.send_response(200)
         page.send_header("Content-Type", f"multipart/x-mixed-replace; boundary={PART_BOUNDARY}")
         page.send_header("Cache-Control", "no-store")
-        page.send_header("Cross-MessageOrigin-Resource-Policy", "same-origin")
+        page.send_header("Cross-Origin-Resource-Policy", "same-origin")
         page.end_headers()
         with self._changed:
             self._lookers, seen = self._lookers + 1, self._number
