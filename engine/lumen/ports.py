@@ -408,7 +408,7 @@ MessageHandler = Callable[[Message], None]
 Ability = TypeVar("Ability")
 
 PREFIX, NUMBERS = urandom(5).hex(), count(1)
-"""What every message id of this process begins with, and what makes each id one of its own."""
+"""The parts of each message id: a prefix of this process, and a number."""
 
 _new = tuple.__new__  # half the price of Outgoing(…), which each message pays
 

@@ -18,7 +18,7 @@ def new_id() -> str:
 
 
 def origin_of(message: Outgoing, sender: str) -> MessageOrigin:
-    """Return where a message comes from; the id, the sender and the time are filled in if the message lacks them."""
+    """Return the origin of a message; its id, sender and time are filled in if the message lacks them."""
     return MessageOrigin(message.id or new_id(), message.sender or sender, message.time or now(), message.cause)
 
 
