@@ -37,6 +37,7 @@ BUILT_IN = (
     "lumen.features.recording:FEATURE",
     "lumen.features.reload:FEATURE",
     "lumen.features.console:FEATURE",
+    "lumen.features.editor:FEATURE",
     "lumen.features.fleet:FEATURE",
     "lumen.features.formats_charts:FEATURE",
     "lumen.features.formats_motion:FEATURE",
@@ -218,6 +219,17 @@ class Subcommand(NamedTuple):
     after: str = ""
 
 
+class EditorRow(NamedTuple):
+    """The answer of `lumen lsp` to a method of the Language Server Protocol.
+
+    `answer` is a function of the `LanguageServer` of `lumen.lsp.language_server` and the method's parameters. `options`
+    names the value of `lsprotocol` that tells the editor more, such as the letters that begin a completion.
+    """
+
+    answer: str
+    options: str = ""
+
+
 IMPORTED_KINDS = ("behavior", "controller", "motion")
 EXPORTED_KINDS = ("behavior", "controller", "diagram", "project")
 
@@ -319,6 +331,10 @@ class Feature(NamedTuple):
     """For `--format NAME` of findings, the `Renderer` of `lumen.cli.render`."""
     verdict_formats: Mapping[str, str] = {}
     """For `lumen test --format NAME`, the function from a `Verdict` to text."""
+    editor_requests: Mapping[str, EditorRow] = {}
+    """Requests and notifications of an editor that `lumen lsp` answers, by method, as `textDocument/formatting`."""
+    editor_commands: Mapping[str, str] = {}
+    """For a command that an editor has the language server run, a function of its `LanguageServer` and arguments."""
     importers: Mapping[str, Importer] = {}
     """Readers of other tools' files, by the ending of a file's name in small letters, as `.scxml`."""
     exporters: Mapping[str, Exporter] = {}

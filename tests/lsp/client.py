@@ -17,14 +17,16 @@ ENGINE = ROOT / "engine"
 class Client:
     """Starts `lumen lsp` in a project and speaks with it; notifications wait until they are asked for."""
 
-    def __init__(self, root: Path, command: list[str] | None = None, encoding: str = "utf-16") -> None:
+    def __init__(
+        self, root: Path, command: list[str] | None = None, encoding: str = "utf-16", path: str = str(ENGINE)
+    ) -> None:
         self.root = root
         self.process = Guarded(
             command or [sys.executable, "-m", "lumen", "lsp", "--stdio"],
             stdin=PIPE,
             stdout=PIPE,
             stderr=PIPE,
-            env={"PYTHONPATH": str(ENGINE), "PATH": "/usr/bin:/bin:/usr/local/bin"},
+            env={"PYTHONPATH": path, "PATH": "/usr/bin:/bin:/usr/local/bin"},
             cwd=root,
         )
         self._messages: Queue[dict[str, Any] | None] = Queue()

@@ -2,6 +2,7 @@
 
 from lumen.feature import (
     BusRow,
+    EditorRow,
     Exporter,
     Feature,
     FunctionRow,
@@ -58,5 +59,9 @@ FEATURE = Feature(
     },
     voices={"growl": "lumen_stranger.growl:Growl"},
     functions={"shout": FunctionRow("lumen_stranger.shouting:shout", ("text", "number"), "text", "text, 2")},
+    editor_requests={
+        "textDocument/documentColor": EditorRow("lumen_stranger.colours:colours", "lumen_stranger.colours:OPTIONS")
+    },
+    editor_commands={"stranger.count": "lumen_stranger.colours:count"},
     senses={"honey": SenseRow("the pots of honey", "lumen_stranger.honey:encode", "lumen_stranger.honey:decode")},
 )
