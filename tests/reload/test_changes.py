@@ -2,6 +2,8 @@
 
 import json
 import shutil
+from collections.abc import Mapping
+from dataclasses import fields, replace
 from pathlib import Path
 
 import pytest
@@ -54,6 +56,8 @@ def edited(*edits: tuple[str, str, str]) -> Project:
 
 
 PLAIN = edited()
+NOT_COMPARED = {"documents", "sections"}
+"""The places of nodes, and the sections, which this project has none of and whose changes have tests of their own."""
 
 SHOW_CHANGED = "the output to lamps, screens and sound desks (`modules.show`) changed"
 CASES: list[tuple[str, list[tuple[str, str, str]], list[str], Risk]] = [
@@ -172,6 +176,17 @@ def test_a_change_is_told(edits: list[tuple[str, str, str]], told: list[str], gr
     found = changes(PLAIN, edited(*edits))
     assert [change.sentence for change in found] == told
     assert risk(found) is greatest
+
+
+@pytest.mark.parametrize(
+    "field",
+    sorted({one.name for one in fields(Project) if isinstance(getattr(PLAIN, one.name), Mapping)} - NOT_COMPARED),
+)
+def test_entries_of_each_kind_are_compared(field: str) -> None:
+    whole = load(ROOT)
+    entries = {"x": None} if field == "robots" else getattr(whole, field)
+    full, without = replace(whole, **{field: entries}), replace(whole, **{field: {}})
+    assert changes(full, without)
 
 
 def test_another_time_of_day_is_told() -> None:

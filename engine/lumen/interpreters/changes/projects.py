@@ -1,6 +1,6 @@
 """The changes between two projects, part by part, and all of them in one line."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from itertools import groupby
 
@@ -16,11 +16,7 @@ from lumen.language.projects import Project
 MAX_SUMMARY_CHANGES = 4
 """Changes that a summary names; of what there is more of, it gives the number."""
 
-_PARTS = (
-    "behaviors", "controllers", "motions", "routes", "messages", "stories", "languages", "life", "gestures",
-    "knowledge", "questions", "sayings",
-)  # fmt: skip
-_SELF = ("root", "hash", "documents", "sections")
+_SELF = ("root", "hash", "documents")
 
 
 def changes(old: Project, new: Project) -> tuple[Change, ...]:
@@ -97,8 +93,9 @@ def _settings(old: Project, new: Project) -> Iterator[Change]:
     if old.languages[:1] != new.languages[:1]:
         yield Change("language", "", f"`{new.languages[0]}` is now the first language", Risk.BEHAVIOR, "lumen.yaml")
     yield from section_changes(old, new, lambda row: not (row.fixed or row.entries))
-    for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_PARTS, *_SELF)):
+    for field in (f.name for f in fields(Project) if f.name not in (*RESTART_FIELDS, *_SELF, "languages")):
         before, after = getattr(old, field), getattr(new, field)
-        if before != after:
+        by_entry = isinstance(after, Mapping) and field != "robots"
+        if before != after and not by_entry:
             risk = Risk.BEHAVIOR if field == "behavior" else Risk.COSMETIC
             yield Change("setting", field, f"`{field}` is now {code(after)}, not {code(before)}", risk, "lumen.yaml")
