@@ -6,6 +6,8 @@
 - A *chain* in a function: branches that compare one value with constants, of which at least two return something and
   make objects of classes from different files.
 - An *enumeration* of which at least three other files tell three or more members apart in one function or statement.
+
+Lists to which no package could want to add anything are closed on purpose (`ON_PURPOSE`), and counted apart.
 """
 
 import ast
@@ -30,7 +32,35 @@ Things = Mapping[str, str]
 """The functions, classes and modules that a file imports from the package: its name here, and the module of it."""
 
 
+ON_PURPOSE: Mapping[tuple[str, str], str] = {
+    ("interpreters/statechart/__init__.py", "_MODULES"): "where the public names of this package itself are defined",
+    ("language/diagnostics.py", "Severity"): "the levels that the formats of editors, GitHub and SARIF have",
+    ("language/machines.py", "StateKind"): "the kinds of states that the algorithm of SCXML has",
+    ("language/routes.py", "Carried"): "promises that every bus keeps; a new one would break the buses of packages",
+    ("language/verbs.py", "VERBS"): "typed verbs of every robot (decision 119); packages have rows `verbs`",
+    ("lsp/names.py", "NameKind"): "the names in Lumen's own files; those in a package's rows come from its schemas",
+    ("robots/command_table.py", "COMMANDS"): "a union that mypy checks (decision 119); packages have rows `verbs`",
+}
+"""Why a list stays closed, by its file and name."""
+
+
 def closed_lists(package: Package) -> list[Place]:
+    """The lists that must still be opened, in the order of the files."""
+    return [place for place in _found(package) if _key(place) not in ON_PURPOSE]
+
+
+def closed_on_purpose(package: Package) -> list[Place]:
+    """The lists that stay closed, each with the reason."""
+    found = [(place, ON_PURPOSE.get(_key(place))) for place in _found(package)]
+    return [place._replace(why=f"{place.why.partition(':')[0]}: {reason}") for place, reason in found if reason]
+
+
+def _key(place: Place) -> tuple[str, str]:
+    """The file and the name of a list, as in `table VERBS: GoTo, Language`."""
+    return place.path, place.why.partition(":")[0].rpartition(" ")[2]
+
+
+def _found(package: Package) -> list[Place]:
     """All such lists, in the order of the files; one that is a table and names is one list."""
     finders = (tables, names, chains, enumerations)
     found: dict[tuple[str, int], Place] = {}

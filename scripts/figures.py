@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from callables import Callables
-from closed_lists import closed_lists
+from closed_lists import closed_lists, closed_on_purpose
 from scopes import Package, Place, parameters
 from source_files import SourceFile, statements
 from wiring import added_callables, assigned_callables, composition_sites, seam_probes, storing_methods
@@ -48,6 +48,7 @@ def figures(files: Sequence[SourceFile]) -> dict[str, Figure]:
         "added callables": _number(added_callables(package, callables)),
         "storing methods": _number(storing_methods(package, callables)),
         "closed lists": _number(closed_lists(package)),
+        "lists closed on purpose": _number(closed_on_purpose(package)),
         "wide functions": _number(wide_functions(package)),
         "unformatted statements": _number(unformatted_statements(files)),
         "statements": Figure(sizes.total(), [f"{size:>7,} in {folder}" for folder, size in sizes.most_common()]),

@@ -5,7 +5,7 @@ from textwrap import dedent
 
 import pytest
 from callables import Callables
-from closed_lists import closed_lists
+from closed_lists import ON_PURPOSE, closed_lists, closed_on_purpose
 from figures import (
     Figure,
     beyond_ceilings,
@@ -202,6 +202,20 @@ def test_bare_classes_of_one_module_are_a_union_and_rows_with_them_are_a_table()
     VERBS = (Verb(Say, "say"), Verb(Play, "play"), Verb(Walk, "walk"))
     """
     assert listed(closed_lists(package({"verbs.py": code}))) == ["verbs.py:5: table VERBS: Play, Say, Walk"]
+
+
+def test_a_list_that_is_closed_on_purpose_is_counted_apart_with_its_reason() -> None:
+    commands = "class Say: ...\nclass Play: ...\nclass Walk: ...\n"
+    code = """
+    from lumen.language.commands import Say, Play, Walk
+
+    VERBS = (Verb(Say, "say"), Verb(Play, "play"), Verb(Walk, "walk"))
+    """
+    files = {"language/commands.py": commands, "language/verbs.py": code, "verbs.py": code}
+    reason = ON_PURPOSE["language/verbs.py", "VERBS"]
+    found = package(files)
+    assert listed(closed_on_purpose(found)) == [f"language/verbs.py:4: table VERBS: {reason}"]
+    assert listed(closed_lists(found)) == ["verbs.py:4: table VERBS: Play, Say, Walk"]
 
 
 def test_names_of_the_modules_of_a_folder_are_closed() -> None:

@@ -3,7 +3,9 @@
 import re
 
 import pytest
+from closed_lists import ON_PURPOSE, closed_on_purpose
 from figures import beyond_ceilings, figures
+from scopes import Package
 from scripts.shape import PACKAGE, ROOT, Shape, floor_order, measure, read
 from source_files import SourceFile
 
@@ -40,6 +42,10 @@ def test_the_figures_of_the_architecture_are_at_their_ceilings(files: list[Sourc
     held = {name: ceiling for name, ceiling in ceilings().items() if name != ENTERING}
     with gc_paused():
         assert beyond_ceilings(figures(files), held) == []
+
+
+def test_each_reason_for_a_closed_list_is_about_one_that_exists(files: list[SourceFile]) -> None:
+    assert len(closed_on_purpose(Package(files))) == len(ON_PURPOSE)
 
 
 def test_every_thread_is_watched() -> None:
