@@ -27,15 +27,19 @@ class Wire(WireConnection):
     is_open = True
 
     def __init__(self) -> None:
-        super().__init__(pika.ConnectionParameters(), custom_ioloop=IOLoop(), internal_connection_workflow=False)
+        self.had: list[tuple[int, bool]] = []
+        self.dropped: list[int] = []
+        super().__init__(
+            pika.ConnectionParameters(),
+            custom_ioloop=IOLoop(),
+            internal_connection_workflow=False,
+            unread=self.dropped.append,
+            confirmed=lambda number, several: self.had.append((number, several)),
+        )
         self._body_max_length = PIECE
         self.rest: list[Any] = []
         self.seen: list[Seen] = []
-        self.had: list[tuple[int, bool]] = []
-        self.dropped: list[int] = []
         self.readers[READER] = lambda *message: self.seen.append(message)
-        self.confirmed = lambda number, several: self.had.append((number, several))
-        self.unread = self.dropped.append
 
     @property
     def written(self) -> bytes:

@@ -42,6 +42,7 @@ class PolledConnection:
         self._used.acquire()
         self._woken = threading.Event()
         self._error: BaseException | None = None
+        self._has: Callable[[int, bool], None] | None = None
         self._works: deque[Callable[[], None]] = deque()
         self.channel: Any = None
         self._connection: Any = None
@@ -60,7 +61,6 @@ class PolledConnection:
         """A channel; the one before is gone."""
         self.channel = self._open_channel()
         self.channel.add_on_close_callback(lambda _, reason: self._closed(reason))
-        self._connection.unread = self.channel.basic_reject
         return self.channel
 
     @contextmanager
@@ -90,7 +90,7 @@ class PolledConnection:
         def refused(frame: Any) -> None:
             lacks(frame.method.delivery_tag, frame.method.multiple)
 
-        self._connection.confirmed = has
+        self._has = has
         self.ask(self.channel.confirm_delivery, refused)
 
     def consume(self, queue: str, reader: MessageReader, arguments: Mapping[str, Any] | None = None) -> str:
@@ -201,12 +201,18 @@ class PolledConnection:
             on_open_error_callback=lambda _, error: self._failed(error),
             on_close_callback=lambda _, reason: self._failed(reason),
             custom_ioloop=self._loop,
+            unread=lambda number: self.channel.basic_reject(number),
+            confirmed=self._confirmed,
         )
         self._connection.add_on_connection_blocked_callback(
             lambda _, frame: self._block(shortage(str(frame.method.reason)))
         )
         self._connection.add_on_connection_unblocked_callback(lambda *_: self._block(""))
         self.until(lambda: opened)
+
+    def _confirmed(self, number: int, several: bool) -> None:
+        if self._has:
+            self._has(number, several)
 
     def _block(self, what: str) -> None:
         self.blocked = what

@@ -51,10 +51,11 @@ class WireConnection(TolerantConnection):
 
     _frame_buffer: bytes
 
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
+    def __init__(
+        self, *args: Any, unread: Callable[[int], None], confirmed: Callable[[int, bool], None], **kwargs: Any
+    ) -> None:
         self.readers: dict[bytes, MessageReader] = {}
-        self.unread: Callable[[int], None] = lambda number: None
-        self.confirmed: Callable[[int, bool], None] | None = None
+        self._unread, self._confirmed = unread, confirmed
         self._coming: _Coming | None = None
         self._frames: list[bytes] = []
         self._size = 0
@@ -121,9 +122,9 @@ class WireConnection(TolerantConnection):
     def _take(self, kind: int, data: bytes) -> bool:
         """Use what stands in a frame; false for what is pika's."""
         if kind == spec.FRAME_METHOD:
-            if data.startswith(_ACK) and self.confirmed:
+            if data.startswith(_ACK):
                 number, several = unpack_from(">QB", data, 4)
-                self.confirmed(number, bool(several))
+                self._confirmed(number, bool(several))
                 return True
             if data.startswith(_DELIVER):
                 self._coming = _Coming(data)
@@ -148,7 +149,7 @@ class WireConnection(TolerantConnection):
             body = coming.parts[0] if len(coming.parts) == 1 else b"".join(coming.parts)
             reader(coming.number, coming.again, coming.key, coming.properties, body)
         else:
-            self.unread(coming.number)
+            self._unread(coming.number)
 
 
 def _frame(kind: int, channel: int, data: bytes) -> bytes:

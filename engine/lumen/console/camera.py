@@ -34,8 +34,25 @@ class WatchedCamera:
         self.frame, self.count, self.lookers = b"", 0, 0
         self.at = self.wanted = -FRESH
         self.bus: Bus | None = None
-        self.undo: Callable[[], None] = lambda: None
         self.came = asyncio.Event()
+        self._loop = asyncio.get_running_loop()
+        self._undo: Callable[[], None] | None = None
+
+    async def listen(self, bus: Bus, key: str) -> None:
+        """Subscribe to the images on a bus. Raises BusError if it can't be reached."""
+        self.bus = bus
+        self._undo = await asyncio.to_thread(bus.subscribe, key, self._take)
+
+    def leave(self) -> None:
+        """End the subscription."""
+        self.bus, undo, self._undo = None, self._undo, None
+        if undo:
+            self._loop.run_in_executor(None, undo)
+
+    def _take(self, message: Message) -> None:
+        if (frame := jpeg_in(message.body)) is not None:
+            with suppress(RuntimeError):  # the loop has ended
+                self._loop.call_soon_threadsafe(self.show, frame)
 
     def show(self, frame: bytes) -> None:
         self.frame, self.count, self.at = frame, self.count + 1, time.monotonic()
@@ -98,16 +115,8 @@ class Cameras:
         bus = self._watch.link.bus
         if bus is None or bus is camera.bus:
             return
-        camera.bus, loop = bus, asyncio.get_running_loop()
-
-        def take(message: Message) -> None:
-            if (frame := jpeg_in(message.body)) is not None:
-                with suppress(RuntimeError):  # the loop has ended
-                    loop.call_soon_threadsafe(camera.show, frame)
-
         with suppress(BusError):
-            key = self._watch.keys.of(robot).image
-            camera.undo = await asyncio.to_thread(bus.subscribe, key, take)
+            await camera.listen(bus, self._watch.keys.of(robot).image)
 
     def _looked(self, camera: WatchedCamera) -> None:
         """Somebody looks no more; others may."""
@@ -118,8 +127,7 @@ class Cameras:
     def _leave(self, camera: WatchedCamera) -> None:
         lately = time.monotonic() - camera.wanted < LINGER * 0.9
         if not camera.lookers and not lately and camera.bus:
-            camera.bus, undo, camera.undo = None, camera.undo, lambda: None
-            asyncio.get_running_loop().run_in_executor(None, undo)
+            camera.leave()
 
 
 def jpeg_in(body: Any) -> bytes | None:
