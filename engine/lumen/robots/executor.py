@@ -7,11 +7,12 @@ answers, and is the same for every robot that executes commands itself.
 """
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 from lumen.errors import RobotError, RobotRefusedError
+from lumen.language.added_verbs import added_verbs
 from lumen.language.commands import Do, Move, Posture, Rest, Stop, Wake
 from lumen.language.events import MISSED, RESULT, Event
 from lumen.ports import NativeCommand, RobotCommand
@@ -53,6 +54,22 @@ class Yields(Protocol):
     def result(self) -> Mapping[str, Any]:
         """JSON data; empty if it has nothing to report."""
         ...
+
+
+class ExecutingRobot:
+    """What all robots that execute commands themselves have in common."""
+
+    _executor: "Executor"
+
+    @property
+    def verbs(self) -> Collection[str]:
+        return added_verbs()
+
+    def cancel(self, id: str) -> None:
+        self._executor.cancel(id)
+
+    def begun(self) -> Sequence[str]:
+        return self._executor.begun()
 
 
 @dataclass(eq=False)

@@ -1,6 +1,6 @@
 """A robot that performs nothing, remembers everything, and takes its time: for stories, tests and authors."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, inf
 from typing import Any
@@ -8,7 +8,7 @@ from typing import Any
 from lumen.errors import RobotFailedError, UsageError
 from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
 from lumen.interpreters.projection import Vector3, centring, seen
-from lumen.language.added_verbs import added_verbs, whole_result
+from lumen.language.added_verbs import whole_result
 from lumen.language.body_parts import LEGS, WHOLE_BODY, part_of
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Do, Look, Move, Posture, Say, Walk
@@ -21,7 +21,7 @@ from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, Ro
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_table import added_verb, parts_of, row_of
 from lumen.robots.cues import CueNotifier
-from lumen.robots.executor import Activity, Executor
+from lumen.robots.executor import Activity, ExecutingRobot, Executor
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.silent_recording import SilentRecording
 
@@ -88,7 +88,7 @@ class _Walking(_Lasting):
         return super().advance(now)
 
 
-class RecordingRobot:
+class RecordingRobot(ExecutingRobot):
     """Every command takes as long as the real one would: a motion its duration, speech 0.4 s and 0.06 s a character.
 
     `behaves` maps a verb to `fails`, `hangs` or another duration [s], `results` a verb of a feature to its result (else
@@ -133,19 +133,9 @@ class RecordingRobot:
         else:
             self._executor.start(id, command)
 
-    def cancel(self, id: str) -> None:
-        self._executor.cancel(id)
-
     def poll(self) -> Sequence[Event]:
         events, self._noticed = self._noticed, []
         return events
-
-    def begun(self) -> Sequence[str]:
-        return self._executor.begun()
-
-    @property
-    def verbs(self) -> Collection[str]:
-        return added_verbs()
 
     @property
     def idle(self) -> bool:

@@ -1,10 +1,9 @@
 """A real NAO or Pepper behind the `Robot` seam."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 
 from lumen.errors import RobotLostError
 from lumen.interpreters.bounds import nearest_angles
-from lumen.language.added_verbs import added_verbs
 from lumen.language.body_parts import part_of
 from lumen.language.events import Event
 from lumen.language.projects import Stage
@@ -12,7 +11,7 @@ from lumen.language.robots import Body
 from lumen.ports import Aim, Battery, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_table import parts_of
-from lumen.robots.executor import Executor
+from lumen.robots.executor import ExecutingRobot, Executor
 from lumen.robots.naoqi.call_sequence import CallSequence
 from lumen.robots.naoqi.hardware import hardware_of
 from lumen.robots.naoqi.life import NaoqiLife
@@ -27,7 +26,7 @@ from lumen.robots.naoqi.walking_area import WalkingArea
 from lumen.robots.skill_runner import SkillRunner
 
 
-class NaoqiRobot:
+class NaoqiRobot(ExecutingRobot):
     """The NAO, or the Pepper, at `url`, in real time: `clock` [s] stamps what it answers, notices and senses.
 
     It is taken over at once: autonomous life ends, its reflexes stay on. Where the connection breaks, all commands have
@@ -80,9 +79,6 @@ class NaoqiRobot:
             self._life.led(aim.angles, self._clock())
             self._turn()
 
-    def cancel(self, id: str) -> None:
-        self._executor.cancel(id)
-
     def poll(self) -> Sequence[Event]:
         now = self._clock()
         self._feel(now)
@@ -92,13 +88,6 @@ class NaoqiRobot:
         events = [*self._events, *answers]
         self._events.clear()
         return events
-
-    def begun(self) -> Sequence[str]:
-        return self._executor.begun()
-
-    @property
-    def verbs(self) -> Collection[str]:
-        return added_verbs()
 
     def read(self, sense: Sense) -> Reading | None:
         return self._senses[sense].newest

@@ -11,7 +11,6 @@ import numpy as np
 from lumen.errors import RobotRefusedError, UsageError
 from lumen.interpreters.life import vigour
 from lumen.interpreters.projection import centring
-from lumen.language.added_verbs import added_verbs
 from lumen.language.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest, Say
@@ -25,7 +24,7 @@ from lumen.language.routes import BATTERY, IMAGE, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Image, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.command_bounds import CommandBounds
-from lumen.robots.executor import Activity, Executor
+from lumen.robots.executor import Activity, ExecutingRobot, Executor
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation.aim_controller import AimController
 from lumen.robots.simulation.base import RobotBase
@@ -61,7 +60,7 @@ _CONDITION_EVERY = 10
 """Control periods between two looks at battery and heat."""
 
 
-class SimulatedRobot:
+class SimulatedRobot(ExecutingRobot):
     """A NAO that stands on its stage and lives when `advance` is called, by the thread that calls it.
 
     `models` is the folder of the MJCF files and `hall` the name of one. The same seed and the same calls give the same
@@ -183,19 +182,9 @@ class SimulatedRobot:
             self._aiming.aim(aim)
             self._life.led(aim.angles, self.time)
 
-    def cancel(self, id: str) -> None:
-        self._executor.cancel(id)
-
     def poll(self) -> Sequence[Event]:
         events, self._events = self._events, []
         return events
-
-    def begun(self) -> Sequence[str]:
-        return self._executor.begun()
-
-    @property
-    def verbs(self) -> Collection[str]:
-        return added_verbs()
 
     def read(self, sense: Sense) -> Reading | None:
         measure = self._senses.get(sense)
