@@ -2,7 +2,7 @@
 
 import pytest
 
-from lumen.language.json_paths import schema_at, value_at, with_value
+from lumen.language.json_paths import schema_at, value_at, values_in, with_value
 from lumen.loading.document import Document
 
 DATA = {"states": {"idle": {"do": [{"say": "Hello"}]}}}
@@ -40,3 +40,11 @@ def test_another_value_at_a_path_leaves_the_data_as_it_was() -> None:
     assert with_value(before, ("tries", "left"), 2) == {"visitor": {"name": "Budi"}, "tries": {"left": 2}}
     assert with_value(before, (), None) is None
     assert before == {"visitor": {"name": "Budi"}, "tries": 1}
+
+
+def test_all_values_are_found_at_any_depth() -> None:
+    found = list(values_in(DATA))
+    assert found[0] is DATA
+    assert {"say": "Hello"} in found
+    assert "Hello" in found
+    assert len(found) == 6

@@ -1,6 +1,6 @@
-"""Values in nested maps, by path."""
+"""Values in nested maps: by path, and all of them."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 
@@ -25,3 +25,12 @@ def with_value(data: Any, path: Sequence[str | int], value: Any) -> Any:
         return value
     fields = data if isinstance(data, Mapping) else {}
     return {**fields, path[0]: with_value(fields.get(path[0]), path[1:], value)}
+
+
+def values_in(data: Any) -> Iterator[Any]:
+    """Iterate over a value, and over all values of the maps and lists in it."""
+    waiting = [data]
+    while waiting:
+        item = waiting.pop()
+        yield item
+        waiting += item.values() if isinstance(item, Mapping) else item if isinstance(item, list) else ()

@@ -9,6 +9,7 @@ from lumen.errors import ExpressionError
 from lumen.interpreters.expressions.patterns import compile_pattern
 from lumen.interpreters.json_schema import deeper_than
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
+from lumen.language.json_paths import values_in
 from lumen.loading.complaints import WRONG_TYPE, WRONG_VALUE
 from lumen.loading.document import MAX_NODE_DEPTH, TOO_LARGE, Document
 from lumen.loading.document_report import DocumentReport
@@ -146,12 +147,7 @@ def _target(data: Any, reference: str) -> Any:
 
 
 def _maps(data: Any) -> Iterator[dict[str, Any]]:
-    waiting = [data]
-    while waiting:
-        item = waiting.pop()
-        if isinstance(item, dict):
-            yield item
-        waiting += item.values() if isinstance(item, dict) else item if isinstance(item, list) else ()
+    return (item for item in values_in(data) if isinstance(item, dict))
 
 
 def _circles(data: Any, reference: str) -> bool:

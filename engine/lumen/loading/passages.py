@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from lumen.language.json_paths import values_in
 from lumen.language.robots import Body
 
 
@@ -17,12 +18,6 @@ def belongs_to(data: Any, body: Body) -> bool:
 
 def _joints(data: Any) -> Iterator[str]:
     """Every joint that a motion's file names."""
-    waiting = [data]
-    while waiting:
-        item = waiting.pop()
-        if isinstance(item, Mapping):
-            if isinstance(item.get("joints"), Mapping):
-                yield from item["joints"]
-            waiting += item.values()
-        elif isinstance(item, list):
-            waiting += item
+    for item in values_in(data):
+        if isinstance(item, Mapping) and isinstance(item.get("joints"), Mapping):
+            yield from item["joints"]

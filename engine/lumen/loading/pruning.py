@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
+from lumen.language.json_paths import values_in
 from lumen.loading.document import Document, NodeSpan
 from lumen.loading.document_report import DocumentReport
 
@@ -49,13 +50,8 @@ class _Copy:
 
 def _names(data: Any) -> Iterator[str]:
     """Every name that `data` could have told of: its keys and its texts."""
-    waiting = [data]
-    while waiting:
-        item = waiting.pop()
+    for item in values_in(data):
         if isinstance(item, str):
             yield item
         elif isinstance(item, dict):
             yield from item
-            waiting.extend(item.values())
-        elif isinstance(item, list):
-            waiting.extend(item)

@@ -10,6 +10,7 @@ from lumen.language.commands import Do
 from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean, nearest
 from lumen.language.events import robot_events
+from lumen.language.json_paths import values_in
 from lumen.language.machines import MachineDefinition, StateKind, Transition
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
@@ -113,13 +114,8 @@ def raised(document: Document) -> tuple[str, ...]:
 
 
 def _raises(data: Any) -> Iterator[str]:
-    waiting = [data]
-    while waiting:
-        item = waiting.pop()
-        if isinstance(item, list):
-            waiting.extend(item)
-        elif isinstance(item, Mapping):
-            waiting.extend(item.values())
+    for item in values_in(data):
+        if isinstance(item, Mapping):
             for body in (item.get("raise"), item.get("send")):
                 name = body.get("event") if isinstance(body, Mapping) and "to" not in body else body
                 if isinstance(name, str):

@@ -9,6 +9,7 @@ from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.actions import context_key
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath, has_errors, nearest
+from lumen.language.json_paths import values_in
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect
 from lumen.language.verbs import names_in
@@ -171,18 +172,8 @@ def _bound(controller: ControllerDefinition) -> bool:
 
 
 def _played(data: Any) -> set[str]:
-    found: set[str] = set()
-    waiting = [data]
-    while waiting:
-        item = waiting.pop()
-        if isinstance(item, Mapping):
-            if isinstance(item.get("play"), str):
-                found.add(item["play"])
-            waiting.extend(item.values())
-            waiting.extend(key for key in item if "{{" in str(key))
-        elif isinstance(item, list):
-            waiting.extend(item)
-    return found
+    maps = (item for item in values_in(data) if isinstance(item, Mapping))
+    return {item["play"] for item in maps if isinstance(item.get("play"), str)}
 
 
 def _alike_files(draft: ProjectDraft) -> None:
