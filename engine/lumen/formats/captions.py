@@ -13,14 +13,7 @@ def invocation(invoke: Invoke) -> str:
 
 def caption(transition: Transition) -> str:
     """`event [guard]`; a row of `hears` with its key, an `after` or `at` with its time, an end as done or error."""
-    event = transition.event
-    if transition.hears:
-        event = transition.hears.title
-    elif transition.timed:
-        event = transition.awaited_time
-    elif transition.exact:
-        event = "error" if event.startswith("error.") else "done"
     guard = " ".join(transition.guard.shown.split()) if transition.guard else ""
     if len(guard) > MAX_GUARD_LENGTH:
         guard = guard[: MAX_GUARD_LENGTH - 1].rstrip() + "…"
-    return " ".join(filter(None, (event, f"[{guard}]" if guard else "")))
+    return " ".join(filter(None, (transition.caption("error"), f"[{guard}]" if guard else "")))

@@ -94,6 +94,14 @@ class Transition:
             return f"after {self.delay.shown}"
         return "" if self.delay is None else f"after {self.delay:g} s"
 
+    def caption(self, failed: str) -> str:
+        """What it waits for: the key of its row of `hears`, its time, its event, or of an end `done` or `failed`."""
+        if self.hears:
+            return self.hears.title
+        if self.exact and not self.timed:
+            return failed if self.event.startswith("error.") else "done"
+        return self.awaited_time or self.event
+
 
 @dataclass(frozen=True, slots=True)
 class Invoke:

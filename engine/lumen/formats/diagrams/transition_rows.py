@@ -32,13 +32,7 @@ def rows_of(machine: MachineDefinition, state: State, only: str = "") -> Iterato
 
 def trigger(transition: Transition, *, after_others: bool = False) -> str:
     """What takes a transition; `after_others` of the same event with guards it is what is left."""
-    event = transition.event
-    if transition.hears:
-        event = transition.hears.title
-    elif transition.timed:
-        event = transition.awaited_time
-    elif transition.exact:
-        event = "failed" if event.startswith("error.") else "done"
+    event = transition.caption("failed")
     guard = guard_phrase(transition.guard) if transition.guard else ""
     if guard.startswith("“") and not transition.hears:
         return guard
