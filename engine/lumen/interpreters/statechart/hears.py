@@ -28,9 +28,9 @@ class RowBlock:
         """The guard of a row, and its guard when it is late."""
         return partial(self._holds, number, False), partial(self._holds, number, True)
 
-    def chosen(self, scope: Scope) -> int:
+    def chosen(self, scope: Scope, late: bool = False) -> int:
         """Return the number of the row that is taken, or -1; raise ExpressionError if a guard fails."""
-        for number, _ in self._order(scope, False):
+        for number, _ in self._order(scope, late):
             guard = self._own[number]
             if guard is None or guard(scope):
                 return number
@@ -38,11 +38,7 @@ class RowBlock:
 
     def chosen_late(self, scope: Scope) -> int:
         """Return the number of the late row that is taken, as `chosen`."""
-        for number, _ in self._order(scope, True):
-            guard = self._own[number]
-            if guard is None or guard(scope):
-                return number
-        return -1
+        return self.chosen(scope, True)
 
     def _order(self, scope: Scope, late: bool) -> tuple[Taken, ...]:
         hearing = self._hearing

@@ -93,24 +93,22 @@ class ReadSentence:
         """Which word negates a find; None if none does."""
         if find.entry.negative or find.entry.anyhow:
             return None
-        negations, contrasts = self._marked("negations"), self._marked("contrasts")
-        clause, between = self.clauses[find.start], 0
-        for i in range(find.start - 1, -1, -1):
+        before = self._negating("negations", range(find.start - 1, -1, -1), self.clauses[find.start], NEAR)
+        if before is not None:
+            return before
+        after = range(find.end, len(self.words))
+        return self._negating("negations_after", after, self.clauses[find.end - 1], NEAR_AFTER)
+
+    def _negating(self, kind: str, places: Iterable[int], clause: int, near: int) -> int | None:
+        """The first word of that kind within the clause, with at most `near` words between that are no fillers."""
+        negations, contrasts, between = self._marked(kind), self._marked("contrasts"), 0
+        for i in places:
             if self.clauses[i] != clause or contrasts[i]:
                 break
             if negations[i] and self.filler[i] <= negations[i]:
                 return i
             between += not self.filler[i]
-            if between > NEAR:
-                break
-        negations, clause, between = self._marked("negations_after"), self.clauses[find.end - 1], 0
-        for i in range(find.end, len(self.words)):
-            if self.clauses[i] != clause or contrasts[i]:
-                break
-            if negations[i] and self.filler[i] <= negations[i]:
-                return i
-            between += not self.filler[i]
-            if between > NEAR_AFTER:
+            if between > near:
                 break
         return None
 
