@@ -18,6 +18,7 @@ from lumen.formats.xstate.transition_reader import XStateTransitionReader
 from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.language.machines import RESUME_WORDS
+from lumen.language.numbers import is_number
 
 _MACHINE = ("types", "events", "phrases", "answers", "lists", "properties", "renamed")
 
@@ -295,7 +296,7 @@ class _XStateReader:
         found: list[tuple[str, NodePath, Any]] = []
         for number, row in enumerate(table) if isinstance(table, list) else ():
             name = row.get(named) if isinstance(row, dict) else None
-            if isinstance(name, str | int | float) and not isinstance(name, bool):
+            if isinstance(name, str) or is_number(name):
                 rest = {key: value for key, value in row.items() if key != named}
                 found.append((str(name), (*where, number), rest))
             else:

@@ -4,11 +4,11 @@ import logging
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
-from math import isfinite
 from typing import Any
 
 from lumen.errors import BusError, LumenError
 from lumen.language.events import Event, robot_events
+from lumen.language.numbers import is_finite_number
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, FeelsTouch, Hall, HasCharger, HearsVisitors, Message, Robot
@@ -129,7 +129,7 @@ def _visitor(place: Mapping[str, Any]) -> Visitor | None:
     """Somebody in the hall, None where nobody could be as the body says."""
     names = [field.name for field in fields(Visitor)]
     numbers = [place.get(name) for name in names]
-    if not all(isinstance(n, int | float) and not isinstance(n, bool) and isfinite(n) for n in numbers):
+    if not all(map(is_finite_number, numbers)):
         return None
     x, y, height = (float(number) for number in numbers if number is not None)
     near = abs(x) <= MAX_VISITOR_DISTANCE and abs(y) <= MAX_VISITOR_DISTANCE and 0.0 < height <= MAX_VISITOR_HEIGHT
