@@ -8,8 +8,6 @@ from lumen.language.routes import Direction, Route
 from lumen.language.routing_keys import KEY_PREFIXES
 
 MQTT_PORT, MQTT_TLS_PORT = 1883, 8883
-FIRST_CHANNEL, LAST_CHANNEL = 1, 512
-"""Of a DMX universe."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,11 +1,11 @@
 """The console: nobody can use it from elsewhere without a PIN, and no PIN stands in a file."""
 
 import re
-from ipaddress import ip_address
 
 from lumen.language.console_settings import ConsoleSettings
 from lumen.language.diagnostics import ERROR, Code
 from lumen.loading.draft import ProjectDraft
+from lumen.rules.alerts import loopback
 from lumen.rules.routes import PASSWORD_IN_FILE
 
 OPEN_CONSOLE = Code("open-console", "robot", ERROR, "other computers can reach the console, and it has no PINs")
@@ -25,16 +25,9 @@ def check(draft: ProjectDraft) -> None:
             hint = f"write `{role}: $LUMEN_PIN_{role.upper()}`, and put the PIN into that environment variable"
             where = ("console", "pins", role)
             report(PASSWORD_IN_FILE, where, "a PIN is in a file that others can read", hint)
-    if not console.pins and not _loopback(console.host):
+    if not console.pins and not loopback(console.host):
         hint = (
             "write `pins: {operator: $LUMEN_PIN_OPERATOR}`, or delete `host`, so that only this computer can reach it"
         )
         message = f"anyone who can reach {console.host} can control the robot"
         report(OPEN_CONSOLE, ("console", "host"), message, hint)
-
-
-def _loopback(host: str) -> bool:
-    try:
-        return host == "localhost" or ip_address(host).is_loopback
-    except ValueError:
-        return False

@@ -9,7 +9,6 @@ _FINAL = "nothing follows a final state"
 _ENTERED = "a parallel state enters all of its states"
 _PROCESSOR = "write `type`"
 _ONE_FILE = "other files are not read"
-_DEFAULT = "a transition into a state has no event or condition"
 
 ATTRIBUTES: FormatTable = {
     "scxml": Known(

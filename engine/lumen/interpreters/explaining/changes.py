@@ -14,8 +14,6 @@ ProposedChange = Mapping[str, Any]
 `wait` how long nothing else may happen [s].
 """
 
-_MISSING = object()
-
 
 class StepSituation(NamedTuple):
     """From where a step is taken, and with what; `owner` says to which behaviour the edits of a context go."""
