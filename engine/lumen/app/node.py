@@ -19,7 +19,7 @@ from lumen.language.events import Event
 from lumen.language.nanoseconds import to_the_nanosecond
 from lumen.language.projects import Project
 from lumen.ports import Clock, CountsDrops, Dozes
-from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
+from lumen.robots.robot_routes import COMMAND_ROUTE
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.trace_publisher import TRACE_ROUTE
@@ -239,7 +239,7 @@ class Node:
         """Whether those are there that it needs; where not, that is said once."""
         for need in part.needs:
             if self.presence and need not in self.presence.parts and not self._here(self.presence, need):
-                key = key_of(self._project, COMMAND_ROUTE if need == ROBOT_PART else TRACE_ROUTE)
+                key = self._project.key_of(COMMAND_ROUTE if need == ROBOT_PART else TRACE_ROUTE)
                 line = f"waiting for the {need} on {key}"
                 if line != self._waiting:
                     self._waiting = line

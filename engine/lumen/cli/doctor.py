@@ -24,7 +24,7 @@ from lumen.language.routes import Direction
 from lumen.loading.files import read_files
 from lumen.loading.own_project import own_project
 from lumen.ports import Bus
-from lumen.robots.robot_routes import COMMAND_ROUTE, key_of
+from lumen.robots.robot_routes import COMMAND_ROUTE
 from lumen.rules import check_files
 from lumen.runtime.delegated_tracking import MOTION_ROUTE as MOTION
 
@@ -153,7 +153,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
 def _obeying(probe: BrokerProbe, attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
     """Whether who takes the robot's commands is alive."""
     route = project.routes.get(COMMAND_ROUTE)
-    if route is None or not probe.served(key_of(project, COMMAND_ROUTE), route).readers:
+    if route is None or not probe.served(project.key_of(COMMAND_ROUTE), route).readers:
         return
     if attendance.robot():
         yield Finding("robot", "ok", f"{project.robot} is connected")

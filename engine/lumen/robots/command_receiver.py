@@ -29,7 +29,6 @@ from lumen.robots.robot_routes import (
     COMMAND_ROUTE,
     REPORT_ROUTE,
     STOP_ROUTE,
-    key_of,
     publish_on,
 )
 from lumen.upkeep.drops import DropLog, ReasonLog
@@ -180,7 +179,7 @@ class CommandReceiver:
         """
         self._project = project
         for route, (key, undo) in list(self._undo.items()):
-            if key_of(project, route) == key:
+            if project.key_of(route) == key:
                 continue
             try:
                 self._undo[route] = self._listen(route)
@@ -208,7 +207,7 @@ class CommandReceiver:
         self.drops.tell(all=True)
 
     def _listen(self, route: str) -> tuple[str, Callable[[], None]]:
-        key = key_of(self._project, route)
+        key = self._project.key_of(route)
         receive = self._receive_aim if route == AIM_ROUTE else self._receive
         return key, self._bus.subscribe(key, receive)
 

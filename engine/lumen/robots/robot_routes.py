@@ -4,17 +4,10 @@ from typing import Any
 
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.projects import Project
-from lumen.language.routing_keys import default_key
 from lumen.ports import Bus
 
 COMMAND_ROUTE, STOP_ROUTE, AIM_ROUTE, REPORT_ROUTE, NOTICED_ROUTE = "command", "stop", "aim", "report", "noticed"
 HALL_ROUTE, SEEN_ROUTE, TEXT_ROUTE, RECORDING_ROUTE = "hall", "seen", "text_stream", "recording"
-
-
-def key_of(project: Project, route: str) -> str:
-    """The key of a route, with the robot's name in it."""
-    row = project.routes.get(route)
-    return row.key_for(project.robot) if row else default_key(route, project.robot)
 
 
 def publish_on(
@@ -30,4 +23,4 @@ def publish_on(
     """Publish on a route, for as long as it says, else for `ttl` [s]. Raises BusError where the bus refuses."""
     row = project.routes.get(route)
     lasting = row.ttl if row and row.ttl is not None else ttl
-    bus.publish(key_of(project, route), body, reply_to=reply_to, ttl=lasting, origin=origin)
+    bus.publish(project.key_of(route), body, reply_to=reply_to, ttl=lasting, origin=origin)

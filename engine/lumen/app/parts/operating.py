@@ -45,7 +45,7 @@ from lumen.language.operator_requests import (
 )
 from lumen.ports import Message, Sense
 from lumen.robots.person_hold import StoppedBy
-from lumen.robots.robot_routes import TEXT_ROUTE, key_of
+from lumen.robots.robot_routes import TEXT_ROUTE
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.loop import Observer
 
@@ -113,8 +113,8 @@ class OperatorPart(Part, Observer):
             lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None, behavior.loop.clock.now
         )
         self._ears: Mapping[str, Any] | None = None
-        self._unheed = self._bus.subscribe(key_of(behavior.project, "listening"), self._heed)
-        self._unsay = self._bus.subscribe(key_of(behavior.project, TEXT_ROUTE), self._doings.told.append)
+        self._unheed = self._bus.subscribe(behavior.project.key_of("listening"), self._heed)
+        self._unsay = self._bus.subscribe(behavior.project.key_of(TEXT_ROUTE), self._doings.told.append)
         told = [behavior.trace.approval] if behavior.trace in behavior.loop.observers else []
         self._decisions = Decisions(runtime.approvals, narrator, records.write, records.keep_decisions, *told)
         behavior.forgetters += [self.steps, self._doings, runtime.approvals]

@@ -20,7 +20,7 @@ from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
 from lumen.ports import Bus
-from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE, key_of
+from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
 from lumen.runtime.home import ADDRESS_FILE, Home, home_of
 from lumen.runtime.resuming import FreshStart, Resumption
 
@@ -121,8 +121,8 @@ class RunDirectory:
             "bus": self._bus,
             "robot": project.robot,
             "home": self.robot,
-            "command": key_of(project, COMMAND_ROUTE),
-            "stop": key_of(project, STOP_ROUTE),
+            "command": project.key_of(COMMAND_ROUTE),
+            "stop": project.key_of(STOP_ROUTE),
             "path": address.path if address else "",
             "port": address.port if address else 0,
             "key": address.key if address else "",

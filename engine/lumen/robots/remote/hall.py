@@ -11,7 +11,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, Message
-from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, key_of, publish_on
+from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, publish_on
 
 HALL_MESSAGE_TTL = 2.0
 """For how long what is done in a hall may wait on the bus [s]."""
@@ -25,12 +25,12 @@ class RemoteHall:
     def __init__(self, project: Project, bus: Bus) -> None:
         self._project, self._bus = project, bus
         self._face: tuple[float, float] | None = None
-        self._key = key_of(project, SEEN_ROUTE)
+        self._key = project.key_of(SEEN_ROUTE)
         self._undo: Callable[[], None] = bus.subscribe(self._key, self._see)
 
     def use(self, project: Project) -> None:
         """Go by the routes of this project from now on."""
-        self._project, key = project, key_of(project, SEEN_ROUTE)
+        self._project, key = project, project.key_of(SEEN_ROUTE)
         if key != self._key:
             undo, self._key = self._undo, key
             self._undo = self._bus.subscribe(key, self._see)

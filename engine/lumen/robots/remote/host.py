@@ -13,7 +13,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, FeelsTouch, Hall, HasCharger, HearsVisitors, Message, Robot
 from lumen.robots.command_receiver import CommandListener
-from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, key_of, publish_on
+from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, publish_on
 from lumen.robots.server import RobotServer
 from lumen.upkeep.threads import MessageGuard
 
@@ -46,14 +46,14 @@ class RobotHost(CommandListener):
         self._seen: object = ()
         self._looked = -FACE_REPORT_PERIOD
         self._happened: list[Event] = []
-        self._key = key_of(project, HALL_ROUTE)
+        self._key = project.key_of(HALL_ROUTE)
         self._undo: Callable[[], None] = lambda: None
         if hall:
             self._undo = bus.subscribe(self._key, self._visitor_messages.append)
 
     def use(self, project: Project) -> None:
         """Go by another bundle from now on."""
-        self._project, key = project, key_of(project, HALL_ROUTE)
+        self._project, key = project, project.key_of(HALL_ROUTE)
         if self._hall and key != self._key:
             undo, self._key = self._undo, key
             self._undo = self._bus.subscribe(key, self._visitor_messages.append)

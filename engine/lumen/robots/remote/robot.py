@@ -25,7 +25,6 @@ from lumen.robots.robot_routes import (
     NOTICED_ROUTE,
     REPORT_ROUTE,
     STOP_ROUTE,
-    key_of,
     publish_on,
 )
 from lumen.robots.sense_codec import decode_reading
@@ -101,7 +100,7 @@ class RemoteRobot:
     def use(self, project: Project) -> None:
         """Go by the routes of this project from now on; what is new is listened to before what is gone is not."""
         self._project = project
-        wanted = {key_of(project, REPORT_ROUTE): self._came.append, key_of(project, NOTICED_ROUTE): self._came.append}
+        wanted = {project.key_of(REPORT_ROUTE): self._came.append, project.key_of(NOTICED_ROUTE): self._came.append}
         for sense, row in table("senses").items():
             if sense in project.routes and row.decode:
                 wanted[project.routes[sense].key_for(project.robot)] = partial(self._sense, sense)
@@ -236,8 +235,8 @@ class RemoteRobot:
         match message.body:
             case {"id": str(whole), "state": str(state)}:
                 self._report(whole, state, str(message.body.get("reason", "")), message.body.get("result"))
-            case {"name": str(name)} if name in (*robot_events(), CUE) and message.key == key_of(
-                self._project, NOTICED_ROUTE
+            case {"name": str(name)} if name in (*robot_events(), CUE) and message.key == self._project.key_of(
+                NOTICED_ROUTE
             ):
                 self._events.append(Event(name, message.body.get("data"), self._clock()))
 
