@@ -411,6 +411,7 @@ def table(kind: str) -> Mapping[str, Any]:
     return {name: row for _, (name, row) in rows(kind)}
 
 
+@cache
 def owner(kind: str, name: str) -> Feature:
     """Return the feature that the row of this name belongs to; `kind` is a mapping and has the row."""
     return next(feature for feature, (key, _) in rows(kind) if key == name)
@@ -451,18 +452,30 @@ def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
         if feature.api != API:
             return None, f"its manifest is written for API {feature.api}, and this Lumen has API {API}"
         return feature, next(wrong_rows(feature), "")
-    except Exception as error:  # of code that is not ours
-        return None, f"its manifest `{distribution.manifest}` raised {type(error).__name__}: {error}"
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # of code that is not ours: even SystemExit
+        return None, f"its manifest `{distribution.manifest}` raised {described(error)}"
+
+
+def described(error: BaseException) -> str:
+    """Return the type and the message of an error."""
+    return f"{type(error).__name__}: {error}"
 
 
 def wrong_rows(feature: Feature) -> Iterator[str]:
     """Describe each kind of rows with another type than `Feature` declares, or with a row that can't be used."""
     declared = get_type_hints(Feature)
+    if not (isinstance(feature.name, str) and feature.name):
+        yield f"the name of its feature is `{feature.name!r}`, which is no text"
     for kind in _kinds():
         form, value = get_origin(declared[kind]), getattr(feature, kind)
         row = next(each for each in reversed(get_args(declared[kind])) if each is not Ellipsis)
         if not isinstance(value, form):
             yield f"`{kind}` of its manifest is no {form.__name__.lower()}"
+            continue
+        if isinstance(value, Mapping) and (unnamed := [key for key in value if not (isinstance(key, str) and key)]):
+            yield f"`{kind}` of its manifest has the name `{unnamed[0]!r}`, which is no text"
             continue
         rows_of = tuple(value.values() if isinstance(value, Mapping) else value)
         if wrong := [each for each in rows_of if not isinstance(each, get_origin(row) or row)]:

@@ -270,6 +270,7 @@ class Idles(Protocol):
         ...
 
 
+@runtime_checkable
 class OtherReading(Protocol):
     """A reading of a sense that a feature adds."""
 

@@ -7,13 +7,16 @@ import pytest
 
 from lumen.app.exhibition import Exhibition
 from lumen.app.making.modules import ModulesPlan
+from lumen.app.parts.module_factory import make_module
 from lumen.app.plan import Plan
 from lumen.app.rehearsal import RehearsalTrace
 from lumen.app.setup import set_up
+from lumen.bus import connect
 from lumen.cli.main import main
 from lumen.project import load
 from tests import ROOT
 from tests.stranger.installing import Installed
+from tests.waiting import HANG
 
 MANIFEST = """\
 from lumen.feature import *
@@ -37,6 +40,7 @@ class Robot:
 def make(request):
     return set_up_with(Robot())
 """
+QUIET = ROBOT.replace("1 / 0", "pass")
 BUS = "from lumen.buses.memory import MemoryBus\n\n\nclass make(MemoryBus):\n    def send(self, message): 1 / 0\n"
 RUN = "run --robot recording --speed max --story visitor"
 FAULTS = {
@@ -94,6 +98,96 @@ FAULTS = {
         "lint --format odd",
         "its module `faulty_code:render` raised TypeError: render() got an unexpected keyword argument 'coloured'",
     ),
+    "robot that leaves": (
+        "robots={'bot': RobotRow('faulty_code:make')}",
+        ROBOT.replace("1 / 0", "raise SystemExit(0)"),
+        "run --robot bot",
+        "line 6 of `faulty_code` raised SystemExit: 0",
+    ),
+    "robot without events": (
+        "robots={'bot': RobotRow('faulty_code:make')}",
+        QUIET.replace("poll(self): return ()", "poll(self): pass"),
+        "run --robot bot",
+        "its robot `bot` returned None from `poll`: it must return events",
+    ),
+    "robot with wrong events": (
+        "robots={'bot': RobotRow('faulty_code:make')}",
+        QUIET.replace("poll(self): return ()", "poll(self): return ['fallen']"),
+        "run --robot bot",
+        "its robot `bot` returned ['fallen'] from `poll`: it must return events",
+    ),
+    "robot with wrong ids": (
+        "robots={'bot': RobotRow('faulty_code:make')}",
+        QUIET.replace("begun(self): return ()", "begun(self): return 'c1'"),
+        "run --robot bot",
+        "its robot `bot` returned 'c1' from `begun`: it must return ids of commands",
+    ),
+    "importer of wrong diagnostics": (
+        "importers={'.odd': Importer('controller', 'faulty_code:read')}",
+        "def read(*given): return {}, ['lost']",
+        "import a.odd",
+        "`faulty_code:read` returned ({}, ['lost']) instead of data and diagnostics",
+    ),
+    "importer of no motion": (
+        "importers={'.odd': Importer('motion', 'faulty_code:read')}",
+        "def read(*given): return {}, []",
+        "import a.odd",
+        "`faulty_code:read` returned ({}, []) instead of the curves of joints",
+    ),
+    "importer that leaves": (
+        "importers={'.odd': Importer('behavior', 'faulty_code:read')}",
+        "raise SystemExit('gone')",
+        "import a.odd",
+        "its module `faulty_code:read` raised SystemExit: gone",
+    ),
+    "exporter of nothing": (
+        "exporters={'odd': Exporter('behavior', 'faulty_code:write')}",
+        "def write(*given): pass",
+        "export odd",
+        "`faulty_code:write` returned None instead of a text and diagnostics",
+    ),
+    "exporter of no diagram": (
+        "exporters={'odd': Exporter('diagram', 'faulty_code:write')}",
+        "def write(*given): return 7",
+        "export odd",
+        "`faulty_code:write` returned 7 instead of a text",
+    ),
+    "exporter of no project": (
+        "exporters={'odd': Exporter('project', 'faulty_code:write')}",
+        "def write(*given): raise SystemExit(7)",
+        "export odd",
+        "its module `faulty_code:write` raised SystemExit: 7",
+    ),
+    "format of findings without text": (
+        "finding_formats={'odd': 'faulty_code:render'}",
+        "def render(found, coloured): pass",
+        "lint --format odd",
+        "`faulty_code:render` returned None instead of a text",
+    ),
+    "format of verdicts without text": (
+        "verdict_formats={'odd': 'faulty_code:render'}",
+        "def render(verdict): pass",
+        "test --format odd",
+        "`faulty_code:render` returned None instead of a text",
+    ),
+    "pages that leave": (
+        "pages=('faulty_code',)",
+        "raise SystemExit",
+        "explain cut-short",
+        "its module `faulty_code` raised SystemExit: ",
+    ),
+    "pages of no package": (
+        "pages=('faulty_code:pages',)",
+        "pages = 7",
+        "explain cut-short",
+        "its module `faulty_code:pages` raised ",
+    ),
+    "subcommand that leaves": (
+        "subcommands={'odd': Subcommand('be odd', 'faulty_code')}",
+        "raise SystemExit(3)",
+        "odd",
+        "its module `faulty_code` raised SystemExit: 3",
+    ),
     "subcommand without run": (
         "subcommands={'odd': Subcommand('be odd', 'faulty_code')}",
         "def configure(parser): pass",
@@ -136,10 +230,22 @@ def test_faulty_code_ends_with_a_sentence_that_names_its_package(
 
 
 MODULE = "from lumen.modules.module import Module\n\n\nclass Mood(Module):\n    "
+CURVES = """
+from lumen.formats.gestures.joint_curves import CurvePoint
+from lumen.language.diagnostics import Place
+"""
+ROW = "modules={'mood': ModuleRow('faulty_code:Mood')}"
 MODULES = {
     "is no module": ("class Mood: pass", "is no subclass of `lumen.modules.module.Module`"),
     "can't be made": (f"{MODULE}def __init__(self, *given): 1 / 0", "raised ZeroDivisionError"),
     "can't begin": (f"{MODULE}def begin(self): 1 / 0", "raised ZeroDivisionError"),
+    "is left out by its own error": (
+        f"from lumen.errors import ModuleError\n{MODULE}def begin(self): raise ModuleError('no microphone')",
+        "raised ModuleError: no microphone",
+    ),
+    "leaves": (f"{MODULE}def begin(self): raise SystemExit(1)", "raised SystemExit: 1"),
+    "leaves at its import": ("raise SystemExit(1)", "raised SystemExit: 1"),
+    "makes no module": (f"{MODULE}@classmethod\n    def make(cls, *given): return 7", "returned 7 instead of a module"),
     "lists no routes": (f"{MODULE}hears = ('heard',)", "raised TypeError"),
     "can't end": (f"{MODULE}def hears(self): return {{}}\n    def close(self): 1 / 0", "raised ZeroDivisionError"),
 }
@@ -148,8 +254,7 @@ MODULES = {
 @pytest.mark.parametrize("case", MODULES)
 def test_an_exhibition_goes_on_without_a_faulty_module(case: str, installed: Installed, hall: Path) -> None:
     code, fault = MODULES[case]
-    row = "modules={'mood': ModuleRow('faulty_code:Mood')}"
-    installed.write("faulty", MANIFEST.format(row=row), faulty_code=code)
+    installed.write("faulty", MANIFEST.format(row=ROW), faulty_code=code)
     main_file = hall / "lumen.yaml"
     main_file.write_text(f"{main_file.read_text()}\nmodules: {{mood: {{here: true}}}}\n")
     project = load(hall)
@@ -161,3 +266,37 @@ def test_an_exhibition_goes_on_without_a_faulty_module(case: str, installed: Ins
     (line,) = [text for _, who, text in narrator.lines if who == "mood"]
     assert "the installed package `faulty` 1.0 is faulty" in line
     assert fault in line
+
+
+def test_a_fault_on_a_message_is_told_with_the_name_of_the_package(installed: Installed, hall: Path) -> None:
+    handler = "def hears(self): return {'heard': self.heed}\n    def heed(self, message): raise SystemExit(4)"
+    installed.write("faulty", MANIFEST.format(row=ROW), faulty_code=f"{MODULE}{handler}")
+    project, told = load(hall), list[str]()
+    bus = connect("memory://")
+    module = make_module("mood", project, bus, told.append, None)
+    module.begin()
+    bus.publish(module.key("heard"), {"result": "hello"})
+    assert module.settle(HANG)
+    module.close()
+    (line,) = told
+    assert line.startswith("the installed package `faulty` 1.0 is faulty: line 6 of `faulty_code` raised SystemExit: 4")
+
+
+def test_a_subcommand_of_a_package_may_leave_the_program(installed: Installed, hall: Path) -> None:
+    row = "subcommands={'odd': Subcommand('be odd', 'faulty_code')}"
+    code = "def configure(parser): pass\ndef run(options): raise SystemExit(5)"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=code)
+    with pytest.raises(SystemExit) as raised:
+        main(["odd"])
+    assert raised.value.code == 5
+
+
+def test_a_motion_of_a_package_is_imported(
+    installed: Installed, hall: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    curves = "{'HeadYaw': [CurvePoint(1.0, 0.2, Place('a.odd'))]}"
+    code = f"{CURVES}\ndef read(file, findings): return {curves}"
+    row = "importers={'.odd': Importer('motion', 'faulty_code:read')}"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=code)
+    assert main(["import", "a.odd"]) == 0
+    assert "HeadYaw" in capsys.readouterr().out

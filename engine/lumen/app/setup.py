@@ -5,14 +5,15 @@ from dataclasses import dataclass, field, replace
 
 from lumen.clocks.real import RealClock
 from lumen.clocks.simulated import SimulatedClock
-from lumen.errors import UsageError
-from lumen.feature import Feature, RobotOption, RobotRow, owner, table
+from lumen.errors import LumenError, UsageError
+from lumen.feature import Feature, RobotOption, RobotRow, distribution_of, owner, table
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.broken_features import called, faulty, need_made
+from lumen.loading.broken_features import called, faulty, need_made, shown
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, Robot
 from lumen.robots.bounded_robot import BoundedRobot, ability
+from lumen.robots.checked_robot import CheckedRobot
 from lumen.runtime.tracking import TrackingService
 
 SPEEDS = ("1", "4", "max")
@@ -99,10 +100,11 @@ def set_up_house(
         feature = owner("robots", kind)
         setups: dict[str, Setup] = called(feature, row.set_up_house, requests)
         if not isinstance(setups, Mapping) or setups.keys() != requests.keys():
-            raise faulty(feature, f"`{row.set_up_house}` returned {setups!r} instead of a Setup for each robot's name")
+            what = f"{shown(setups)} instead of a Setup for each robot's name"
+            raise faulty(feature, f"`{row.set_up_house}` returned {what}")
         for setup in setups.values():
             _check(feature, row.set_up_house, setup)
-        return {name: _bounded(row, setup, projects[name]) for name, setup in setups.items()}
+        return {name: _bounded(kind, row, setup, projects[name]) for name, setup in setups.items()}
     return {name: _alone(kind, row, request) for name, request in requests.items()}
 
 
@@ -110,21 +112,29 @@ def _alone(kind: str, row: RobotRow, request: RobotRequest) -> Setup:
     feature = owner("robots", kind)
     setup: Setup = called(feature, row.set_up, request)
     _check(feature, row.set_up, setup)
-    return _bounded(row, setup, request.project)
+    return _bounded(kind, row, setup, request.project)
 
 
 def _check(feature: Feature, where: str, setup: Setup) -> None:
     """Raise LumenError if a robot's function returned no setup, or objects that lack a method."""
     if not isinstance(setup, Setup):
-        raise faulty(feature, f"`{where}` returned {setup!r} instead of a `lumen.app.setup.Setup`")
+        raise faulty(feature, f"`{where}` returned {shown(setup)} instead of a `lumen.app.setup.Setup`")
     need_made(feature, where, setup.robot, Robot, "a robot")
     need_made(feature, where, setup.clock, Clock, "a clock")
     if setup.hall is not None:
         need_made(feature, where, setup.hall, Hall, "a hall")
 
 
-def _bounded(row: RobotRow, setup: Setup, project: Project) -> Setup:
-    return setup if row.bounded else replace(setup, robot=BoundedRobot(setup.robot, project.body))
+def _bounded(kind: str, row: RobotRow, setup: Setup, project: Project) -> Setup:
+    """Return a setup whose robot keeps within the limits of its body; that of a package is checked as well."""
+    feature = owner("robots", kind)
+
+    def fault(what: str) -> LumenError:
+        return faulty(feature, f"its robot `{kind}` {what}")
+
+    if not row.bounded:
+        return replace(setup, robot=BoundedRobot(setup.robot, project.body, fault))
+    return replace(setup, robot=CheckedRobot(setup.robot, fault)) if distribution_of(feature) else setup
 
 
 def robot_names() -> tuple[str, ...]:

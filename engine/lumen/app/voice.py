@@ -8,12 +8,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO, Protocol, runtime_checkable
 
+from lumen.app.added_voice import AddedVoice
 from lumen.app.loudspeaker import player_here
 from lumen.app.setup import Setup
 from lumen.errors import ModuleError, UsageError
-from lumen.feature import owner, table
+from lumen.feature import distribution_of, owner, table
 from lumen.language.gestures import WordTime
-from lumen.loading.broken_features import called
+from lumen.loading.broken_features import called, need_made
 from lumen.modules.audio_track import AudioTrack
 from lumen.modules.sound import Sound, save
 from lumen.modules.voice import espeak
@@ -154,7 +155,11 @@ def speaker(
         raise UsageError("--voice needs the simulated robot: leave out --robot")
     if file and (file.suffix != ".wav" or not file.parent.is_dir()):
         raise UsageError(f"can't write a sound to {file}: name a .wav file in an existing folder")
-    found: RobotVoice = called(owner("voices", voice), table("voices")[voice], language, file, track)
+    feature, where = owner("voices", voice), table("voices")[voice]
+    found: RobotVoice = called(feature, where, language, file, track)
+    need_made(feature, where, found, RobotVoice, "a voice")
+    if distribution_of(feature):
+        found = AddedVoice(found, feature, voice)
     if found.mute:
         print(
             "No sound player is installed: the speech is silent; `--sound FILE.wav` writes it to a file.",

@@ -4,6 +4,7 @@ import argparse
 import sys
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import lumen
 from lumen.app.lint.findings import Findings
@@ -12,10 +13,10 @@ from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.feature import Exporter, owner, table
+from lumen.feature import Exporter, Feature, owner, table
 from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
 from lumen.language.projects import Project
-from lumen.loading.broken_features import called
+from lumen.loading.broken_features import called, called_for_text, faulty, shown
 from lumen.loading.document import Document
 from lumen.loading.files import on_disk
 from lumen.loading.yaml_reader import parse
@@ -50,9 +51,10 @@ def run(options: argparse.Namespace) -> int:
     root = shown_project(options.project)
     project = lumen.load(root)
     row: Exporter = table("exporters")[options.target]
-    write = partial(called, owner("exporters", options.target), row.write)
+    feature = owner("exporters", options.target)
+    write_text, write = partial(called_for_text, feature, row.write), partial(_reported, feature, row.write)
     if row.kind == "project":
-        write_result(write(project), options.output)
+        write_result(write_text(project), options.output)
         return 0
     if row.kind == "controller":
         name = _controller(project, options.behavior)
@@ -63,8 +65,17 @@ def run(options: argparse.Namespace) -> int:
     if name not in project.behaviors:
         raise UsageError(f"no behaviour `{name}`: {did_you_mean(name, project.behaviors, 'behaviors/ has')}")
     document, machine = _document(root, f"behaviors/{name}.yaml"), project.behaviors[name]
-    text, diagnostics = (write(machine), []) if row.kind == "diagram" else write(machine, document.place)
+    text, diagnostics = (write_text(machine), []) if row.kind == "diagram" else write(machine, document.place)
     return _written(text, diagnostics, document, options)
+
+
+def _reported(feature: Feature, where: str, *arguments: Any) -> tuple[str, list[Diagnostic]]:
+    """Return the text of an exporter, and the diagnostics of what it left out."""
+    match called(feature, where, *arguments):
+        case (str() as text, [*left_out]) if all(isinstance(each, Diagnostic) for each in left_out):
+            return text, left_out
+        case other:
+            raise faulty(feature, f"`{where}` returned {shown(other)} instead of a text and diagnostics")
 
 
 def _controller(project: Project, wanted: str | None) -> str:

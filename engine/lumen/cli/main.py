@@ -16,7 +16,7 @@ from lumen.cli.intermixed import Help, Intermixed
 from lumen.cli.streams import complain, finish, hush, open_streams
 from lumen.cli.suggesting import Suggesting, parse
 from lumen.errors import LumenError, ProjectError
-from lumen.feature import Subcommand, found, owner, resolve, table
+from lumen.feature import Subcommand, distribution_of, found, owner, resolve, table
 from lumen.upkeep.garbage import gc_paused
 
 STARTED = time.monotonic()
@@ -78,7 +78,9 @@ def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:
             module = resolve(row.module)
         module.configure(command)
         command.set_defaults(run=module.run)
-    except Exception as error:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
         from lumen.loading.broken_features import blamed  # only if it is needed
 
         raise blamed(owner("subcommands", verb), row.module, error) from error
@@ -125,10 +127,11 @@ def _run(options: argparse.Namespace) -> int:
         return 0
     except KeyboardInterrupt:
         return 130
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         from lumen.loading.broken_features import fault_of_package
 
-        if not (reason := _reason(error) or fault_of_package(error)):
+        own = isinstance(error, SystemExit) and distribution_of(owner("subcommands", options.verb))
+        if own or not (reason := _reason(error) or fault_of_package(error)):
             raise
         complain(f"lumen {options.verb}: {reason}")
         return 2
@@ -143,7 +146,7 @@ def _exit_code(verb: str, returned: object) -> int:
     raise faulty(owner("subcommands", verb), f"`run` of its subcommand returned {returned!r}, which is no exit code")
 
 
-def _reason(error: Exception) -> str:
+def _reason(error: BaseException) -> str:
     """Return why this machine can't run the subcommand, and what to do; empty for any other error."""
     if not isinstance(error, OSError):
         return ""

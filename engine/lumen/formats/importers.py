@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from lumen.feature import Importer, distribution_of, owner, resolve, table
+from lumen.feature import Importer, distribution_of, owner, table
 from lumen.formats.known import FormatTable
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.broken_features import faulty, resolved
+from lumen.loading.broken_features import faulty, resolved, shown
 
 
 class FileReader(Protocol):
@@ -36,19 +36,22 @@ def reader(ending: str) -> Any:
     the function if it returns something else.
     """
     name = ending.lower()
-    feature, where = owner("importers", name), table("importers")[name].read
-    read = resolved(feature, where)
+    feature, row = owner("importers", name), table("importers")[name]
+    read = resolved(feature, row.read)
 
     def checked(*arguments: Any, **named: Any) -> Any:
-        match read(*arguments, **named):
-            case (dict(), _) as converted:
-                return converted
-            case other:
-                raise faulty(feature, f"`{where}` returned {other!r} instead of data and diagnostics")
+        match row.kind, read(*arguments, **named):
+            case "motion", dict() as curves if all(isinstance(points, list) for points in curves.values()):
+                return curves
+            case "behavior" | "controller", (dict() as data, [*found]) if all(isinstance(d, Diagnostic) for d in found):
+                return data, found
+            case kind, other:
+                meant = "the curves of joints" if kind == "motion" else "data and diagnostics"
+                raise faulty(feature, f"`{row.read}` returned {shown(other)} instead of {meant}")
 
     return checked if distribution_of(feature) else read
 
 
 def format_tables() -> Mapping[str, FormatTable]:
     """Return the names of each format that are read, lost or without meaning, by the kind of place in a file."""
-    return {name: resolve(where) for name, where in table("format_tables").items()}
+    return {name: resolved(owner("format_tables", name), where) for name, where in table("format_tables").items()}

@@ -1,11 +1,13 @@
 """Findings about features that were installed beside Lumen and can't be used."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from traceback import walk_tb
 from typing import Any
 
 from lumen.distributions import Distribution, distributions
 from lumen.errors import LumenError, UsageError
-from lumen.feature import Feature, FeatureFault, distribution_of, found, resolve
+from lumen.feature import Feature, FeatureFault, described, distribution_of, found, resolve
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place
 from lumen.loading.packaged import PACKAGE
 from lumen.loading.project_folders import MAIN_FILE
@@ -34,10 +36,8 @@ def resolved(feature: Feature, where: str) -> Any:
 
     Raises LumenError with the name of the distribution if a feature is faulty that was installed beside Lumen.
     """
-    try:
+    with blaming(feature, where):
         return resolve(where)
-    except Exception as error:
-        raise blamed(feature, where, error) from error
 
 
 def called(feature: Feature, where: str, *arguments: Any, **named: Any) -> Any:
@@ -47,22 +47,58 @@ def called(feature: Feature, where: str, *arguments: Any, **named: Any) -> Any:
     installed beside Lumen.
     """
     function = resolved(feature, where)
-    try:
+    with blaming(feature, where, LumenError):
         return function(*arguments, **named)
-    except LumenError:
+
+
+def called_for_text(feature: Feature, where: str, *arguments: Any, **named: Any) -> str:
+    """Return the text that the function of an import string returns. Raises LumenError as `called`, or for no text."""
+    text = called(feature, where, *arguments, **named)
+    if not isinstance(text, str):
+        raise faulty(feature, f"`{where}` returned {shown(text)} instead of a text")
+    return text
+
+
+@contextmanager
+def blaming(feature: Feature, where: str, *passed: type[Exception]) -> Iterator[None]:
+    """Run code of an import string; raise LumenError with the name of the distribution for any fault of that code.
+
+    What Lumen's own features raise passes, and so do errors of the types in `passed`.
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
         raise
-    except Exception as error:
+    except passed:
+        raise
+    except BaseException as error:  # even SystemExit
         raise blamed(feature, where, error) from error
 
 
-def blamed(feature: Feature, where: str, error: Exception) -> LumenError:
+@contextmanager
+def faults_reported(feature: Feature, what: str, findings: list[Diagnostic]) -> Iterator[None]:
+    """Run code of a feature; add a finding that names the distribution for any fault of that code.
+
+    What Lumen's own features raise passes. `what` is the code, such as "its rule `NAME`".
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # even SystemExit
+        if (distribution := distribution_of(feature)) is None:
+            raise
+        findings.append(broken(distribution, f"{what} raised {described(error)}"))
+
+
+def blamed(feature: Feature, where: str, error: BaseException) -> LumenError:
     """Return an error that names the distribution in whose module `error` was raised.
 
     Raises `error` itself if the feature comes with Lumen.
     """
     if distribution_of(feature) is None:
         raise error
-    return faulty(feature, f"its module `{where}` raised {type(error).__name__}: {error}")
+    return faulty(feature, f"its module `{where}` raised {described(error)}")
 
 
 def faulty(feature: Feature, message: str) -> LumenError:
@@ -72,6 +108,12 @@ def faulty(feature: Feature, message: str) -> LumenError:
         return LumenError(f"the feature `{feature.name}` is faulty: {message}")
     finding = broken(distribution, message)
     return LumenError(f"{finding.message} ({finding.hint})")
+
+
+def shown(value: object) -> str:
+    """Return a value as a message quotes it."""
+    text = repr(value)
+    return text if len(text) <= 80 else f"{text[:77]}…"
 
 
 def fault_of_package(error: BaseException) -> str:
@@ -86,7 +128,7 @@ def fault_of_package(error: BaseException) -> str:
         if package == PACKAGE.name:
             return ""
         if package in packages:
-            what = f"line {line} of `{module}` raised {type(error).__name__}: {error}"
+            what = f"line {line} of `{module}` raised {described(error)}"
             finding = broken(packages[package], what)
             return f"{finding.message} ({finding.hint})"
     return ""

@@ -1,14 +1,14 @@
 """The sections of lumen.yaml that features add: their settings, and their part of the schema."""
 
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import is_dataclass, replace
 from functools import cache
 from typing import Any
 
-from lumen.feature import Section, distribution_of, resolve, rows, table
+from lumen.feature import Section, resolve, rows, table
 from lumen.interpreters.json_schema import JsonSchema, keywords
-from lumen.loading.broken_features import broken
+from lumen.language.diagnostics import Diagnostic
+from lumen.loading.broken_features import faults_reported
 from lumen.loading.document_report import DocumentReport
 
 
@@ -22,17 +22,13 @@ def read_sections(data: Mapping[str, Any], report: DocumentReport) -> dict[str, 
     for feature, (key, row) in rows("sections"):
         if not _has(data, key):
             continue
-        try:
+        faults: list[Diagnostic] = []
+        with faults_reported(feature, f"reading `{key}`", faults):
             settings = _read(row, data, report)
             if settings != type(settings)():
                 found[key] = settings
-        except Exception as error:
-            distribution = distribution_of(feature)
-            if distribution is None:
-                raise
-            fault = broken(distribution, f"reading `{key}` raised {type(error).__name__}: {error}")
-            place = report.document.place(tuple(key.split(".")), key=True)
-            report.diagnostics.append(replace(fault, place=place))
+        place = report.document.place(tuple(key.split(".")), key=True)
+        report.diagnostics += (replace(fault, place=place) for fault in faults)
     return found
 
 
@@ -46,14 +42,14 @@ def with_sections(schema: dict[str, Any]) -> dict[str, Any]:
 
     A section whose own schema can't be used accepts everything, until it is read and that is reported.
     """
-    for _, (key, row) in rows("sections"):
+    for feature, (key, row) in rows("sections"):
         if row.schema:
             *above, name = key.split(".")
             siblings = schema["properties"]
             for step in above:
                 siblings = siblings.setdefault(step, {"type": "object"}).setdefault("properties", {})
             own: Mapping[str, Any] = {}
-            with suppress(Exception):
+            with faults_reported(feature, f"the schema of `{key}`", []):
                 own = _schema(row.schema)
             siblings.setdefault(name, own)
     return schema

@@ -13,6 +13,7 @@ from lumen.errors import BusError, ModuleError
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
 from lumen.language.routing_keys import default_key
+from lumen.loading.broken_features import fault_of_package
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
@@ -164,11 +165,9 @@ class Module:
                     handler(message)
             except ModuleError as error:
                 self.tell(str(error))
-            except (
-                Exception
-            ) as error:  # a fault of ours: a line to the operator, and the tour goes on without this message
+            except BaseException as error:  # a fault of ours, or of a package, costs this message
                 _log.exception("the module `%s` failed on `%s`", self.name, message.key)
-                self.tell(f"failed on a message: {error!r}")
+                self.tell(fault_of_package(error) or f"failed on a message: {error!r}")
             self.handled += 1
         self.end()
 

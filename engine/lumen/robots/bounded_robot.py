@@ -1,27 +1,16 @@
 """A robot that a user wrote, given only commands that its body can perform."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from time import monotonic
 from typing import TypeVar
 
-from lumen.errors import BadCommandError
+from lumen.errors import BadCommandError, LumenError
 from lumen.language.commands import Do, Posture, Rest, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.robots import Body
-from lumen.ports import (
-    Aim,
-    HasOtherSenses,
-    Idles,
-    Joints,
-    OtherReading,
-    Perform,
-    PerformsVerbs,
-    Reading,
-    Robot,
-    RobotCommand,
-    Sense,
-)
+from lumen.ports import Aim, Idles, Joints, Perform, PerformsVerbs, Robot, RobotCommand, Sense
+from lumen.robots.checked_robot import CheckedRobot, of_own_robot
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_table import parts_of
 from lumen.robots.executor import Executor
@@ -34,7 +23,7 @@ SHADOW = ""
 Ability = TypeVar("Ability")
 
 
-class BoundedRobot:
+class BoundedRobot(CheckedRobot):
     """Passes commands to `robot` within the limits and speeds of `body`, and refuses those that it can't perform.
 
     If the robot senses its joints, a motion is delayed until they can reach its first key in time. Verbs of features
@@ -42,8 +31,9 @@ class BoundedRobot:
     body, but not for what the robot moves. Rests and stops end them.
     """
 
-    def __init__(self, robot: Robot, body: Body) -> None:
-        self.robot, self._body = robot, body
+    def __init__(self, robot: Robot, body: Body, fault: Callable[[str], LumenError] = of_own_robot) -> None:
+        super().__init__(robot, fault)
+        self._body = body
         self._bounds = CommandBounds(body)
         self._refusals: list[Event] = []
         self._runner = SkillRunner()
@@ -71,25 +61,19 @@ class BoundedRobot:
         refusals, self._refusals = self._refusals, []
         ends = self._skills.advance(monotonic())
         own = [end._replace(at=0.0) for end in ends if end.name.partition(".command.")[2] != SHADOW]
-        return [*refusals, *own, *self.robot.poll()]
+        return [*refusals, *own, *super().poll()]
 
     def begun(self) -> Sequence[str]:
-        return [*(id for id in self._skills.begun() if id != SHADOW), *self.robot.begun()]
+        return [*(id for id in self._skills.begun() if id != SHADOW), *super().begun()]
 
     @property
     def busy(self) -> bool:
         """Whether a verb of a feature is under way here."""
         return self._skills.busy
 
-    def read(self, sense: Sense) -> Reading | None:
-        return self.robot.read(sense)
-
-    def read_other(self, sense: str) -> OtherReading | None:
-        return self.robot.read_other(sense) if isinstance(self.robot, HasOtherSenses) else None
-
     def close(self) -> None:
         self._runner.close()
-        self.robot.close()
+        super().close()
 
     def _pass_on(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Do) and not isinstance(self.robot, PerformsVerbs):
@@ -101,7 +85,7 @@ class BoundedRobot:
 
     def _angles(self) -> dict[str, float]:
         """The present angles [rad] of the body's joints; empty if the robot does not sense them."""
-        joints = self.robot.read(Sense.JOINT)
+        joints = self.read(Sense.JOINT)
         if not isinstance(joints, Joints):
             return {}
         return {name: a for name, a in zip(joints.names, joints.angles, strict=True) if name in self._body.joints}
@@ -109,7 +93,7 @@ class BoundedRobot:
 
 def ability(robot: Robot, kind: type[Ability]) -> Ability | None:
     """Return the robot, or the one that it wraps, as one with that ability; None if it lacks it."""
-    own = robot.robot if isinstance(robot, BoundedRobot) else robot
+    own = robot.robot if isinstance(robot, CheckedRobot) else robot
     return own if isinstance(own, kind) else None
 
 

@@ -3,42 +3,57 @@
 import base64
 import wave
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
-from lumen.feature import SenseRow, resolve, table
+from lumen.errors import LumenError
+from lumen.feature import SenseRow, distribution_of, owner, table
 from lumen.language.data_url import DataUrl
 from lumen.language.routes import Size
+from lumen.loading.broken_features import blaming, called, faulty, resolved, shown
 from lumen.ports import Battery, Image, Joints, OtherReading, Sonar, Tactile, Whereabouts
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+NO_READING = KeyError, TypeError, ValueError, OverflowError
+"""The errors of a decoder that got a body without a reading."""
 JPEG_QUALITY = 80
 RECORDING_RATE = 16_000
 """Samples of a recording a second."""
 
 
 def encode_reading(sense: str, reading: OtherReading) -> dict[str, Any]:
-    """Return the body of a reading of any sense but images."""
-    encode: Callable[[OtherReading], dict[str, Any]] = resolve(table("senses")[sense].encode)
-    return encode(reading)
+    """Return the body of a reading of any sense but images.
+
+    Raises LumenError with the name of the installed package if its code is faulty.
+    """
+    feature, where = owner("senses", sense), table("senses")[sense].encode
+    body: dict[str, Any] = called(feature, where, reading)
+    if distribution_of(feature) and not isinstance(body, dict):
+        raise faulty(feature, f"`{where}` returned {shown(body)} instead of the body of a message")
+    return body
 
 
 def decode_reading(sense: str, body: Any, names: Sequence[str]) -> OtherReading | None:
     """Return the reading in a body of that sense; None if it has none, or is of a robot with other joints.
 
-    Of images it is always None: pictures are for other modules.
+    Of images it is always None: pictures are for other modules. Raises LumenError with the name of the installed
+    package if its code is faulty.
     """
     row: SenseRow = table("senses")[sense]
     if not isinstance(body, Mapping) or not row.decode:
         return None
-    decode: Callable[[Mapping[str, Any], Sequence[str]], OtherReading | None] = resolve(row.decode)
-    try:
-        return decode(body, names)
-    except (KeyError, TypeError, ValueError, OverflowError):
-        return None
+    feature = owner("senses", sense)
+    decode: Callable[[Mapping[str, Any], Sequence[str]], OtherReading | None] = resolved(feature, row.decode)
+    with suppress(*NO_READING), blaming(feature, row.decode, LumenError, *NO_READING):
+        reading = decode(body, names)
+        if not (reading is None or isinstance(reading, OtherReading)):
+            raise faulty(feature, f"`{row.decode}` returned {shown(reading)} instead of a reading or None")
+        return reading
+    return None
 
 
 def encode_joints(reading: Joints) -> dict[str, Any]:

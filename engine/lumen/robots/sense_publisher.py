@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.errors import BusError, RobotError
+from lumen.errors import LumenError, RobotError
 from lumen.ports import OtherReading
 from lumen.upkeep.threads import WatchedThread
 
@@ -54,10 +54,10 @@ class PendingReading:
 class SensePublisher:
     """One thread for one sense, with room for one reading: the newest wins, the others are counted as dropped.
 
-    `encode` makes the body and `publish` sends it, both on this thread. A body that the bus refuses (BusError) costs
-    that body alone, and each reason a line in the log. Where the robot can't give the sense (RobotError: a camera
-    without OpenGL) it switches itself off, with a line in the log, until `arm`. A `direct` one has no thread: what it
-    is handed has been published when `hand` returns.
+    `encode` makes the body and `publish` sends it, both on this thread. A body that the bus refuses or that a package
+    can't make (LumenError) costs that body alone, and each reason a line in the log. Where the robot can't give the
+    sense (RobotError: a camera without OpenGL) it switches itself off, with a line in the log, until `arm`. A `direct`
+    one has no thread: what it is handed has been published when `hand` returns.
     """
 
     PATIENCE = 1.0
@@ -128,11 +128,11 @@ class SensePublisher:
         """Encode and publish one reading; whether the sense goes on."""
         try:
             self._send(handed)
-        except BusError as error:
-            self._refused(str(error))
         except RobotError as error:
             self._off(str(error))
             return False
+        except LumenError as error:
+            self._refused(str(error))
         except Exception as error:  # a fault of ours costs this reading
             self._refused(repr(error), error)
         finally:

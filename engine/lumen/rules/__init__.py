@@ -1,14 +1,14 @@
 """From a project's files to everything that is wrong with them."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from datetime import date
 from itertools import chain
 from pathlib import Path
 
 from lumen.feature import Feature, distribution_of, resolve, rows
-from lumen.language.diagnostics import Diagnostic, has_errors
+from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.projects import Project
-from lumen.loading.broken_features import broken
+from lumen.loading.broken_features import broken, faults_reported, shown
 from lumen.loading.chosen_robot import as_robot, chosen_robot
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.files import read_files
@@ -65,12 +65,27 @@ def _checked(
 
 
 def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
-    """Report what a rule finds; a rule that was installed beside Lumen and raises is a finding itself."""
-    distribution = distribution_of(feature)
-    if distribution is None:
-        resolve(rule)(found)
-        return
-    try:
-        resolve(rule)(found)
-    except Exception as error:  # of code that is not ours
-        found.loose.append(broken(distribution, f"its rule `{rule}` raised {type(error).__name__}: {error}"))
+    """Report what a rule finds; a faulty rule that was installed beside Lumen is a finding itself."""
+    returned: object = None
+    with faults_reported(feature, f"its rule `{rule}`", found.loose):
+        returned = resolve(rule)(found)
+    if distribution := distribution_of(feature):
+        faults = [f"reported {shown(each)}, which is no finding" for each in _remove_unsound(found)]
+        if returned is not None:
+            faults.append(f"returned {shown(returned)}: a rule reports its findings, and returns None")
+        found.loose += (broken(distribution, f"its rule `{rule}` {fault}") for fault in faults[:1])
+
+
+def _remove_unsound(found: ProjectDraft) -> Iterator[object]:
+    """Remove what is no finding from those of a draft, and iterate over it."""
+    for findings in (found.loose, *(report.diagnostics for report in found.reports.values())):
+        unsound = [each for each in findings if not _is_sound(each)]
+        findings[:] = (each for each in findings if each not in unsound)
+        yield from unsound
+
+
+def _is_sound(finding: object) -> bool:
+    match finding:
+        case Diagnostic(str(), str(), Place(str(), int(), int(), int(), int()), str(), Severity(), tuple()):
+            return True
+    return False

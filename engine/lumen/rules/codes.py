@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from itertools import chain
 
-from lumen.feature import distribution_of, resolve, rows
-from lumen.language.diagnostics import Code
+from lumen.feature import resolve, rows
+from lumen.language.diagnostics import Code, Severity
+from lumen.loading.broken_features import faults_reported
 
 FAMILY_ORDER = (
     "text", "shape", "references", "statecharts", "reload", "expressions", "hearing", "speech", "knowledge",
@@ -35,13 +36,14 @@ def families() -> Mapping[str, Mapping[str, Code]]:
 
 def _declared() -> Iterator[Code]:
     for feature, where in chain(rows("rules"), rows("last_rules"), rows("codes")):
-        try:
-            module = resolve(where.partition(":")[0])
-        except Exception:
-            if distribution_of(feature) is None:
-                raise
-            continue  # lint reports it
-        yield from (value for value in vars(module).values() if isinstance(value, Code))
+        found: Mapping[str, object] = {}
+        with faults_reported(feature, where, []):  # lint reports it
+            found = vars(resolve(where.partition(":")[0]))
+        yield from (value for value in found.values() if isinstance(value, Code) and _is_sound(value))
+
+
+def _is_sound(code: Code) -> bool:
+    return isinstance(code.family, str) and isinstance(code.severity, Severity) and isinstance(code.summary, str)
 
 
 def _order(code: Code) -> tuple[int, str, str]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from lumen.feature import Feature, distribution_of, resolve, rows
-from lumen.loading.broken_features import broken, broken_features
+from lumen.loading.broken_features import broken_features, faults_reported
 from lumen.loading.draft import ProjectDraft
 
 
@@ -11,11 +11,9 @@ def check(draft: ProjectDraft) -> None:
     """Report each distribution whose feature, or a row of it, is ignored."""
     draft.loose += broken_features()
     for feature, where in _imported():
-        if distribution := distribution_of(feature):
-            try:
+        if distribution_of(feature):
+            with faults_reported(feature, f"its module `{where}`", draft.loose):
                 resolve(where)
-            except Exception as error:  # of code that is not ours
-                draft.loose.append(broken(distribution, f"its module `{where}` raised {type(error).__name__}: {error}"))
 
 
 def _imported() -> Iterator[tuple[Feature, str]]:

@@ -24,7 +24,9 @@ class FeatureForgetter:
         for feature, where in rows("forgets"):
             try:
                 self._forget(resolve(where), person)
-            except Exception as error:
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:  # even SystemExit
                 if (distribution := distribution_of(feature)) is None:
                     raise
                 kind = type(error).__name__

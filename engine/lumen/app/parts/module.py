@@ -6,13 +6,16 @@ from functools import partial
 from pathlib import Path
 
 from lumen.app.claiming import presence_of
-from lumen.app.parts.module_factory import blamed_module, make_module
+from lumen.app.parts.module_factory import make_module
 from lumen.app.parts.part import Part
-from lumen.errors import LumenError
+from lumen.feature import owner
 from lumen.language.counts import counted
+from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
+from lumen.loading.broken_features import faults_reported
+from lumen.modules.module import Module
 from lumen.ports import Bus
 from lumen.runtime.presence import Presence
 
@@ -72,11 +75,11 @@ class ModulePart(Part):
             self._done(partial(module.use, project if robot == own else _of_another(project, robot)))
 
     def summary(self) -> Iterator[str]:
+        lines: list[str] = []
         for robot, module in self._modules.items():
             what = self.name if len(self._modules) == 1 else f"{self.name} of {robot}"
-            yield f"{what}: {counted(module.handled, 'message')}" + (
-                f", {module.refused} dropped" if module.refused else ""
-            )
+            self._done(partial(_add_count, lines, what, module))
+        yield from lines
 
     def close(self) -> None:
         for module in self._modules.values():
@@ -86,14 +89,17 @@ class ModulePart(Part):
 
     def _done(self, call: Callable[[], None]) -> bool:
         """Call a method of a module; report the fault of another package, and return whether there was none."""
-        try:
+        faults: list[Diagnostic] = []
+        with faults_reported(owner("modules", self.name), f"its module `{self.name}`", faults):
             call()
-        except LumenError:
-            raise
-        except Exception as error:
-            self._tell(self.name, str(blamed_module(self.name, error)))
-            return False
-        return True
+        for fault in faults:
+            self._tell(self.name, f"{fault.message} ({fault.hint})")
+        return not faults
+
+
+def _add_count(lines: list[str], what: str, module: Module) -> None:
+    dropped = f", {module.refused} dropped" if module.refused else ""
+    lines.append(f"{what}: {counted(module.handled, 'message')}{dropped}")
 
 
 def _of_another(project: Project, robot: str) -> Project:

@@ -6,7 +6,7 @@ from pathlib import Path
 from lumen.errors import LumenError, UsageError
 from lumen.feature import owner, table
 from lumen.language.projects import Project
-from lumen.loading.broken_features import blamed, faulty, resolved
+from lumen.loading.broken_features import blaming, faulty, resolved, shown
 from lumen.modules.module import Module
 from lumen.ports import Bus
 
@@ -24,14 +24,8 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
     kind = resolved(feature, where)
     if not (isinstance(kind, type) and issubclass(kind, Module)):
         raise faulty(feature, f"its module `{where}` is no subclass of `lumen.modules.module.Module`")
-    try:
-        return kind.make(project, bus, tell, folder)
-    except LumenError:
-        raise
-    except Exception as error:
-        raise blamed(feature, where, error) from error
-
-
-def blamed_module(name: str, error: Exception) -> LumenError:
-    """Return an error that names the package whose module raised `error`; raise that one if the module is Lumen's."""
-    return blamed(owner("modules", name), table("modules")[name].module, error)
+    with blaming(feature, where, LumenError):
+        made = kind.make(project, bus, tell, folder)
+    if not isinstance(made, Module):
+        raise faulty(feature, f"`{where}.make` returned {shown(made)} instead of a module")
+    return made

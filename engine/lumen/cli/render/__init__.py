@@ -5,7 +5,7 @@ from typing import Protocol
 
 from lumen.app.lint.findings import Findings
 from lumen.feature import owner, table
-from lumen.loading.broken_features import called
+from lumen.loading.broken_features import called_for_text
 
 
 class Renderer(Protocol):
@@ -25,4 +25,4 @@ def render(format: str, found: Sequence[Findings], *, coloured: bool = False) ->
     Raises LumenError with the name of the package if a format is faulty that was installed beside Lumen.
     """
     where: str = table("finding_formats")[format]
-    return str(called(owner("finding_formats", format), where, found, coloured=coloured))
+    return called_for_text(owner("finding_formats", format), where, found, coloured=coloured)

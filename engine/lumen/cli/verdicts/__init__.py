@@ -2,7 +2,7 @@
 
 from lumen.app.verdict import Verdict
 from lumen.feature import owner, table
-from lumen.loading.broken_features import called
+from lumen.loading.broken_features import called_for_text
 
 
 def verdict_formats() -> tuple[str, ...]:
@@ -15,4 +15,4 @@ def render(format: str, verdict: Verdict) -> str:
 
     Raises LumenError with the name of the package if a format is faulty that was installed beside Lumen.
     """
-    return str(called(owner("verdict_formats", format), table("verdict_formats")[format], verdict))
+    return called_for_text(owner("verdict_formats", format), table("verdict_formats")[format], verdict)

@@ -5,7 +5,8 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
-from lumen.feature import FunctionRow, distribution_of, owner, resolve, table
+from lumen.errors import LumenError
+from lumen.feature import FunctionRow, described, distribution_of, owner, resolve, table
 from lumen.interpreters.expressions.functions import CAUGHT, caught
 from lumen.interpreters.expressions.kinds import KINDS, MAP, NUMBER, FaultError, WrongKindError, kind_of
 from lumen.interpreters.expressions.operators import bounded
@@ -59,9 +60,17 @@ def fault_of(name: str) -> str:
     rows = table("functions")
     try:
         fault = "" if name not in rows or callable(resolve(rows[name].call)) else "it is not a function"
-    except Exception as error:  # of code that is not ours
-        fault = f"{type(error).__name__}: {error}"
-    return fault and f"{fault} (package {distribution_of(owner('functions', name))})"
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # of code that is not ours: even SystemExit
+        fault = described(error)
+    return fault and f"{fault}{_package(name)}"
+
+
+def _package(name: str) -> str:
+    """Return the distribution of a function as a message ends with it; empty if the function comes with Lumen."""
+    distribution = distribution_of(owner("functions", name))
+    return f" (package {distribution})" if distribution else ""
 
 
 def _function(name: str, row: FunctionRow) -> Function:
@@ -82,12 +91,25 @@ def _checked(name: str, row: FunctionRow, parameters: tuple[KindSet, ...]) -> Ca
         for position, (value, kinds) in enumerate(zip(arguments[first:], parameters, strict=True)):
             if kind_of(value) not in kinds:
                 raise WrongKindError(position, value, *sorted(kinds))
-        value = bounded(_plain(name, resolve(row.call)(*arguments)))
+        value = bounded(_plain(name, _called(name, row, arguments)))
         if kind_of(value) not in returns:
-            raise FaultError(f"`{name}` returned {kind_of(value)}, but its row says {row.returns}")
+            raise FaultError(f"`{name}` returned {kind_of(value)}, but its row says {row.returns}{_package(name)}")
         return value
 
     return call
+
+
+def _called(name: str, row: FunctionRow, arguments: tuple[Any, ...]) -> Any:
+    """Return what the function returns. Raises FaultError for any fault of an installed package."""
+    try:
+        return resolve(row.call)(*arguments)
+    except (KeyboardInterrupt, LumenError, FaultError, WrongKindError):
+        raise
+    except BaseException as error:  # even SystemExit
+        if not (package := _package(name)):
+            raise
+        what = f"{error} (`{name}` raised {type(error).__name__}){package}"
+        raise FaultError(f"this can't be evaluated: {what}") from error
 
 
 def _plain(name: str, value: Any) -> Any:
@@ -95,4 +117,4 @@ def _plain(name: str, value: Any) -> Any:
     try:
         return json.loads(json.dumps(value, allow_nan=False))
     except (TypeError, ValueError) as error:
-        raise FaultError(f"`{name}` returned a value that is not JSON data: {error}") from None
+        raise FaultError(f"`{name}` returned a value that is not JSON data: {error}{_package(name)}") from None

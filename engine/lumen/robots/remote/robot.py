@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from lumen.errors import BadCommandError, BusError
+from lumen.errors import BadCommandError, BusError, LumenError, Refused
 from lumen.feature import table
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Stop
@@ -228,7 +228,11 @@ class RemoteRobot:
 
     def _sense(self, sense: str, message: Message) -> None:
         """On whichever thread the bus has."""
-        if reading := decode_reading(sense, message.body, tuple(self._project.body.joints)):
+        try:
+            reading = decode_reading(sense, message.body, tuple(self._project.body.joints))
+        except LumenError as error:
+            raise Refused(str(error)) from error
+        if reading:
             self._readings[sense] = (reading, self._clock())
 
     def _hear(self, message: Message) -> None:

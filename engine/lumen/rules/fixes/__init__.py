@@ -5,10 +5,11 @@ A fix is a proposal: whoever applies one lints again and keeps it only where the
 """
 
 from collections.abc import Mapping
+from typing import Any
 
 from lumen.feature import owner, resolve, table
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.broken_features import blamed
+from lumen.loading.broken_features import blaming, faulty, shown
 from lumen.rules.codes import codes
 from lumen.rules.fixes.edits import Edit, FileText, Fix, edited
 from lumen.rules.fixes.misspellings import outnumbered, slip
@@ -36,8 +37,17 @@ def fixes(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> list[Fix]:
 
 
 def _proposed(where: str, diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    try:
-        proposed: list[Fix] = resolve(where)(diagnostic, source)
-    except Exception as error:
-        raise blamed(owner("fixes", diagnostic.code), where, error) from error
-    return proposed
+    feature = owner("fixes", diagnostic.code)
+    with blaming(feature, where):
+        proposed: Any = resolve(where)(diagnostic, source)
+    match proposed:
+        case [*fixes] if all(map(_is_fix, fixes)):
+            return fixes
+    raise faulty(feature, f"`{where}` returned {shown(proposed)} instead of a list of `Fix`")
+
+
+def _is_fix(value: object) -> bool:
+    match value:
+        case Fix(str(), [*edits]):
+            return all(isinstance(edit, Edit) for edit in edits)
+    return False

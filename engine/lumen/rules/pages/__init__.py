@@ -13,8 +13,8 @@ from functools import cache
 from importlib.resources import files
 from typing import NamedTuple
 
-from lumen.feature import rows
-from lumen.loading.broken_features import resolved
+from lumen.feature import resolve, rows
+from lumen.loading.broken_features import blaming
 from lumen.rules.codes import codes
 
 _FENCE = re.compile(
@@ -59,13 +59,15 @@ class Page(NamedTuple):
 def page(code: str) -> Page:
     """Return the page of one of `codes()`; of a code without a page, its summary.
 
-    Raises LumenError if a package of pages was installed beside Lumen and can't be imported.
+    Raises LumenError if a package of pages was installed beside Lumen and can't be read.
     """
-    found = (files(resolved(feature, package)) / f"{code}.md" for feature, package in rows("pages"))
-    file = next((file for file in found if file.is_file()), None)
-    if file is None:
+    text = ""
+    for feature, package in rows("pages"):
+        with blaming(feature, package):
+            file = files(resolve(package)) / f"{code}.md"
+            text = text or (file.read_text(encoding="utf-8") if file.is_file() else "")
+    if not text:
         return Page(code, f"{codes()[code].summary.capitalize()}.", "", (), ())
-    text = file.read_text(encoding="utf-8")
     said, _, examples = text.partition("\nWrong:\n")
     wrong, _, right = examples.partition("\nRight:\n")
     what, _, why = said.strip().partition("\n\n")

@@ -1,0 +1,255 @@
+"""Faults of rows that lint, expressions, senses, voices and forgetting use: each costs its row alone."""
+
+import logging
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import lumen
+from lumen.app.added_voice import AddedVoice
+from lumen.app.forgetting.added import FeatureForgetter
+from lumen.app.setup import set_up
+from lumen.bus import connect
+from lumen.errors import ExpressionError, LumenError, Refused
+from lumen.feature import features, owner, resolve, table
+from lumen.interpreters.expressions import Scope, compile_expression
+from lumen.language.people import PersonName
+from lumen.loading.files import read_files
+from lumen.ports import Joints, Message, Sense
+from lumen.robots.command_table import speech_duration
+from lumen.robots.remote import RemoteRobot
+from lumen.robots.sense_codec import decode_reading, encode_reading
+from lumen.rules import check_files
+from lumen.rules.fixes import fixes
+from tests import ROOT
+from tests.stranger.installing import Installed
+
+BASE = ROOT / "tests/lint/pages/base"
+MANIFEST = "from lumen.feature import *\n\nFEATURE = Feature(name='faulty', {row})\n"
+PREFIX = "the installed package `faulty` 1.0 is faulty: "
+CODES = "from lumen.language.diagnostics import *\nODD = Code('odd', 'names', WARNING, 'is odd')\n"
+CHECK = f"{CODES}def check(draft):\n    "
+RULES = "rules=('faulty_code:check',)"
+SECTION = "sections={'hall': Section('faulty_code:read')}"
+LINT = {
+    "manifest that leaves": ("", "", "its manifest `faulty:FEATURE` raised SystemExit: 3"),
+    "feature without a name": ("name=None", "", "the name of its feature is `None`, which is no text"),
+    "row without a name": (
+        "verbs={3: VerbRow('faulty_code')}",
+        "",
+        "`verbs` of its manifest has the name `3`, which is no text",
+    ),
+    "rule that leaves": (RULES, f"{CHECK}raise SystemExit", "its rule `faulty_code:check` raised SystemExit: "),
+    "rule whose module leaves": (RULES, "exit(2)", "its rule `faulty_code:check` raised SystemExit: 2"),
+    "rule with an error of its own": (
+        RULES,
+        "class Odd(BaseException): pass\ndef check(draft): raise Odd('no')",
+        "its rule `faulty_code:check` raised Odd: no",
+    ),
+    "rule that yields": (RULES, f"{CHECK}yield 3", "its rule `faulty_code:check` returned <generator object check"),
+    "rule that returns": (
+        RULES,
+        f"{CHECK}return [3]",
+        "its rule `faulty_code:check` returned [3]: a rule reports its findings, and returns None",
+    ),
+    "rule that adds no finding": (
+        RULES,
+        f"{CHECK}draft.loose.append(7)",
+        "its rule `faulty_code:check` reported 7, which is no finding",
+    ),
+    "rule without a place": (
+        RULES,
+        f"{CHECK}draft.loose.append(ODD.at(None, 'is odd'))",
+        "its rule `faulty_code:check` reported Diagnostic(",
+    ),
+    "rule with a code of another type": (
+        RULES,
+        "from lumen.language.diagnostics import *\nODD = Code('odd', 7, 'bad', None)\n"
+        "def check(draft): draft.main(ODD, ('name',), 'is odd')",
+        "its rule `faulty_code:check` reported Diagnostic(",
+    ),
+    "part that can't be imported": (
+        "parts=(PartRow('odd', Phase.WATCH, 'faulty_code:make'),)",
+        "raise SystemExit",
+        "its module `faulty_code:make` raised SystemExit: ",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", LINT)
+def test_lint_reports_a_faulty_row_once_and_names_its_package(case: str, installed: Installed) -> None:
+    row, code, fault = LINT[case]
+    manifest = MANIFEST.format(row=row).replace("name='faulty', name=None", "name=None") if row else "exit(3)"
+    installed.write("faulty", manifest, faulty_code=code)
+    (finding,) = check_files(BASE, read_files(BASE))[1]
+    assert finding.code == "broken-feature"
+    assert finding.message.startswith(PREFIX + fault)
+
+
+@pytest.mark.parametrize(
+    ("code", "fault"),
+    [
+        ("def read(data, report): pass", "TypeError: `faulty_code:read` returns no dataclass"),
+        ("def read(data, report): raise SystemExit('no')", "SystemExit: no"),
+        ("raise SystemExit", "SystemExit: "),
+    ],
+)
+def test_lint_reports_a_faulty_reader_of_a_section(code: str, fault: str, installed: Installed) -> None:
+    installed.write("faulty", MANIFEST.format(row=SECTION), faulty_code=code)
+    files = read_files(BASE)
+    files = {
+        **files,
+        "lumen.yaml": files["lumen.yaml"] + f"\nhall: {{}}  # {fault}\n".encode(),
+    }  # a file of the same text is not read again
+    (finding,) = [each for each in check_files(BASE, files)[1] if each.code == "broken-feature"]
+    assert finding.message == f"{PREFIX}reading `hall` raised {fault}"
+
+
+@pytest.mark.parametrize(
+    ("code", "fault"),
+    [
+        ("def repair(*given): pass", "`faulty_code:repair` returned None instead of a list of `Fix`"),
+        ("def repair(*given): return [3]", "`faulty_code:repair` returned [3] instead of a list of `Fix`"),
+        ("def repair(*given): raise SystemExit", "its module `faulty_code:repair` raised SystemExit: "),
+    ],
+)
+def test_a_faulty_repair_is_an_error_that_names_its_package(code: str, fault: str, installed: Installed) -> None:
+    check = f"{CODES}def check(draft): draft.main(ODD, ('name',), 'is odd')\n"
+    row = f"{RULES}, fixes={{'odd': 'faulty_code:repair'}}"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=check + code)
+    files = read_files(BASE)
+    (finding,) = check_files(BASE, files)[1]
+    with pytest.raises(LumenError) as raised:
+        fixes(finding, files)
+    assert str(raised.value).startswith(PREFIX + fault)
+
+
+@pytest.mark.parametrize(
+    ("code", "fault"),
+    [
+        ("def odd(): 1 / 0", "division by zero (`odd` raised ZeroDivisionError)"),
+        ("def odd(): raise SystemExit(1)", "1 (`odd` raised SystemExit)"),
+        ("raise SystemExit(1)", "the function `odd` can't be imported: SystemExit: 1"),
+        ("def odd(): return {1}", "`odd` returned a value that is not JSON data"),
+        ("def odd(): return 'x'", "`odd` returned text, but its row says number"),
+    ],
+)
+def test_a_faulty_function_names_its_package(code: str, fault: str, installed: Installed) -> None:
+    row = "functions={'odd': FunctionRow('faulty_code:odd', (), 'number')}"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=code)
+    with pytest.raises(ExpressionError) as raised:
+        compile_expression("odd()")(Scope())
+    assert fault in raised.value.message
+    assert raised.value.message.endswith("(package faulty 1.0)")
+
+
+@pytest.mark.parametrize(
+    ("reading", "fault"),
+    [
+        (0.7, "returned 0.7 from `read`: it must return a `lumen.ports.Reading` or None"),
+        (Joints(0.0, ("HeadYaw",), (), ()), "from `read`: it must return an angle and a stiffness for each name"),
+    ],
+)
+@pytest.mark.parametrize("bounded", [True, False])
+def test_a_wrong_reading_of_a_robot_names_its_package(
+    reading: Any, fault: str, bounded: bool, installed: Installed
+) -> None:
+    row = f"robots={{'bot': RobotRow('faulty_code:make', bounded={bounded})}}"
+    code = "from lumen.app.setup import set_up_with\nfrom lumen.robots.none import NoRobot\nROBOT = NoRobot()\n"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=f"{code}def make(r): return set_up_with(ROBOT)")
+    resolve("faulty_code:ROBOT").read = lambda sense: reading
+    robot = set_up("bot", lumen.load(ROOT / "examples/minimal"), "max").robot
+    with pytest.raises(LumenError) as raised:
+        robot.read(Sense.JOINT)
+    assert str(raised.value).startswith(f"{PREFIX}its robot `bot` returned ")
+    assert fault in str(raised.value)
+
+
+SENSE = "senses={'honey': SenseRow('the honey', 'faulty_code:encode', 'faulty_code:decode')}"
+
+
+@pytest.mark.parametrize(
+    ("code", "fault"),
+    [
+        ("pass", "returned None instead of the body of a message"),
+        ("return [1]", "returned [1] instead of the body of a message"),
+        ("raise SystemExit", "raised SystemExit: "),
+        ("1 / 0", "raised ZeroDivisionError: division by zero"),
+    ],
+)
+def test_a_faulty_encoder_of_a_sense_names_its_package(code: str, fault: str, installed: Installed) -> None:
+    installed.write("faulty", MANIFEST.format(row=SENSE), faulty_code=f"def encode(reading):\n    {code}")
+    with pytest.raises(LumenError) as raised:
+        encode_reading("honey", object())  # type: ignore[arg-type]
+    assert str(raised.value).startswith(PREFIX)
+    assert fault in str(raised.value)
+
+
+def test_a_faulty_decoder_of_a_sense_costs_its_message(installed: Installed) -> None:
+    code = "def decode(body, joints):\n    return body['honey'] if 'honey' in body else exit(body['code'])"
+    installed.write("faulty", MANIFEST.format(row=SENSE), faulty_code=code)
+    assert decode_reading("honey", {"honey": None}, ()) is None
+    assert decode_reading("honey", {}, ()) is None
+    for body, fault in (({"honey": 7}, "returned 7 instead of a reading or None"), ({"code": 1}, "SystemExit: 1")):
+        with pytest.raises(LumenError, match=fault) as raised:
+            decode_reading("honey", body, ())
+        assert str(raised.value).startswith(PREFIX)
+
+
+def test_a_robot_in_another_process_refuses_what_a_decoder_cannot_read(installed: Installed, tmp_path: Path) -> None:
+    installed.write("faulty", MANIFEST.format(row=SENSE), faulty_code="def decode(body, joints): return 7")
+    project = lumen.load(ROOT / "examples/minimal")
+    with closing(connect("memory://")) as bus, closing(RemoteRobot(project, bus, lambda: 7.0)) as robot:
+        with pytest.raises(Refused, match="returned 7 instead of a reading"):
+            robot._sense("honey", Message("honey", {"pots": 2}))
+        assert robot.read_other("honey") is None
+
+
+VOICE = "voices={'growl': 'faulty_code:Growl'}"
+GROWL = "class Growl:\n    words = ()\n    mute = False\n    def __init__(self, *given): pass\n"
+REST = "    def end(self, now): raise SystemExit\n    def close(self): pass\n"
+
+
+@pytest.mark.parametrize(
+    ("begin", "fault"),
+    [
+        ("pass", "TypeError: `begin` returned None instead of a number of seconds"),
+        ("return 'soon'", "TypeError: `begin` returned 'soon' instead of a number of seconds"),
+        ("return -1", "TypeError: `begin` returned -1 instead of a number of seconds"),
+        ("1 / 0", "ZeroDivisionError: division by zero"),
+        ("return 1.5", "SystemExit: "),
+    ],
+)
+def test_a_voice_is_silent_after_its_first_fault(
+    begin: str, fault: str, installed: Installed, caplog: pytest.LogCaptureFixture
+) -> None:
+    code = f"{GROWL}    def begin(self, *given):\n        {begin}\n{REST}"
+    installed.write("faulty", MANIFEST.format(row=VOICE), faulty_code=code)
+    voice = AddedVoice(resolve(table("voices")["growl"])(), owner("voices", "growl"), "growl")
+    for _ in range(2):
+        voice.begin("Hello!", "en", 1.0, 0.0)
+        voice.end(1.0)
+    assert voice.begin("Hello!", "en", 1.0, 2.0) == speech_duration("Hello!")
+    voice.close()
+    (record,) = caplog.records
+    assert record.getMessage() == f"{PREFIX}its voice `growl` raised {fault}; the robot is silent from now on"
+
+
+def test_a_forgetter_that_leaves_keeps_no_other_from_forgetting(
+    installed: Installed, caplog: pytest.LogCaptureFixture
+) -> None:
+    code = "FORGOTTEN = []\ndef leave(person): exit()\ndef forget(person): FORGOTTEN.append(person.key)"
+    row = "forgets=('faulty_code:leave', 'faulty_code:forget')"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=code)
+    with caplog.at_level(logging.ERROR):
+        FeatureForgetter(lambda kind: None).forget(PersonName("Ani"))
+    forgotten: Any = resolve("faulty_code:FORGOTTEN")
+    assert forgotten == ["ani"]
+    assert "by `faulty_code:leave` of the package faulty 1.0: SystemExit" in caplog.text
+
+
+def test_a_faulty_row_keeps_the_others_of_its_package(installed: Installed) -> None:
+    installed.write("faulty", MANIFEST.format(row=RULES), faulty_code="def check(draft): exit()")
+    assert features()[-1].name == "faulty"
