@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.added_voice import AddedVoice
 from lumen.app.forgetting.added import FeatureForgetter
 from lumen.app.setup import set_up
+from lumen.app.voice import AddedVoice
 from lumen.bus import connect
 from lumen.errors import ExpressionError, LumenError, Refused
 from lumen.feature import features, owner, resolve, table

@@ -2,12 +2,25 @@
 
 import logging
 import shutil
+from collections.abc import Sequence
+from contextlib import closing
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import lumen
+from lumen.app.exhibition import Exhibition
+from lumen.app.parts.alerting import AlertPart
+from lumen.app.parts.part import Part
+from lumen.app.plan import Plan
+from lumen.app.rehearsal import RehearsalTrace
+from lumen.app.setup import set_up
+from lumen.buses.memory import MemoryBus
+from lumen.buses.validated import validated
 from lumen.errors import UsageError
+from lumen.feature import resolve
+from lumen.language.events import Event
 from lumen.loading.files import read_files
 from lumen.rules import check_files
 from tests import ROOT
@@ -21,7 +34,16 @@ FEATURE = Feature(name="counter", parts=(PartRow("counter", Phase.WATCH, "counti
 """
 COUNTER = """
 from lumen.app.parts.part import Part
+from lumen.app.exhibition import Exhibition
+from lumen.app.parts.alerting import AlertPart
+from lumen.app.parts.part import Part
+from lumen.app.plan import Plan
+from lumen.app.rehearsal import RehearsalTrace
+from lumen.app.setup import set_up
+from lumen.buses.memory import MemoryBus
+from lumen.buses.validated import validated
 from lumen.errors import UsageError
+from lumen.feature import resolve
 from lumen.runtime.loop import Observer
 
 class Counter(Part, Observer):
@@ -55,7 +77,7 @@ def test_a_part_watches_the_steps_of_the_behaviour(installed: Installed, minimal
     assert findings(minimal) == []
     with lumen.open(minimal, robot="recording") as exhibition:
         exhibition.run(seconds=1)
-        [counter] = [part for part in exhibition.node.parts if type(part).__name__ == "Counter"]
+        counter = exhibition.services[resolve("counting_part:Counter")]
         assert counter.steps > 0
 
 
@@ -63,6 +85,8 @@ def test_a_part_watches_the_steps_of_the_behaviour(installed: Installed, minimal
     ("make", "told"),
     [
         ("1 / 0", "ZeroDivisionError: division by zero"),
+        ("raise SystemExit(3)", "SystemExit: 3"),
+        ("return [Counter(), 3]", "TypeError: `counting_part:make` returned 3, which is no part"),
         ("import not_installed", "ModuleNotFoundError: No module named 'not_installed'"),
         ("return 3", "TypeError: Value after * must be an iterable, not int"),
         (
@@ -79,6 +103,82 @@ def test_an_exhibition_runs_without_a_part_that_cannot_be_made(
         exhibition.run(seconds=1)
         assert exhibition.node.now >= 1
     assert f"the part `counter` is left out: {FAULTY}{told}" in caplog.text
+
+
+FAULTS = {
+    "begin": "def begin(self, now): 1 / 0",
+    "tick": "def tick(self, now, changes): 1 / 0",
+    "tick with an error of Lumen": "def tick(self, now, changes): raise UsageError('the bottle is empty')",
+    "tick that leaves": "def tick(self, now, changes): raise SystemExit(3)",
+    "quiet_until": "def quiet_until(self, now): pass",
+    "over": "over = property(lambda self: 1 / 0)",
+    "failed": "failed = property(lambda self: 1 / 0)",
+    "stepped": "def stepped(self, step): 1 / 0",
+    "performing": "def performing(self, command, now): 1 / 0",
+    "answered": "def answered(self, event): 1 / 0",
+    "close": "def close(self): 1 / 0",
+    "tick and close": "def tick(self, now, changes): 1 / 0\n    def close(self): exit()",
+    "summary": "def summary(self): yield 7",
+    "use": "def use(self, project): 1 / 0",
+    "interrupt": "def interrupt(self): 1 / 0",
+}
+
+
+@pytest.mark.parametrize("case", FAULTS)
+def test_an_exhibition_continues_without_a_part_that_fails(
+    case: str, installed: Installed, minimal: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    code = COUNTER.format(make="return Counter()").replace("def make", f"    {FAULTS[case]}\n\ndef make")
+    installed.write("lumen-counter", MANIFEST, counting_part=code)
+    project, told = lumen.load(minimal), list[str]()
+    narrator = RehearsalTrace(lambda: 0.0, lambda: project.machine, None)
+    witness = Witness(told)
+    with Exhibition(Plan(project, set_up("recording", project, "max"), narrator=narrator)) as exhibition:
+        exhibition.services.add(0, witness)
+        exhibition.start()
+        assert exhibition.run(seconds=3.0) == pytest.approx(3.0)
+        for part in exhibition.node.parts:
+            part.quiet_until(3.0)
+        exhibition.node.use(project)
+        exhibition.node.summary()
+        exhibition.node.failed  # noqa: B018  it is a property
+        exhibition.node.interrupt()
+        exhibition.tick()
+    (line,) = [text for _, who, text in narrator.lines if who == "trouble" and "lumen-counter" in text]
+    assert "package `lumen-counter` 1.0 is faulty: its part `counter` is stopped, because it raised" in line
+    assert told == ["the part `counter` of the package lumen-counter 1.0"]
+    assert "Traceback" in caplog.text
+
+
+class Witness(Part):
+    """A part that keeps which other parts were stopped."""
+
+    def __init__(self, told: list[str]) -> None:
+        self._told = told
+
+    def part_stopped(self, part: str) -> None:
+        self._told.append(part)
+
+
+def test_a_fault_of_a_part_of_lumen_ends_the_run(minimal: Path) -> None:
+    class Faulty(Part):
+        def tick(self, now: float, changes: Sequence[Event]) -> None:
+            raise ZeroDivisionError
+
+    with lumen.open(minimal, robot="recording") as exhibition:
+        exhibition.services.add(0, Faulty())
+        with pytest.raises(ZeroDivisionError):
+            exhibition.run(seconds=1)
+
+
+def test_an_alert_about_a_stopped_part_names_its_package(tmp_path: Path) -> None:
+    told: list[tuple[str, ...]] = []
+    desk: Any = lambda *alert: told.append(alert)  # noqa: E731
+    desk.close = lambda: None
+    with closing(AlertPart(desk, validated(MemoryBus(), lumen.load(ROOT)), tmp_path, ())) as alerts:
+        alerts.part_stopped("the part `counter` of the package lumen-counter 1.0")
+    name = "the part `counter` of the package lumen-counter 1.0"
+    assert told == [("lost", f"{name} failed and was stopped", name)]
 
 
 def test_a_package_refuses_the_start_with_an_error_of_lumen(installed: Installed, minimal: Path) -> None:

@@ -7,11 +7,12 @@ from contextlib import ExitStack
 from functools import cache
 
 from lumen.app.claiming import CLAIM_INTERVAL
+from lumen.app.parts.added import AddedPart
 from lumen.app.parts.part import Part
 from lumen.app.plan import Plan
 from lumen.app.services import Services
 from lumen.errors import LumenError
-from lumen.feature import PartRow, resolve, rows
+from lumen.feature import Feature, PartRow, distribution_of, resolve, rows
 from lumen.loading.broken_features import blamed
 
 _log = logging.getLogger(__name__)
@@ -64,14 +65,25 @@ def _make(services: Services, *, claimed: bool) -> None:
 
 
 def _add(services: Services, place: int, row: PartRow) -> None:
+    feature = _feature_of(row)
     try:
         made = resolve(row.make)(services)
-        services.add(place, *([made] if isinstance(made, Part) else made or ()))
-    except LumenError:
+        parts = [made] if isinstance(made, Part) else [*(made or ())]
+        if feature:
+            parts = [AddedPart(part, feature, row, services.part_stopped) for part in parts]
+        services.add(place, *parts)
+    except (LumenError, KeyboardInterrupt):
         raise
-    except Exception as error:
-        feature = next(feature for feature, each in rows("parts") if each is row)
+    except BaseException as error:  # even SystemExit
+        if feature is None:
+            raise
         _log.exception("the part `%s` is left out: %s", row.name, blamed(feature, row.make, error))
+
+
+def _feature_of(row: PartRow) -> Feature | None:
+    """Return the feature of an installed package that has a row; None for a row of Lumen."""
+    found = (feature for feature, each in rows("parts") if each is row and distribution_of(feature))
+    return next(found, None)
 
 
 @cache

@@ -9,6 +9,7 @@ from lumen.app.live_behavior import LiveBehavior
 from lumen.app.nap import Nap
 from lumen.app.narrator import Narrator
 from lumen.app.node import Node, NodeTime
+from lumen.app.parts.added import AddedPart
 from lumen.app.parts.part import Part
 from lumen.app.parts.robot import RobotPart
 from lumen.app.plan import Plan
@@ -61,7 +62,8 @@ class Services:
 
     def get(self, kind: type[T]) -> T | None:
         """Return the part or service of a kind, None if there is none."""
-        return next((one for one in (*self._provided, *self.node.parts) if isinstance(one, kind)), None)
+        parts = (part.own if isinstance(part, AddedPart) else part for part in self.node.parts)
+        return next((one for one in (*self._provided, *parts) if isinstance(one, kind)), None)
 
     def provide(self, *services: object) -> None:
         """Let others find these by their types."""
@@ -115,6 +117,12 @@ class Services:
         """Tell all parts of an event of a robot here whose brain is somewhere else."""
         for part in self.node.parts:
             part.noticed(event)
+
+    def part_stopped(self, part: str, fault: str) -> None:
+        """Print why a part of a package was stopped, and tell all other parts of it."""
+        self.narrator.line("trouble", fault)
+        for other in self.node.parts:
+            other.part_stopped(part)
 
     def _presence(self) -> Presence:
         plan = self.plan

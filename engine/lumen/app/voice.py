@@ -1,25 +1,31 @@
 """`--voice espeak`: the simulated robot's texts as sound, in a file or on a device."""
 
+import logging
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
 from contextlib import suppress
+from math import isfinite
 from pathlib import Path
-from typing import IO, Protocol, runtime_checkable
+from typing import IO, Protocol, TypeVar, runtime_checkable
 
-from lumen.app.added_voice import AddedVoice
 from lumen.app.loudspeaker import player_here
 from lumen.app.setup import Setup
 from lumen.errors import ModuleError, UsageError
-from lumen.feature import distribution_of, owner, table
+from lumen.feature import Feature, distribution_of, owner, table
+from lumen.language.diagnostics import Diagnostic
 from lumen.language.gestures import WordTime
-from lumen.loading.broken_features import called, need_made
+from lumen.loading.broken_features import called, faults_reported, need_made, shown
 from lumen.modules.audio_track import AudioTrack
 from lumen.modules.sound import Sound, save
 from lumen.modules.voice import espeak
 from lumen.ports import Robot
 from lumen.robots.bounded_robot import ability
+from lumen.robots.command_table import speech_duration
+
+T = TypeVar("T")
+_log = logging.getLogger(__name__)
 
 
 class RobotVoice(Protocol):
@@ -119,6 +125,60 @@ class Speaker:
         if self._sheet:
             self._sheet.close()
             self._sheet = None
+
+
+class AddedVoice:
+    """Speaks with `voice`, a row of a feature with that `name`. After its first fault, which is logged, it is silent.
+
+    A silent text takes as long as one of a robot without a voice.
+    """
+
+    def __init__(self, voice: RobotVoice, feature: Feature, name: str) -> None:
+        self._voice, self._feature, self._name = voice, feature, name
+        self.words: tuple[WordTime, ...] = ()
+        self._silent = False
+
+    @property
+    def mute(self) -> bool:
+        """Whether the voice makes no sound."""
+        return self._attempt(lambda: bool(self._voice.mute), True)
+
+    def begin(self, text: str, language: str, volume: float, now: float) -> float:
+        def begun() -> tuple[float, tuple[WordTime, ...]]:
+            return _seconds(self._voice.begin(text, language, volume, now)), tuple(map(_word, self._voice.words))
+
+        silence: tuple[float, tuple[WordTime, ...]] = (speech_duration(text), ())
+        seconds, self.words = self._attempt(begun, silence)
+        return seconds
+
+    def end(self, now: float) -> None:
+        self._attempt(lambda: self._voice.end(now), None)
+
+    def close(self) -> None:
+        self._attempt(self._voice.close, None)
+
+    def _attempt(self, call: Callable[[], T], otherwise: T) -> T:
+        """Return what a call of the voice returns, or `otherwise` if the voice is or becomes silent."""
+        if self._silent:
+            return otherwise
+        faults: list[Diagnostic] = []
+        with faults_reported(self._feature, f"its voice `{self._name}`", faults):
+            return call()
+        self._silent = True
+        _log.error("%s; the robot is silent from now on", faults[0].message)
+        return otherwise
+
+
+def _seconds(value: object) -> float:
+    if isinstance(value, int | float) and isfinite(value) and value >= 0:
+        return float(value)
+    raise TypeError(f"`begin` returned {shown(value)} instead of a number of seconds")
+
+
+def _word(value: object) -> WordTime:
+    if isinstance(value, WordTime):
+        return value
+    raise TypeError(f"`words` has {shown(value)}, which is no `WordTime`")
 
 
 @runtime_checkable

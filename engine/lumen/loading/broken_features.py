@@ -63,7 +63,7 @@ def called_for_text(feature: Feature, where: str, *arguments: Any, **named: Any)
 def blaming(feature: Feature, where: str, *passed: type[Exception]) -> Iterator[None]:
     """Run code of an import string; raise LumenError with the name of the distribution for any fault of that code.
 
-    What Lumen's own features raise passes, and so do errors of the types in `passed`.
+    Errors of Lumen's own features pass, and so do those of the types in `passed`.
     """
     try:
         yield
@@ -79,7 +79,7 @@ def blaming(feature: Feature, where: str, *passed: type[Exception]) -> Iterator[
 def faults_reported(feature: Feature, what: str, findings: list[Diagnostic]) -> Iterator[None]:
     """Run code of a feature; add a finding that names the distribution for any fault of that code.
 
-    What Lumen's own features raise passes. `what` is the code, such as "its rule `NAME`".
+    Errors of Lumen's own features pass. `what` is the code, such as "its rule `NAME`".
     """
     try:
         yield

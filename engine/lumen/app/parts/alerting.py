@@ -105,6 +105,9 @@ class AlertPart(Part, Observer):
     def helpless(self, reason: str) -> None:
         self._desk("crashed", "a part of Lumen failed. The robot rests, because nobody could have stopped it any more")
 
+    def part_stopped(self, part: str) -> None:
+        self._desk("lost", f"{part} failed and was stopped", part)
+
     def close(self) -> None:
         self._disk.close()
         self._desk.close()

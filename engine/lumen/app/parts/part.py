@@ -55,6 +55,9 @@ class Part:
     def helpless(self, reason: str) -> None:
         """Nobody can reach this process any more: what moves has to rest."""
 
+    def part_stopped(self, part: str) -> None:
+        """Another part, which a package added, failed and was stopped; `part` is its name and its package."""
+
     def summary(self) -> Iterator[str]:
         """What is said of it at the end, a line each."""
         return iter(())
