@@ -69,15 +69,18 @@ def _add(services: Services, place: int, row: PartRow) -> None:
     try:
         made = resolve(row.make)(services)
         parts = [made] if isinstance(made, Part) else [*(made or ())]
-        if feature:
-            parts = [AddedPart(part, feature, row, services.part_stopped) for part in parts]
-        services.add(place, *parts)
+        services.add(place, *(_guarded(services, row, feature, part) for part in parts))
     except (LumenError, KeyboardInterrupt):
         raise
     except BaseException as error:  # even SystemExit
         if feature is None:
             raise
         _log.exception("the part `%s` is left out: %s", row.name, blamed(feature, row.make, error))
+
+
+def _guarded(services: Services, row: PartRow, feature: Feature | None, part: Part) -> Part:
+    """Return a part whose faults end only the part if a package made it."""
+    return AddedPart(part, feature, row, services.part_stopped) if feature else part
 
 
 def _feature_of(row: PartRow) -> Feature | None:
