@@ -5,7 +5,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from lumen.errors import ProjectError, UsageError
+from lumen.errors import ProjectError
 from lumen.interpreters.arguments import need, need_map, need_numbers, need_path, need_text
 from lumen.interpreters.inference import Evaluator, Explanation, explain
 from lumen.language.controllers import ControllerDefinition
@@ -14,10 +14,8 @@ from lumen.loading.controllers import build_controller
 from lumen.loading.derived import derived
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
-from lumen.loading.files import MAX_FILE_BYTES
-from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
+from lumen.loading.single_file import read_document
 
 if TYPE_CHECKING:
     import numpy as np
@@ -33,14 +31,7 @@ class Controller(ControllerDefinition):
     def load(cls, path: str | Path) -> Self:
         """The controller in a file; raises UsageError if the file can't be read, ProjectError if it has mistakes."""
         path = need_path(path)
-        try:
-            content = read_regular(path, MAX_FILE_BYTES)
-        except OSError as error:
-            raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
-        document, diagnostics = parse(str(path), content)
-        if document is None or has_errors(diagnostics):
-            raise ProjectError(diagnostics)
-        return cls._build(document, path.stem)
+        return cls._build(read_document(path), path.stem)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "controller") -> Self:

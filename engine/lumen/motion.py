@@ -5,7 +5,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, Self
 
-from lumen.errors import ProjectError, UsageError
+from lumen.errors import ProjectError
 from lumen.interpreters.arguments import need_map, need_number, need_numbers, need_path, need_text
 from lumen.interpreters.limits import Excess, beyond_limits, overspeed
 from lumen.interpreters.trajectory import Trajectory
@@ -15,14 +15,13 @@ from lumen.loading.derived import derived
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft, body_of
-from lumen.loading.files import MAX_FILE_BYTES, read_files
+from lumen.loading.files import read_files
 from lumen.loading.motions import build_motion, countable
 from lumen.loading.packaged import find_project, shipped_root
 from lumen.loading.project import motion_parts
 from lumen.loading.project_folders import MAIN_FILE
-from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
+from lumen.loading.single_file import read_document
 
 __all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]
 
@@ -38,14 +37,7 @@ class Motion(motions.MotionDefinition):
         has mistakes.
         """
         path = need_path(path)
-        try:
-            content = read_regular(path, MAX_FILE_BYTES)
-        except OSError as error:
-            raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
-        document, diagnostics = parse(str(path), content)
-        if document is None or has_errors(diagnostics):
-            raise ProjectError(diagnostics)
-        return cls._build(document, path.stem, motion_parts(read_files(_home(path))))
+        return cls._build(read_document(path), path.stem, motion_parts(read_files(_home(path))))
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "motion") -> Self:

@@ -6,7 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple, Self
 
-from lumen.errors import ProjectError, UsageError
+from lumen.errors import ProjectError
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.words import Words
@@ -17,13 +17,12 @@ from lumen.loading.complaints import MISSING_KEY
 from lumen.loading.context import check_memory
 from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
-from lumen.loading.files import MAX_FILE_BYTES, composed
+from lumen.loading.files import composed
 from lumen.loading.linking import link
 from lumen.loading.plain import plain_document
-from lumen.loading.regular_files import read_regular
 from lumen.loading.schema import check_schema
+from lumen.loading.single_file import parse_file
 from lumen.loading.words import build_words
-from lumen.loading.yaml_reader import parse
 from lumen.upkeep.garbage import gc_paused
 
 ReadDocument = Callable[[str], tuple[Document | None, list[Diagnostic]]]
@@ -64,14 +63,7 @@ class _Shelf(NamedTuple):
     @classmethod
     def of_files(cls, files: Mapping[str, Path]) -> Self:
         """Those in files; reading one raises UsageError where that can't be done."""
-
-        def read(name: str) -> tuple[Document | None, list[Diagnostic]]:
-            try:
-                return parse(str(files[name]), read_regular(files[name], MAX_FILE_BYTES))
-            except OSError as error:
-                raise UsageError(f"can't read {files[name]}: {(error.strerror or str(error)).lower()}") from None
-
-        return cls(read, files.keys())
+        return cls(lambda name: parse_file(files[name]), files.keys())
 
     @classmethod
     def of_dicts(cls, dicts: Mapping[str, Any]) -> Self:

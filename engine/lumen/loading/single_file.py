@@ -1,0 +1,26 @@
+"""A YAML file that is read on its own, without the project around it."""
+
+from pathlib import Path
+
+from lumen.errors import ProjectError, UsageError
+from lumen.language.diagnostics import Diagnostic, has_errors
+from lumen.loading.document import Document
+from lumen.loading.files import MAX_FILE_BYTES
+from lumen.loading.regular_files import read_regular
+from lumen.loading.yaml_reader import parse
+
+
+def parse_file(path: Path) -> tuple[Document | None, list[Diagnostic]]:
+    """Parse a file. Raises UsageError if it can't be read."""
+    try:
+        return parse(str(path), read_regular(path, MAX_FILE_BYTES))
+    except OSError as error:
+        raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
+
+
+def read_document(path: Path) -> Document:
+    """Return the document in a file. Raises UsageError if it can't be read, ProjectError if it is no YAML."""
+    document, diagnostics = parse_file(path)
+    if document is None or has_errors(diagnostics):
+        raise ProjectError(diagnostics)
+    return document
