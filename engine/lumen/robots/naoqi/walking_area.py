@@ -7,23 +7,15 @@ from lumen.errors import RobotRefusedError
 from lumen.interpreters.dead_reckoning import DeadReckoning, turned
 from lumen.language.projects import Stage
 from lumen.ports import Sonar, Whereabouts
+from lumen.robots.hazards import danger
 from lumen.robots.naoqi.hardware import Hardware
 
-OBSTACLE_DISTANCE = 0.4
-"""Nearer than this to something the robot does not walk [m]."""
 FALL_DRIFT = 0.6
 """How far the robot may have slid while it fell and got up again [m], as the simulated one does."""
 MOST_BETWEEN_LOOKS = 0.5
 """A robot that has come farther than this between two looks did not walk there: its odometry began anew [m]."""
 MAX_STAGE_DRIFT = 0.03
 """By how much the way to a place may leave the stage [m]."""
-
-STOP_BUTTONS = {
-    "RightBumper": "the right bumper",
-    "LeftBumper": "the left bumper",
-    "BackBumper": "the back bumper",
-    "ChestButton": "the chest button",
-}
 
 GroundPose = Sequence[float]
 """x, y [m] and theta [rad] as `ALMotion.getRobotPosition` has them."""
@@ -70,18 +62,8 @@ class WalkingArea:
 
     def danger(self) -> str:
         """Why the robot must not walk now; empty where nothing is in the way."""
-        for sensor, name in STOP_BUTTONS.items():
-            if self._pressed.get(sensor):
-                return f"{name} is pressed"
         echo = self._echo()
-        near = (
-            min((d for d in (echo.left, echo.right) if d > 0.0), default=OBSTACLE_DISTANCE)
-            if echo
-            else OBSTACLE_DISTANCE
-        )
-        return (
-            f"something is {near:.2f} m ahead, nearer than {OBSTACLE_DISTANCE:g} m" if near < OBSTACLE_DISTANCE else ""
-        )
+        return danger(self._pressed, (d for d in (echo.left, echo.right) if d > 0.0) if echo else ())
 
     def check_way(self, here: GroundPose, way: GroundPose) -> None:
         """Raises RobotError where a walk by `way` from `here` would leave the stage, farther than the robot has."""
