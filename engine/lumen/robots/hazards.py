@@ -1,4 +1,4 @@
-"""What forbids a step on every robot: something near ahead, or a hand on a button."""
+"""The reasons why any robot must not walk: something near ahead, or a hand on a button."""
 
 from collections.abc import Iterable, Mapping
 
