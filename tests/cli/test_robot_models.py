@@ -12,7 +12,8 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lumen.cli.importing_robot import body_faults, robot_body
+from lumen.cli.importing import result_faults
+from lumen.cli.importing_robot import robot_body
 from lumen.formats.conversion_findings import ConversionFindings, ForeignFileError
 from lumen.formats.robot_models import begins_robot, read_robot
 from lumen.formats.robot_models.mjcf import mjcf_model
@@ -42,7 +43,7 @@ def joint(
 def imported(content: bytes) -> tuple[dict[str, Any], list[str]]:
     """The data of the body, and what was told: line and message."""
     text, found = read_robot("r.urdf", content, "r", "r.xml")
-    assert not body_faults("r.yaml", text)
+    assert not result_faults("r.yaml", text, "body")
     return yaml.safe_load(text), [f"{d.place.line}: {d.message}" for d in found]
 
 
@@ -250,6 +251,6 @@ def test_a_damaged_robot_is_read_or_refused(whole: bytes, damage: list[tuple[flo
         whole = whole[:at] + word + whole[at + cut :]
     with suppress(ForeignFileError):
         text, told, _ = robot_body(Path("r.urdf"), whole, Path("/nowhere/models/r.yaml"), "r")
-        faults = body_faults("r.yaml", text)
+        faults = result_faults("r.yaml", text, "body")
         assert not faults, faults
         assert all(d.place.line for d in told)

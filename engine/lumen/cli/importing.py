@@ -9,7 +9,7 @@ from typing import Any
 
 from lumen.app.lint.findings import Findings
 from lumen.cli.foreign import foreign_content, one_line
-from lumen.cli.importing_robot import body_faults, robot_body, write_beside
+from lumen.cli.importing_robot import robot_body, write_beside
 from lumen.cli.progress import progress
 from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
@@ -26,6 +26,7 @@ from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.robots import Body
 from lumen.language.text_lines import lines_of
 from lumen.loading.behaviors import build_machine
+from lumen.loading.bodies import build_body
 from lumen.loading.controllers import build_controller
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import body_of
@@ -103,7 +104,7 @@ def run(options: argparse.Namespace) -> int:
         tell(READ, 100, f"% of {options.file}: writing")
         text = document_yaml(data, kind)
         tell(READ + WRITTEN, 100, f"% of {options.file}: checking the result")
-        faults = _faults(str(options.output or "the result"), text, kind, body)
+        faults = result_faults(str(options.output or "the result"), text, kind, body)
         if refused := next((fault for fault in faults if fault.severity is Severity.ERROR), None):
             raise UsageError(_refusal(options.file, text, refused, diagnostics))
     write_result(text, options.output)
@@ -116,7 +117,7 @@ def _robot(options: argparse.Namespace, content: bytes, title: str) -> int:
         text, diagnostics, beside = robot_body(options.file, content, options.output, title)
     except ForeignFileError as error:
         raise UsageError(one_line(error.diagnostic)) from None
-    faults = body_faults(str(options.output or "the result"), text)
+    faults = result_faults(str(options.output or "the result"), text, "body")
     if refused := next((fault for fault in faults if fault.severity is Severity.ERROR), None):
         raise UsageError(_refusal(options.file, text, refused, diagnostics))
     write_result(text, options.output)
@@ -180,7 +181,7 @@ def _refusal(file: Path, text: str, fault: Diagnostic, said: list[Diagnostic]) -
     return " ".join(told.split())
 
 
-def _faults(file: str, text: str, kind: str, body: Body | None) -> list[Diagnostic]:
+def result_faults(file: str, text: str, kind: str, body: Body | None = None) -> list[Diagnostic]:
     """What the loader has against the result."""
     document, found = parse(file, text.encode())
     if document is None:
@@ -191,6 +192,8 @@ def _faults(file: str, text: str, kind: str, body: Body | None) -> list[Diagnost
         motion = build_motion(data, report, name="imported", body=body)
         if motion and (fast := overspeed(motion, body)):
             found.append(_too_fast(file, fast))
+    elif kind == "body":
+        build_body(data, report, name="imported")
     elif kind == "controller":
         build_controller(data, report, name="imported")
     else:

@@ -11,10 +11,6 @@ from lumen.formats.conversion_findings import LOST
 from lumen.formats.robot_models import read_robot
 from lumen.formats.xml_elements import XmlElement, parse_xml
 from lumen.language.diagnostics import Diagnostic, Place, Severity
-from lumen.loading.bodies import build_body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
 
 
 def robot_body(
@@ -38,16 +34,6 @@ def robot_body(
         hint = f"copy it to {output.parent / mjcf}, with the files that it refers to"
         found.append(Diagnostic(LOST, message, Place(str(path)), hint, Severity.WARNING))
     return text, found, beside
-
-
-def body_faults(file: str, text: str) -> list[Diagnostic]:
-    """What the loader has against the result."""
-    document, found = parse(file, text.encode())
-    if document is None:
-        return found
-    report = DocumentReport(document)
-    build_body(check_schema(document, "body", report), report, name="imported")
-    return [*found, *report.diagnostics]
 
 
 def write_beside(files: Mapping[Path, bytes]) -> None:
