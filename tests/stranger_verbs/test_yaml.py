@@ -76,6 +76,20 @@ def test_how_long_it_takes_is_computed_from_its_arguments() -> None:
     assert time_taken(Do("wiggle", {})) == 2.0
 
 
+@for_each(
+    ("actions", "found"),
+    [
+        ("[{rest: true}, {wiggle: true}]", True),
+        ("[{rest: true}, {blink: 1}]", False),
+        ("[{rest: true}, {wake: true}, {wiggle: true}]", False),
+        ("[{wiggle: true}, {rest: true}]", False),
+    ],
+)
+def test_lint_reports_a_verb_that_moves_a_robot_at_rest(project: Path, actions: str, found: bool) -> None:
+    reported = findings(project, "do: {wiggle: true}", f"do: {actions}")
+    assert any("it can't perform `wiggle`" in finding for finding in reported) is found
+
+
 def test_a_sound_project_has_no_findings(project: Path) -> None:
     assert findings(project, "blink: 2", "blink: 2") == []
 

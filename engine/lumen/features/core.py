@@ -94,6 +94,7 @@ FEATURE = Feature(
         "lumen.rules.after_end:check",
         "lumen.rules.dead_ends:check",
         "lumen.rules.falling:check",
+        "lumen.rules.resting:check",
         "lumen.rules.timing:check",
         "lumen.rules.stories:check",
         "lumen.rules.sayings:check",
