@@ -5,8 +5,7 @@
     python scripts/moves.py STAGE …             # do it; a stage that is done can be repeated, as after a merge
 
 Imports are rewritten by syntax tree. A name that only looks like a moved module or path is rewritten in the files that
-`texts` lists, left alone in those that `leave` lists, and printed if it is in another file: a person decides. The tool
-commits nothing.
+`texts` lists but `leave` does not, and printed if neither lists the file: a person decides. The tool commits nothing.
 """
 
 import argparse
@@ -177,10 +176,10 @@ class Mover:
             return False
         seen = moved.for_file(goal) if goal else moved
         edits = self._edits(name, text, seen)
-        spelled = spelled_edits(text, seen, edits)
+        spelled = [] if self._is_listed(name, self.plan.leave) else spelled_edits(text, seen, edits)
         if self._is_listed(name, self.plan.texts):
             edits += spelled
-        elif not self._is_listed(name, self.plan.leave):
+        else:
             lines = sorted({text.count("\n", 0, edit.start) for edit in spelled})
             self.undecided += [f"{name}:{line + 1}: {text.splitlines()[line].strip()[:110]}" for line in lines]
         if edits and self.check:

@@ -14,7 +14,7 @@ from tests.waiting import HANG
 
 PLAN = """
 stays = ["__init__.py"]
-texts = ["engine/lumen/*/__init__.py", "pyproject.toml"]
+texts = ["docs/*", "engine/lumen/*/__init__.py", "pyproject.toml"]
 leave = ["docs/old.md", "scripts/moves.toml"]
 
 [packages]
