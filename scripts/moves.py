@@ -1,11 +1,15 @@
 """Move the files of the engine to where `scripts/moves.toml` says, and rewrite whatever names them.
 
-    python scripts/moves.py                     # the stages, and how many files of each still have to move
+    python scripts/moves.py                     # the stages, and how many files of each are still to move
     python scripts/moves.py --check STAGE …     # what a stage would do
     python scripts/moves.py STAGE …             # do it; a stage that is done can be repeated, as after a merge
 
 Imports are rewritten by syntax tree. A name that only looks like a moved module or path is rewritten in the files that
-`texts` lists but `leave` does not, and printed if neither lists the file: a person decides. The tool commits nothing.
+`texts` lists but `leave` does not, and printed if neither lists the file: a person decides.
+
+The tool commits nothing. `git commit --all` makes one commit of moves and references. To git a file that mostly has
+imports is then a new one; the tool prints such files. If `git log --follow` must reach their history, commit what is
+staged first, the moves alone; that commit can't be imported.
 """
 
 import argparse
@@ -40,7 +44,7 @@ class Plan:
     texts: Sequence[str]
     """Files in which names are rewritten in strings, comments and prose."""
     leave: Sequence[str]
-    """Files that keep what they say of old modules."""
+    """Files that keep the names of old modules in strings and prose."""
 
     @classmethod
     def of(cls, data: Mapping[str, Any]) -> Self:
@@ -62,7 +66,7 @@ def _covers(row: str, path: str) -> bool:
 
 
 def _below(row: str, target: str, path: str) -> str:
-    """Return where a row moves a file."""
+    """Return the new path of a file by its row."""
     return target + path.removeprefix(row) if row.endswith("/") else target
 
 
@@ -102,7 +106,7 @@ def exports(plan: Plan, package: Path, files: Iterable[str]) -> dict[str, list[s
 
 
 def moves(plan: Plan, stage: str, files: Iterable[str]) -> dict[str, str]:
-    """Return the old and new paths of the files that a stage still has to move."""
+    """Return the old and new paths of the files of a stage that have not moved yet."""
     rows = plan.stages[stage]
     return {path: _below(row, rows[row], path) for path in files if (row := plan.row(path)) in rows and row is not None}
 
@@ -155,6 +159,7 @@ class Mover:
         }
         moved = Moved({**old, **new}, folders, before)
         goals = {f"{PACKAGE}/{path}": target for path, target in new.items()}
+        origins = {target: path for path, target in new.items()}
         changed = [name for name in self.tracked() if self._rewrite(name, goals.get(name), moved)]
         for path, target in new.items():
             print(f"{path} -> {target}")
@@ -166,6 +171,9 @@ class Mover:
             self._remove(gone)
             self._tidy({PurePosixPath(path).parent for path in (*new, *gone)})
             self._format([f"{PACKAGE}/{goals[name]}" if name in goals else name for name in changed])
+            added = self._git("diff", "HEAD", "-M", "--diff-filter=A", "--name-only", "--", PACKAGE).splitlines()
+            for target in sorted(set(new.values()) & {name.removeprefix(f"{PACKAGE}/") for name in added}):
+                print(f"{target} differs so much that git does not follow it to {origins[target]}")
 
     def _rewrite(self, name: str, goal: str | None, moved: Moved) -> bool:
         """Rewrite the references in a file; `goal` is the new path of one that moves. Return whether there were any."""

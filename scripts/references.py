@@ -1,6 +1,6 @@
-"""What a text says about modules and files of the package, and the text after they have moved.
+"""References to modules and files of the package in a text, and the text after they have moved.
 
-An import, and a use of what it imported, is found by syntax tree. A name in a string, a comment or a page is found by
+Imports, and uses of an imported module, are found by syntax tree. A name in a string, a comment or a page is found by
 its spelling, which is not certain: a routing key such as `lumen.state` can look like a module.
 """
 
@@ -29,7 +29,7 @@ class Edit(NamedTuple):
 
 
 class Moved:
-    """What moves: by their old paths below the package, the new ones of files, and of folders that move as a whole.
+    """The new paths of moved files, and of folders that move as a whole, by their old paths below the package.
 
     `known` are the paths of all files before the move. If another module gets the name of one that moves, that name
     stays as it is everywhere: the new module offers what the old one did.
@@ -57,7 +57,7 @@ class Moved:
 
 
 def module_of(path: str) -> str | None:
-    """Return the module of a file below the package; None if it is none."""
+    """Return the module of a file below the package; None for other files."""
     file = PurePosixPath(path)
     if file.suffix not in (".py", ".pyi"):
         return None
@@ -72,7 +72,7 @@ def rewritten(text: str, edits: Iterable[Edit]) -> str:
 
 
 def code_edits(text: str, moved: Moved) -> list[Edit]:
-    """Return the edits of imports, of dotted names and of types in quotes. Raises SyntaxError for what is no Python."""
+    """Return the edits of imports, of dotted names and of types in quotes. Raises SyntaxError for other text."""
     tree, places = ast.parse(text), _Places(text)
     found: list[Edit] = []
     for node in ast.walk(tree):
