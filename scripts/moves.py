@@ -19,7 +19,7 @@ import subprocess
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
@@ -76,7 +76,8 @@ def problems(plan: Plan, files: Sequence[str], exports: Mapping[str, Sequence[st
     homes = {*plan.stays, *rows.values(), *(f"{package}/__init__.py" for package in plan.packages)}
     found = {path: plan.row(path) for path in files}
     used = {row for row in found.values() if row}
-    goals = Counter(_below(row, rows[row], path) if row else path for path, row in found.items())
+    waiting = {*waits(plan, files)}
+    goals = Counter(_below(row, rows[row], path) if row else path for path, row in found.items() if path not in waiting)
     lost = [path for path, row in found.items() if row is None and not any(_covers(home, path) for home in homes)]
     done = {row for row, target in rows.items() if target == GOES or any(_covers(target, path) for path in files)}
     folders = {folder for goal in goals if goal.endswith(PYTHON) for folder in PurePosixPath(goal).parents[:-1]}
@@ -84,7 +85,7 @@ def problems(plan: Plan, files: Sequence[str], exports: Mapping[str, Sequence[st
     return [
         *(f"no row for {path}" for path in lost),
         *(f"no file for the row {row}" for row in rows if row not in used and row not in done),
-        *(f"{number} files become {goal}" for goal, number in goals.items() if number > 1 and goal != GOES),
+        *(f"{number} files become {goal}" for goal, number in goals.items() if number > 1),
         *(f"no docstring for the new package {folder}" for folder in sorted(bare) if folder not in plan.packages),
         *(
             f"{goal} hides the name `{PurePosixPath(goal).stem}` of its package"
@@ -105,10 +106,25 @@ def exports(plan: Plan, package: Path, files: Iterable[str]) -> dict[str, list[s
     return found
 
 
-def moves(plan: Plan, stage: str, files: Iterable[str]) -> dict[str, str]:
+def waits(plan: Plan, files: Collection[str]) -> list[str]:
+    """Return the files that stay until their folder is empty: those that go, and what keeps the rest a package.
+
+    A stage that moves the `__init__.py` of a folder whose other files move later leaves an empty one.
+    """
+    rows, found = plan.rows(), []
+    for path in files:
+        if row := plan.row(path):
+            goal = _below(row, rows[row], path)
+            if goal == GOES or (goal in files and PurePosixPath(path).name == "__init__.py"):
+                found.append(path)
+    return found
+
+
+def moves(plan: Plan, stage: str, files: Collection[str]) -> dict[str, str]:
     """Return the old and new paths of the files of a stage that have not moved yet."""
-    rows = plan.stages[stage]
-    return {path: _below(row, rows[row], path) for path in files if (row := plan.row(path)) in rows and row is not None}
+    rows, waiting = plan.stages[stage], {*waits(plan, files)}
+    found = {path: row for path in files if (row := plan.row(path)) and row in rows and path not in waiting}
+    return {path: _below(row, rows[row], path) for path, row in found.items()}
 
 
 def history(plan: Plan, stage: str, files: Iterable[str]) -> dict[str, str]:
@@ -129,11 +145,8 @@ class Mover:
     def __init__(self, root: Path, plan: Plan, *, check: bool = False) -> None:
         self.root, self.plan, self.check = root, plan, check
         self.undecided: list[str] = []
-        self._origins = {
-            f"{PACKAGE}/{new}": f"{PACKAGE}/{old}"
-            for stage in plan.stages
-            for old, new in history(plan, stage, self.tracked(PACKAGE)).items()
-        }
+        self._origins: dict[str, str] = {}
+        """The paths of moved files before they moved."""
 
     def tracked(self, folder: str = ".") -> list[str]:
         """Return the files of git below a folder that exist, by their paths from the folder."""
@@ -148,9 +161,12 @@ class Mover:
     def carry_out(self, stage: str) -> None:
         """Move the files of a stage, and rewrite what names them."""
         before = self.tracked(PACKAGE)
+        self._origins = {
+            f"{PACKAGE}/{now}": f"{PACKAGE}/{then}"
+            for one in self.plan.stages
+            for then, now in history(self.plan, one, before).items()
+        }
         new = moves(self.plan, stage, before)
-        gone = [path for path, target in new.items() if target == GOES]
-        new = {path: target for path, target in new.items() if target != GOES}
         old = history(self.plan, stage, before)
         folders = {
             row.removesuffix("/"): target.removesuffix("/")
@@ -168,7 +184,8 @@ class Mover:
         print(f"{stage}: {len(new)} files moved, {len(changed)} files name them")
         if not self.check:
             self._new_packages(new.values())
-            self._remove(gone)
+            self._keep_packages(new)
+            gone = self._remove()
             self._tidy({PurePosixPath(path).parent for path in (*new, *gone)})
             self._format([f"{PACKAGE}/{goals[name]}" if name in goals else name for name in changed])
             added = self._git("diff", "HEAD", "-M", "--diff-filter=A", "--name-only", "--", PACKAGE).splitlines()
@@ -223,13 +240,26 @@ class Mover:
                 file.write_text(f'"""{self.plan.packages[folder.as_posix()]}"""\n', "utf-8")
                 self._git("add", "--", str(file))
 
-    def _remove(self, gone: Iterable[str]) -> None:
+    def _keep_packages(self, moved: Iterable[str]) -> None:
+        """Leave an empty `__init__.py` in a folder that keeps other files of Python."""
+        left = self.tracked(PACKAGE)
+        for path in moved:
+            folder = PurePosixPath(path).parent
+            if PurePosixPath(path).name == "__init__.py" and any(
+                name.startswith(f"{folder}/") and name.endswith(PYTHON) for name in left
+            ):
+                (self.root / PACKAGE / path).touch()
+                self._git("add", "--", f"{PACKAGE}/{path}")
+
+    def _remove(self) -> list[str]:
+        """Delete the waiting files that are alone in their folder now; return their paths."""
+        left = self.tracked(PACKAGE)
+        folders = [PurePosixPath(path).parent for path in left]
+        folders += [folder for each in folders for folder in each.parents]
+        gone = [path for path in waits(self.plan, left) if folders.count(PurePosixPath(path).parent) == 1]
         for path in gone:
-            file = PurePosixPath(path)
-            if others := [name for name in self.tracked(f"{PACKAGE}/{file.parent}") if name != file.name]:
-                print(f"{path} stays for now: its folder still has {len(others)} files")
-            else:
-                self._git("rm", "-q", "--force", "--", f"{PACKAGE}/{path}")
+            self._git("rm", "-q", "--force", "--", f"{PACKAGE}/{path}")
+        return gone
 
     def _tidy(self, folders: Iterable[PurePosixPath]) -> None:
         """Delete folders that hold nothing but compiled Python: to an import they are packages."""

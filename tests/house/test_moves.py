@@ -143,6 +143,16 @@ def test_a_stage_moves_files_and_whatever_names_them(root: Path) -> None:
 
 
 @pytest.mark.process
+def test_a_listed_file_stays_listed_after_it_moved(root: Path) -> None:
+    """`attic/table/leg.py` is in `texts`, and the stage after the one that moves it moves what it names."""
+    text = PLAN.replace("texts = [", 'texts = ["engine/lumen/attic/table/leg.py", ')
+    (root / "scripts/moves.toml").write_text(text, encoding="utf-8")
+    (root / PACKAGE / "attic/table/leg.py").write_text('OVEN = "lumen.attic.oven"\n', encoding="utf-8")
+    main(["--root", str(root), "first", "second"])
+    assert contents(root)[f"{PACKAGE}/table/leg.py"] == 'OVEN = "lumen.table.oven"\n'
+
+
+@pytest.mark.process
 def test_a_name_in_a_file_that_no_list_has_is_left_for_a_person(root: Path) -> None:
     (root / "table.yaml").write_text("leg: lumen.attic.table.leg\n", encoding="utf-8")
     run_guarded([program("git"), "-C", str(root), "add", "."], check=True, timeout=HANG)
@@ -157,3 +167,15 @@ def test_a_file_that_git_will_not_follow_is_printed(root: Path, capsys: pytest.C
     main(["--root", str(root), "first"])
     lost = [line for line in capsys.readouterr().out.splitlines() if "differs" in line]
     assert lost == ["table/__init__.py differs so much that git does not follow it to attic/table/__init__.py"]
+
+
+@pytest.mark.process
+def test_a_folder_stays_a_package_until_its_last_file_has_moved(root: Path) -> None:
+    text = PLAN.replace('"attic/__init__.py" = "-"\n', "").replace('"table.py"', '"attic/" = "parlour/"\n"table.py"')
+    (root / "scripts/moves.toml").write_text(text, encoding="utf-8")
+    main(["--root", str(root), "first"])
+    assert {"attic/__init__.py", "parlour/__init__.py", "attic/oven.py"} <= {
+        name.removeprefix(f"{PACKAGE}/") for name in contents(root)
+    }
+    main(["--root", str(root), "second"])
+    assert not (root / PACKAGE / "attic").exists()
