@@ -24,6 +24,7 @@ from lumen.rules.walk import action_sites
 
 UNKNOWN_EVENT = Code("unknown-event", "references", ERROR, "a behaviour waits for an event that nothing raises")
 UNUSED_EVENT = Code("unused-event", "statecharts", WARNING, "an event is raised or declared, but nothing waits for it")
+PART_EVENT = Code("part-event", "references", WARNING, "an event has the name of a part that can be lost and come back")
 
 
 BUILT_IN_FAMILIES = (
@@ -43,6 +44,7 @@ def check(draft: ProjectDraft) -> None:
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         _waited(draft, machine, report)
+        _named_like_parts(draft, machine, report)
         if report.whole:
             _raised(draft, name, report)
 
@@ -157,6 +159,18 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
                 if transition.hears:
                     path, message = path[:-1], f"`hears` waits for the event `{event}`, which nothing raises"
                 report(UNKNOWN_EVENT, path, message, hint, key=True, cause=f"name {event}")
+
+
+def _named_like_parts(draft: ProjectDraft, machine: MachineDefinition, report: DocumentReport) -> None:
+    """Report each event whose transition also reacts to the loss and the return of the part of that name."""
+    own = {*declared(draft, machine), *raised(report.document), *sent_to(draft, machine)}
+    named = {event for event in own if f"{event}.lost" in robot_events()}
+    for transition in (t for state in machine.states.values() for t in state.transitions):
+        if transition.event in named and not transition.exact:
+            event = transition.event
+            message = f"`{event}` also reacts to `{event}.lost` and `{event}.back`, the events of the part `{event}`"
+            hint = f"give your event another name, such as `{event}.said`"
+            report(PART_EVENT, descriptor_path(transition), message, hint, key=True)
 
 
 def _hint(settings: Settings, event: str, known: Set[str], lost: Set[str]) -> str:
