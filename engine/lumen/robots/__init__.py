@@ -6,6 +6,7 @@
     recording.py          performs nothing and remembers everything: for stories and tests
     none.py               no robot: every command is refused
     bounded_robot.py      a robot that a user wrote, given only commands that its body can perform
+    checked_robot.py      such a robot, whose returned values are of the declared types
 
 How a command is performed:
 
@@ -14,6 +15,7 @@ How a command is performed:
     joint_ways.py         to the posture that a motion begins in, and back after a cancel
     executor.py           a command waits until its parts are free, then runs until it is done
     person_hold.py        a robot that a person stopped moves for nobody, until a person lets it
+    hazards.py            why a robot must not walk now
     cues.py               the words and sounds of a motion, as their times come
     gesture_player.py     the gestures that accompany what it says
     joint_offsets.py      how joints go to where life and gestures want them
