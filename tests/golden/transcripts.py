@@ -123,9 +123,9 @@ class TranscribedBus(Bus):
         return undone
 
     def send(self, message: Outgoing) -> None:
-        key, body, reply_to, correlation_id, ttl, origin = message
-        said = {"ttl": ttl, "reply_to": reply_to, "body": body, "sender": origin.sender, "cause": origin.cause}
-        said |= {"id": bool(origin.id) or None, "time": bool(origin.time) or None}
+        key, body, reply_to, correlation_id, ttl, id, sender, sent_at, cause = message
+        said = {"ttl": ttl, "reply_to": reply_to, "body": body, "sender": sender, "cause": cause}
+        said |= {"id": bool(id) or None, "time": bool(sent_at) or None}
         self._transcript.add("publish", key, {**said, "correlation_id": bool(correlation_id) or None})
         self._bus.send(message)
 
