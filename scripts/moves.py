@@ -158,6 +158,11 @@ class Mover:
         files = self.tracked(PACKAGE)
         return problems(self.plan, files, exports(self.plan, self.root / PACKAGE, files))
 
+    def earlier(self, stage: str) -> str | None:
+        """Return the first earlier stage with files to move, if any."""
+        files, names = self.tracked(PACKAGE), list(self.plan.stages)
+        return next((name for name in names[: names.index(stage)] if moves(self.plan, name, files)), None)
+
     def carry_out(self, stage: str) -> None:
         """Move the files of a stage, and rewrite what names them."""
         before = self.tracked(PACKAGE)
@@ -301,6 +306,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if unknown := [stage for stage in given.stage if stage not in plan.stages]:
         raise SystemExit(f"no stage {unknown[0]}: choose from {', '.join(plan.stages)}")
     for stage in given.stage:
+        if not given.check and (earlier := mover.earlier(stage)):
+            raise SystemExit(f"{stage}: carry out {earlier} before it")
         mover.carry_out(stage)
     if not given.stage:
         files = mover.tracked(PACKAGE)

@@ -179,3 +179,10 @@ def test_a_folder_stays_a_package_until_its_last_file_has_moved(root: Path) -> N
     }
     main(["--root", str(root), "second"])
     assert not (root / PACKAGE / "attic").exists()
+
+
+@pytest.mark.process
+def test_a_stage_waits_for_those_before_it(root: Path) -> None:
+    with pytest.raises(SystemExit, match="second: carry out first before it"):
+        main(["--root", str(root), "second"])
+    assert contents(root) == HOUSE
