@@ -101,9 +101,14 @@ def test_what_can_be_typed_is_said(line: str, says: str) -> None:
     assert visitor.felt == []
 
 
+def hall() -> SimpleNamespace:
+    """A project without routes of its own."""
+    return SimpleNamespace(routes={}, robot="NAO", key_of=lambda route: default_key(route, "NAO"))
+
+
 def test_stop_and_resume_go_the_way_of_lumen_stop_in_the_name_of_the_person_who_typed() -> None:
     visitor: Any = Hall()
-    exhibition = Mock(project=SimpleNamespace(key_of=lambda route: default_key(route, "NAO")))
+    exhibition = Mock(project=hall())
     commands = TypedCommands(visitor, Mock(), exhibition)
     commands.do("/stop", 0.0)
     commands.do("/resume", 0.0)
@@ -114,7 +119,7 @@ def test_stop_and_resume_go_the_way_of_lumen_stop_in_the_name_of_the_person_who_
 
 def test_a_stop_that_the_bus_refuses_is_reported() -> None:
     visitor: Any = Hall()
-    narrator, exhibition = Mock(), Mock(project=SimpleNamespace(key_of=lambda route: default_key(route, "NAO")))
+    narrator, exhibition = Mock(), Mock(project=hall())
     exhibition.bus.publish.side_effect = BusError("the broker is away")
     TypedCommands(visitor, narrator, exhibition).do("/stop", 0.0)
     narrator.note.assert_called_once_with("the robot did not get this command: the broker is away")
