@@ -60,6 +60,9 @@ def test_shows_faces_and_people_in_their_frames(window: Window) -> None:
     window.show(grey, [Box(100.0, 50.0, 40.0, 40.0)], [Box(200.0, 20.0, 60.0, 180.0)], "face 120 70: Budi")
     seen = picture(page).astype(int)
     assert page.headers["Content-Type"] == "multipart/x-mixed-replace; boundary=frame"
+    assert page.headers["Cross-Origin-Resource-Policy"] == "same-origin", (
+        "a page of another site could show the picture"
+    )
     assert seen.shape == (240, 320, 3)
     assert seen[70, 100, 1] - seen[70, 100, 0] > 60, "the face has a green frame"
     assert seen[100, 200, 2] - seen[100, 200, 0] > 60, "a person has a blue one"
