@@ -95,7 +95,7 @@ class Transition:
         return "" if self.delay is None else f"after {self.delay:g} s"
 
     def caption(self, failed: str) -> str:
-        """What it waits for: the key of its row of `hears`, its time, its event, or of an end `done` or `failed`."""
+        """The trigger in words: the key of its row of `hears`, its time, its event; `done` or `failed` for an end."""
         if self.hears:
             return self.hears.title
         if self.exact and not self.timed:

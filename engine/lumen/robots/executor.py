@@ -57,7 +57,7 @@ class Yields(Protocol):
 
 
 class ExecutingRobot:
-    """What all robots that execute commands themselves have in common."""
+    """The methods that all robots share whose commands run in an executor."""
 
     _executor: "Executor"
 

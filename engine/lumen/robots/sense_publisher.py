@@ -55,8 +55,8 @@ class SensePublisher:
     """One thread for one sense, with room for one reading: the newest wins, the others are counted as dropped.
 
     `encode` makes the body and `publish` sends it, both on this thread. A body that the bus refuses or that a package
-    can't make (LumenError) costs that body alone, and each reason a line in the log. Where the robot can't give the
-    sense (RobotError: a camera without OpenGL) it switches itself off, with a line in the log, until `arm`. A `direct`
+    can't make (LumenError) costs that body alone, and each reason a line in the log. If the robot can't give the
+    sense (RobotError: a camera without OpenGL), the sense is off, with a line in the log, until `arm`. A `direct`
     one has no thread: what it is handed has been published when `hand` returns.
     """
 

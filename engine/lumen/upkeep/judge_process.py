@@ -21,7 +21,7 @@ MAX_MEMORY = 1 << 30
 ANSWER_TIMEOUT = 60.0
 """The time limit for judging the files of a project [s]."""
 NICENESS = 5
-"""How far a process under limits gives way to others, above all to the robot (`nice`)."""
+"""The `nice` value of a process under limits: other processes, above all the robot's, run first."""
 OUT_OF_MEMORY = 77
 """The exit code of a process that was refused more memory."""
 _LENGTH = struct.Struct(">Q")
@@ -203,7 +203,7 @@ def answering(max_memory: int | None = None) -> Iterator[AnswerPipe]:
 
 
 def limit_time(seconds: float) -> None:
-    """Let the system end this process after `seconds`, even if its parent is gone; 0 takes that back."""
+    """Let the system end this process after `seconds`, even if its parent is gone; 0 removes the limit."""
     if hasattr(signal, "setitimer"):
         signal.setitimer(signal.ITIMER_REAL, seconds)
 
