@@ -33,7 +33,6 @@ Things = Mapping[str, str]
 
 
 ON_PURPOSE: Mapping[tuple[str, str], str] = {
-    ("interpreters/statechart/__init__.py", "_MODULES"): "where the public names of this package itself are defined",
     ("language/diagnostics.py", "Severity"): "the levels that the formats of editors, GitHub and SARIF have",
     ("language/machines.py", "StateKind"): "the kinds of states that the algorithm of SCXML has",
     ("language/routes.py", "Carried"): "promises that every bus keeps; a new one would break the buses of packages",

@@ -3,8 +3,9 @@
 The names below are the promise we keep; each is imported when it is first used, so that `import lumen` costs nothing.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from lumen.upkeep.lazy_names import lazy
 
 if TYPE_CHECKING:
     from lumen.app.exhibition import Exhibition
@@ -127,13 +128,7 @@ _HOMES = {
     "lumen.rules": ("check",),
 }
 
-
-def __getattr__(name: str) -> Any:
-    for home, names in _HOMES.items():
-        if name in names:
-            globals()[name] = found = getattr(import_module(home), name)
-            return found
-    raise AttributeError(f"module `lumen` has no `{name}`")
+__getattr__ = lazy(__name__, _HOMES)
 
 
 def __dir__() -> list[str]:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Self
 
 from lumen.errors import ProjectError
 from lumen.interpreters.arguments import need, need_map, need_numbers, need_path, need_text
-from lumen.interpreters.inference import Evaluator, Explanation, explain
+from lumen.interpreters.inference.evaluator import Evaluator
+from lumen.interpreters.inference.explanation import Explanation, explain
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import has_errors
 from lumen.loading.controllers import build_controller

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError, UsageError
 from lumen.fuzzy import Controller
-from lumen.interpreters.inference import infer
+from lumen.interpreters.inference.evaluator import infer
 from lumen.interpreters.inference.layers import LayeredCentroid
 from lumen.interpreters.inference.sampled import DEFUZZIFY, Sampled
 from lumen.language.controllers import DEFUZZIFIERS, INTEGRAL_DEFUZZIFIERS, S_NORMS, T_NORMS

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from lumen.fuzzy import Controller
-from lumen.interpreters.inference import Evaluator
+from lumen.interpreters.inference.evaluator import Evaluator
 from lumen.interpreters.magnification import Magnifier
 from lumen.language.controllers import Activation, Conjunction, ControllerDefinition, Proposition, Rule
 

@@ -35,4 +35,24 @@ How RabbitMQ is used, from the inside out:
     dispatcher.py     the thread that runs handlers, one at a time
     transport.py      a publisher, a consumer and a dispatcher; routes of stops have one of their own
     probe.py          what a broker lets us do, for `lumen doctor`
+
+Each name is imported when it is first used. `__init__.pyi` has the same names for type checkers.
 """
+
+from lumen.upkeep.lazy_names import lazy
+
+__all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
+
+_HOMES = {
+    "lumen.bus": ("connect",),
+    "lumen.errors": (
+        "BusError",
+        "Refused",
+    ),
+    "lumen.ports": (
+        "Bus",
+        "Message",
+    ),
+}
+
+__getattr__ = lazy(__name__, _HOMES)

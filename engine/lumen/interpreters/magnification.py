@@ -13,7 +13,7 @@ from math import isfinite
 from operator import mul
 
 from lumen.errors import LumenError
-from lumen.interpreters.inference import Evaluator
+from lumen.interpreters.inference.evaluator import Evaluator
 from lumen.interpreters.inference.survey import Survey, asked
 from lumen.language.controllers import ControllerDefinition
 

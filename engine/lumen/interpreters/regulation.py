@@ -10,7 +10,7 @@ from math import floor, inf, log10
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
-from lumen.interpreters.inference import Evaluator
+from lumen.interpreters.inference.evaluator import Evaluator
 from lumen.interpreters.message_numbers import number, number_at
 from lumen.language.commands import Publish
 from lumen.language.controllers import (

@@ -1,16 +1,16 @@
-"""Fuzzy inference: Mamdani, Takagi-Sugeno and Tsukamoto, and any mixture of them."""
+"""Fuzzy inference: Mamdani, Takagi-Sugeno and Tsukamoto, and any mixture of them.
 
-from collections.abc import Mapping
+Each name is imported when it is first used. `__init__.pyi` has the same names for type checkers.
+"""
 
-from lumen.interpreters.inference.evaluator import Evaluator
-from lumen.interpreters.inference.explanation import Explanation, explain
-from lumen.language.controllers import ControllerDefinition
+from lumen.upkeep.lazy_names import lazy
 
-__all__ = ["Evaluator", "Explanation", "explain", "infer"]
+__all__ = ["Controller", "Evaluator", "Explanation"]
 
+_HOMES = {
+    "lumen.fuzzy": ("Controller",),
+    "lumen.interpreters.inference.evaluator": ("Evaluator",),
+    "lumen.interpreters.inference.explanation": ("Explanation",),
+}
 
-def infer(
-    controller: ControllerDefinition, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None
-) -> dict[str, float]:
-    """The outputs of a controller, once; whoever asks again keeps an `Evaluator`, which is compiled."""
-    return Evaluator(controller).evaluate(inputs, previous)
+__getattr__ = lazy(__name__, _HOMES)

@@ -158,3 +158,10 @@ def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping
         return variable.default
     given = ", ".join(f"{name} = {value:g}" for name, value in inputs.items())
     raise LumenError(f"no rule for `{variable.name}` fires at {given}: add a `default` to the output")
+
+
+def infer(
+    controller: ControllerDefinition, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None
+) -> dict[str, float]:
+    """The outputs of a controller, once; whoever asks again keeps an `Evaluator`, which is compiled."""
+    return Evaluator(controller).evaluate(inputs, previous)

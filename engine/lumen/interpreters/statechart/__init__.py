@@ -1,62 +1,32 @@
 """Statecharts with SCXML's meaning: an event and a snapshot become a step, and nothing else happens.
 
-What runs them is loaded when it is first asked for: lint asks this package about types and names, and runs nothing.
+Each name is imported when it is first used: lint uses types and names of this package, and runs nothing. `__init__.pyi`
+has the same names for type checkers.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from lumen.upkeep.lazy_names import lazy
 
-if TYPE_CHECKING:
-    from lumen.interpreters.statechart.deserialization import deserialize
-    from lumen.interpreters.statechart.serialization import TimerPolicy, paused, retimed, serialize
-    from lumen.interpreters.statechart.stepping import due, elapse, finished, initial, step
-    from lumen.interpreters.statechart.values import (
-        Awaiting,
-        Counters,
-        Fork,
-        Halted,
-        Invoked,
-        Position,
-        Snapshot,
-        Step,
-        Timer,
-        Within,
-    )
+__all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock", "due", "initial", "step"]
 
-__all__ = [
-    "Awaiting",
-    "Counters",
-    "Fork",
-    "Halted",
-    "Invoked",
-    "Position",
-    "Snapshot",
-    "Step",
-    "Timer",
-    "TimerPolicy",
-    "Within",
-    "deserialize",
-    "due",
-    "elapse",
-    "finished",
-    "initial",
-    "paused",
-    "retimed",
-    "serialize",
-    "step",
-]
-
-_MODULES = {
-    "serialization": ("TimerPolicy", "paused", "retimed", "serialize"),
-    "stepping": ("due", "elapse", "finished", "initial", "step"),
-    "deserialization": ("deserialize",),
-    "values": ("Awaiting", "Counters", "Fork", "Halted", "Invoked", "Position", "Snapshot", "Step", "Timer", "Within"),
+_HOMES = {
+    "lumen.statechart": ("Interpreter", "Machine"),
+    "lumen.clocks.virtual": ("VirtualClock",),
+    "lumen.language.events": ("Event",),
+    "lumen.interpreters.statechart.serialization": ("TimerPolicy", "paused", "retimed", "serialize"),
+    "lumen.interpreters.statechart.stepping": ("due", "elapse", "finished", "initial", "step"),
+    "lumen.interpreters.statechart.deserialization": ("deserialize",),
+    "lumen.interpreters.statechart.values": (
+        "Awaiting",
+        "Counters",
+        "Fork",
+        "Halted",
+        "Invoked",
+        "Position",
+        "Snapshot",
+        "Step",
+        "Timer",
+        "Within",
+    ),
 }
 
-
-def __getattr__(name: str) -> Any:
-    for module, names in _MODULES.items():
-        if name in names:
-            found = globals()[name] = getattr(import_module(f"{__name__}.{module}"), name)
-            return found
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__ = lazy(__name__, _HOMES)

@@ -1,0 +1,7 @@
+from lumen.bus import connect as connect
+from lumen.errors import BusError as BusError
+from lumen.errors import Refused as Refused
+from lumen.ports import Bus as Bus
+from lumen.ports import Message as Message
+
+__all__ = ["Bus", "BusError", "Message", "Refused", "connect"]

@@ -1,0 +1,20 @@
+"""Motions: trajectories, limits, gestures, gaits, life, and what follows what is seen.
+
+Each name is imported when it is first used. `__init__.pyi` has the same names for type checkers.
+"""
+
+from lumen.upkeep.lazy_names import lazy
+
+__all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]
+
+_HOMES = {
+    "lumen.motion": ("Motion",),
+    "lumen.interpreters.limits": (
+        "Excess",
+        "beyond_limits",
+        "overspeed",
+    ),
+    "lumen.interpreters.trajectory": ("Trajectory",),
+}
+
+__getattr__ = lazy(__name__, _HOMES)
