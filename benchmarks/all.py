@@ -33,7 +33,7 @@ from timing import rate
 from visit import tour
 
 import lumen
-from lumen.interpreters.inference.evaluator import Evaluator
+from lumen.fuzzy.evaluator import Evaluator
 from lumen.statechart import Interpreter
 
 ROOT = Path(__file__).parents[1]

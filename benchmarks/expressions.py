@@ -14,7 +14,7 @@ from typing import Any
 from fuzzy import processor
 from timing import rate
 
-from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
+from lumen.expressions import Scope, compile_expression, compile_guard, compile_template
 
 SCOPE = Scope(
     context={"asked": 1, "visitor": "Ada", "list": [1, 2, 3]},

@@ -21,9 +21,9 @@ import yaml
 
 import lumen
 from lumen import statechart
-from lumen.interpreters.talk.hearing import hearing_of
 from lumen.language.commands import Start
 from lumen.language.events import Event
+from lumen.talk.hearing import hearing_of
 
 HERE = Path(__file__).parent / "hearing"
 LANGUAGES = ("en", "id", "de")

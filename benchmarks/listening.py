@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 import lumen
 from lumen.bus import connect
-from lumen.interpreters.expressions.phrases import is_heard
+from lumen.expressions.phrases import is_heard
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project

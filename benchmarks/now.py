@@ -16,10 +16,9 @@ import lumen
 from lumen.app.doings import Doings
 from lumen.app.exhibition import Exhibition
 from lumen.app.now import NowView, moment
-from lumen.interpreters.statechart import initial
 from lumen.language.projects import Project
 from lumen.runtime.approvals import Approvals
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial
 
 RUNS, SIZE = 31, 1500
 ROW = "{:<34}{:>12}{:>12}{:>10}"

@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from fuzzy import processor
 from tests.guarded import DEVNULL, PIPE, TimeoutExpired, run_guarded
 
-from lumen.interpreters.expressions.patterns import compile_pattern
+from lumen.expressions.patterns import compile_pattern
 
 Search = Callable[[str], object]
 Engines = dict[str, Callable[[str], Search]]
@@ -73,7 +73,7 @@ def by_re2(pattern: str) -> Search:
 
 
 ENGINES: dict[str, tuple[Callable[[str], Search], str]] = {
-    "Lumen": (by_lumen, "from lumen.interpreters.expressions.patterns import compile_pattern"),
+    "Lumen": (by_lumen, "from lumen.expressions.patterns import compile_pattern"),
     "jsonschema-rs": (by_jsonschema_rs, "import jsonschema_rs"),
     "google-re2": (by_re2, "import re2"),
     "re": (by_re, "import re"),

@@ -23,7 +23,7 @@ from fuzzy import processor
 from patterns import importable, imports, measured
 
 from lumen.buses.checking import SchemaCheck
-from lumen.interpreters.json_schema import JsonSchema
+from lumen.expressions.json_schema import JsonSchema
 from lumen.loading.files import read_files
 from lumen.loading.project_folders import FILE_KINDS, kind_of
 from lumen.loading.schema import load_schema
@@ -71,7 +71,7 @@ def by_lumen(schema: Any) -> Fits:
 
 
 VALIDATORS: dict[str, tuple[Callable[[Any], Fits], str]] = {
-    "Lumen": (by_lumen, "import lumen.interpreters.json_schema"),
+    "Lumen": (by_lumen, "import lumen.expressions.json_schema"),
     "jsonschema-rs": (by_jsonschema_rs, "import jsonschema_rs"),
     "jsonschema": (by_jsonschema, "import jsonschema"),
     "fastjsonschema": (by_fastjsonschema, "import fastjsonschema"),

@@ -15,7 +15,7 @@ from pathlib import Path
 import yaml
 from documented import NOT_RUN, all_pages, blocks
 
-from lumen.interpreters.expressions.function_table import functions
+from lumen.expressions.function_table import functions
 from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
 
 ROOT = Path(__file__).parents[1]

@@ -6,9 +6,9 @@ from pathlib import Path
 from lumen.buses.addresses import open_bus
 from lumen.buses.validated import OnRefused, validated
 from lumen.errors import BusError, Refused
-from lumen.interpreters.arguments import need, need_text
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
+from lumen.upkeep.arguments import need, need_text
 
 __all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
 

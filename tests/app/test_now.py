@@ -14,10 +14,10 @@ from lumen.app.doings import Doings
 from lumen.app.exhibition import Exhibition
 from lumen.app.raised_events import person_in
 from lumen.bus import Bus, connect
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.commands import Look, Play, Say, Start
 from lumen.language.events import Event
 from lumen.ports import Message
+from lumen.statechart.direct_entry import entered_directly
 from tests import ROOT
 from tests.tables import for_each
 from tests.waiting import until

@@ -11,7 +11,7 @@ from jsonschema import Draft202012Validator
 
 from lumen.bus import BusError, connect
 from lumen.buses.checking import SchemaCheck
-from lumen.interpreters.json_schema import JsonSchema
+from lumen.expressions.json_schema import JsonSchema
 from lumen.language.causes import MessageOrigin
 from lumen.language.routes import Direction, Route
 from lumen.ports import Message

@@ -16,10 +16,10 @@ from lumen.app.new_saying import DAY_FILE
 from lumen.console.day import Day, day_of
 from lumen.console.kept_days import KeptDays
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry, entry_data
-from lumen.interpreters.statechart import initial, serialize
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.loading.standalone import machine_from_dict
+from lumen.statechart import initial, serialize
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Served
 from tests.console.test_conversation import violations

@@ -6,11 +6,10 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.interpreters.statechart import Step
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.runtime.runtime import Runtime
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Step
 from tests.tables import for_each
 
 MACHINE = Machine.from_dict(

@@ -6,9 +6,8 @@ from typing import Any
 import pytest
 
 from lumen.interpreters.migration.activity_compatibility import can_continue
-from lumen.interpreters.statechart import Snapshot, Step, deserialize, serialize
 from lumen.language.commands import Ask, Cancel, Say, Start
-from lumen.statechart import Event, Machine, due, initial, step
+from lumen.statechart import Event, Machine, Snapshot, Step, deserialize, due, initial, serialize, step
 from tests.tables import for_each
 
 DATA: dict[str, Any] = {

@@ -162,7 +162,7 @@ def test_another_visitor_is_counted(visit: Callable[..., Visit]) -> None:
 
 
 def test_steps_are_taken_again_without_the_model(visit: Callable[..., Visit]) -> None:
-    from lumen.interpreters.statechart import step
+    from lumen.statechart import step
 
     here = visit(filler=FILLER)
     here.says(QUESTION, "answer")

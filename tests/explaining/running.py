@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError
 from lumen.interpreters.explaining import RecordedStep
-from lumen.interpreters.statechart import due, initial, step
 from lumen.language.commands import Log, Play, Start
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import to_the_nanosecond
+from lumen.statechart import due, initial, step
 from tests.statechart.oracle.generating import EVENTS
 
 ANSWERED_AFTER = 0.17

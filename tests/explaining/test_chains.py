@@ -7,11 +7,10 @@ import pytest
 from lumen.errors import UsageError
 from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.explaining.answers import why, why_not
-from lumen.interpreters.statechart import Snapshot, Step, due, initial, step
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.causes import Cause
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Snapshot, Step, due, initial, step
+from lumen.statechart.direct_entry import entered_directly
 
 
 class Play:

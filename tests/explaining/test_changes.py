@@ -9,13 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import ExpressionError
+from lumen.expressions import Scope, compile_guard
 from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.explaining.answers import why_not
 from lumen.interpreters.explaining.changes import StepSituation
-from lumen.interpreters.expressions import Scope, compile_guard
-from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial, step
 from tests.tables import for_each
 
 CONTEXT = {"n": 3, "m": 10, "name": "Budi", "tired": False, "seen": ["a"]}

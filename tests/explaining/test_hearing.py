@@ -5,18 +5,17 @@ from typing import Any
 import pytest
 
 from lumen.app.ignoring import IgnoredEvents
+from lumen.expressions import Scope, names
 from lumen.interpreters.explaining.answers import why, why_not
 from lumen.interpreters.explaining.changes import StepSituation
 from lumen.interpreters.explaining.hearing import HeardRow, heard_rows
 from lumen.interpreters.explaining.outlook import ways_out
 from lumen.interpreters.explaining.pressing import refusal_of
 from lumen.interpreters.exploration.expression_uses import of_transition
-from lumen.interpreters.expressions import Scope, names
-from lumen.interpreters.statechart import initial, step
-from lumen.interpreters.talk.sample_sentences import of_phrase, of_row
 from lumen.language.buttons import Button
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial, step
+from lumen.talk.sample_sentences import of_phrase, of_row
 from tests.explaining.test_chains import Play
 from tests.tables import for_each
 

@@ -4,9 +4,8 @@ from typing import Any
 
 from lumen.app.ignoring import BURST, IgnoredEvents
 from lumen.interpreters.explaining.ignored_events import ignored
-from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial, step
 from tests.tables import for_each
 
 GUIDE: dict[str, Any] = {

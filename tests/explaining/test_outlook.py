@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from lumen.errors import LumenError
 from lumen.interpreters.explaining.outlook import WayOut, ways_out
 from lumen.interpreters.explaining.tracing import retaken
-from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial, step
 from tests.explaining.running import inputs, live, timed
 from tests.statechart.oracle.generating import EVENTS, Data, machine_data
 

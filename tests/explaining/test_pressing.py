@@ -7,9 +7,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from lumen.interpreters.explaining.pressing import pressed, shown_buttons, takes
-from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial, step
 from tests.explaining.running import inputs, live, timed
 from tests.statechart.oracle.generating import EVENTS, Data, machine_data
 

@@ -10,10 +10,9 @@ from lumen.interpreters.changes.machines import machine_changes
 from lumen.interpreters.explaining.words import of_transition
 from lumen.interpreters.replay.entries import JournalInput
 from lumen.interpreters.replay.replaying import ReplayedStep
-from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
 from lumen.runtime.coverage import described
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial, step
 from tests.tables import for_each
 
 PHRASES = {"dance": {"en": ["dance"]}, "sing": {"en": ["sing"]}, "my_name": {"en": ["my name is {name}"]}}

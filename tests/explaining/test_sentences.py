@@ -3,9 +3,9 @@
 from typing import Any
 
 from lumen.interpreters.explaining.sentences import explained, first_context, hearing_states, rows_around
-from lumen.interpreters.statechart import initial, step
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.events import Event
+from lumen.statechart import initial, step
+from lumen.statechart.direct_entry import entered_directly
 from tests.explaining.guide import guide
 from tests.tables import for_each
 

@@ -11,11 +11,10 @@ from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.explaining.answers import why_not
 from lumen.interpreters.explaining.changes import StepSituation
 from lumen.interpreters.explaining.refusals import Reason
-from lumen.interpreters.statechart import Snapshot, due, step
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Snapshot, due, step
+from lumen.statechart.direct_entry import entered_directly
 from tests.explaining.running import inputs, live, timed
 from tests.statechart.oracle.generating import Data, machine_data
 

@@ -9,8 +9,8 @@ from cel_expr_python import cel
 from cel_expr_python.ext import ext_strings
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, unparse
-from lumen.interpreters.expressions.tree import Binary, FieldAccess, FunctionCall, SourceSpan, children
+from lumen.expressions import ExpressionNode, Scope, compile_expression, unparse
+from lumen.expressions.tree import Binary, FieldAccess, FunctionCall, SourceSpan, children
 
 ENVIRONMENT = cel.NewEnv(
     variables=dict.fromkeys(("context", "event", "state"), cel.Type.DYN), extensions=[ext_strings.ExtStrings()]

@@ -1,6 +1,6 @@
 """A scope as a tour has it, for the tables of these tests."""
 
-from lumen.interpreters.expressions import Scope
+from lumen.expressions import Scope
 from lumen.language.machines import Answer
 
 PHRASES = {

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, seed, settings
 from hypothesis import strategies as st
 
-from lumen.interpreters.expressions import ExpressionNode, Scope
+from lumen.expressions import ExpressionNode, Scope
 from tests import ROOT
 from tests.expressions.cel import Outcome, by_cel, by_lumen, compare, same
 from tests.expressions.typed import expressions, scopes

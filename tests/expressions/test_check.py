@@ -1,6 +1,6 @@
 """What lint tells of an expression before it runs."""
 
-from lumen.interpreters.expressions import check_expression, check_template, names, parse_expression, schema_of
+from lumen.expressions import check_expression, check_template, names, parse_expression, schema_of
 from tests.tables import for_each
 
 CONTEXT = {

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lumen.interpreters.expressions import ExpressionError, Scope, compile_expression, compile_guard
+from lumen.expressions import ExpressionError, Scope, compile_expression, compile_guard
 from tests.expressions.scopes import SCOPE
 from tests.tables import for_each
 

@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from lumen.interpreters.expressions import (
+from lumen.expressions import (
     ExpressionError,
     ExpressionNode,
     Scope,
@@ -19,8 +19,8 @@ from lumen.interpreters.expressions import (
     parse_expression,
     unparse,
 )
-from lumen.interpreters.expressions.function_table import functions
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.function_table import functions
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     FieldAccess,

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.patterns import compile_pattern
+from lumen.expressions.patterns import compile_pattern
 from tests.tables import for_each
 
 PATIENT = settings(deadline=None)

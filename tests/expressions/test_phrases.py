@@ -1,6 +1,6 @@
 """Phrases are heard as whole words, in every language, whatever the case and the punctuation."""
 
-from lumen.interpreters.expressions import Scope, compile_expression
+from lumen.expressions import Scope, compile_expression
 from lumen.language.machines import Answer
 from tests.expressions.scopes import SCOPE
 from tests.tables import for_each

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from lumen.interpreters.expressions import (
+from lumen.expressions import (
     ExpressionError,
     Scope,
     check_expression,

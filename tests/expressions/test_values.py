@@ -3,7 +3,7 @@
 from types import MappingProxyType
 from typing import Any
 
-from lumen.interpreters.expressions import Scope, compile_expression, compile_guard
+from lumen.expressions import Scope, compile_expression, compile_guard
 from tests.expressions.scopes import SCOPE
 from tests.tables import for_each
 

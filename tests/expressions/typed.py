@@ -4,8 +4,8 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-from lumen.interpreters.expressions import ExpressionNode, Scope
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions import ExpressionNode, Scope
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     FieldAccess,

@@ -6,9 +6,8 @@ from typing import Any
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.statechart import Snapshot, Step, due, initial, step
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Snapshot, Step, due, initial, step
 
 EVENTS = ["e", "f", "f.g", "f.g.h"]
 DESCRIPTORS = [*EVENTS, "f.*", "*", "done.state.a", "error"]

@@ -15,8 +15,8 @@ from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll, write_fll
 from lumen.formats.fll.infix_formulas import Trouble, read_formula, write_formula
 from lumen.fuzzy import Controller
-from lumen.interpreters.inference.arithmetic import NUMBERS
-from lumen.interpreters.inference.formulas import formula
+from lumen.fuzzy.arithmetic import NUMBERS
+from lumen.fuzzy.formulas import formula
 from tests.tables import for_each
 
 FIS = """[System]

@@ -9,11 +9,10 @@ from lumen.formats.conversion_findings import dotted
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.xstate import read_xstate, write_xstate
 from lumen.formats.yaml_document import document_yaml
-from lumen.interpreters.statechart import initial, step
 from lumen.language.diagnostics import has_errors
 from lumen.language.events import Event
 from lumen.loading.yaml_reader import parse
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial, step
 from tests.tables import for_each
 
 CHART: dict[str, Any] = {

@@ -7,7 +7,7 @@ import pytest
 
 import lumen
 from lumen.fuzzy import Controller
-from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
+from lumen.fuzzy.formulas import FORMULA_FUNCTIONS
 from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, HEDGES, S_NORMS, T_NORMS, TERM_PARAMETERS
 from tests.fuzzy.test_signals import FILES
 

@@ -19,11 +19,11 @@ from lumen.errors import LumenError
 from lumen.formats.conversion_findings import dotted
 from lumen.formats.fll import read_fll, write_fll
 from lumen.fuzzy import Controller
-from lumen.interpreters.inference.arithmetic import NUMBERS
-from lumen.interpreters.inference.hedges import hedged
-from lumen.interpreters.inference.memberships import membership
-from lumen.interpreters.inference.norms import norm
-from lumen.interpreters.inference.weighted import INVERSE_MEMBERSHIPS, value
+from lumen.fuzzy.arithmetic import NUMBERS
+from lumen.fuzzy.hedges import hedged
+from lumen.fuzzy.memberships import membership
+from lumen.fuzzy.norms import norm
+from lumen.fuzzy.weighted import INVERSE_MEMBERSHIPS, value
 from lumen.language.controllers import (
     DEFUZZIFIERS,
     HEDGES,

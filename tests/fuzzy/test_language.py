@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError, ProjectError
 from lumen.fuzzy import Controller
-from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
-from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS, formula
+from lumen.fuzzy.arithmetic import NUMBERS, arrays
+from lumen.fuzzy.formulas import FORMULA_FUNCTIONS, formula
 from lumen.loading.controllers import build_controller
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import check_schema, load_schema

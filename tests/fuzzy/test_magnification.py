@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from lumen.fuzzy import Controller
-from lumen.interpreters.inference.evaluator import Evaluator
-from lumen.interpreters.magnification import Magnifier
+from lumen.fuzzy.evaluator import Evaluator
+from lumen.fuzzy.magnification import Magnifier
 from lumen.language.controllers import Activation, Conjunction, ControllerDefinition, Proposition, Rule
 
 MIDDLE = {"FaceXLoc": 160.0, "FaceYLoc": 120.0}

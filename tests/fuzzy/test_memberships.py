@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
-from lumen.interpreters.inference.memberships import MEMBERSHIP_FUNCTIONS, membership
-from lumen.interpreters.inference.weighted import INVERSE_MEMBERSHIPS, value
+from lumen.fuzzy.arithmetic import NUMBERS, arrays
+from lumen.fuzzy.memberships import MEMBERSHIP_FUNCTIONS, membership
+from lumen.fuzzy.weighted import INVERSE_MEMBERSHIPS, value
 from lumen.language.controllers import TERM_PARAMETERS, VALUE_TERMS, Term
 from tests.tables import for_each
 

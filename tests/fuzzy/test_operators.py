@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.inference.activations import ACTIVATE, COMPARISON_FUNCTIONS
-from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
-from lumen.interpreters.inference.hedges import HEDGE_FUNCTIONS, hedged
-from lumen.interpreters.inference.norms import NORM_FUNCTIONS, norm
+from lumen.fuzzy.activations import ACTIVATE, COMPARISON_FUNCTIONS
+from lumen.fuzzy.arithmetic import NUMBERS, arrays
+from lumen.fuzzy.hedges import HEDGE_FUNCTIONS, hedged
+from lumen.fuzzy.norms import NORM_FUNCTIONS, norm
 from lumen.language import controllers
 from lumen.language.controllers import ACTIVATIONS, COMPARISONS, S_NORMS, T_NORMS, Activation
 from tests.tables import for_each

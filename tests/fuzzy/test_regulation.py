@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from lumen.fuzzy import Controller
-from lumen.interpreters.regulation import Regulator, Signals
+from lumen.fuzzy.regulation import Regulator, Signals
 from lumen.language.commands import Publish
 from lumen.language.events import Event
 

@@ -13,10 +13,10 @@ from lumen.buses.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.clocks.virtual import VirtualClock
 from lumen.interpreters.migration import MigrationPlan
-from lumen.interpreters.statechart import Step, step
 from lumen.language.commands import Start, Track, Volume
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.loop import BehaviorLoop, Observer
+from lumen.statechart import Step, step
 
 FILES = {
     "lumen.yaml": """\

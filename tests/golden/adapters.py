@@ -20,7 +20,6 @@ from lumen.interpreters.replay.entries import entry_data
 from lumen.interpreters.replay.forking import fork
 from lumen.interpreters.replay.replaying import replay
 from lumen.interpreters.routing import matches
-from lumen.interpreters.statechart import deserialize, serialize
 from lumen.language.body_parts import WHOLE_BODY
 from lumen.language.command_data import command_data
 from lumen.language.commands import Say
@@ -32,6 +31,7 @@ from lumen.runtime.home import Home
 from lumen.runtime.inputs.frames import FramePacker, unpack
 from lumen.runtime.inputs.journal_file import line_of, read_journal, read_lines
 from lumen.runtime.resuming import FreshStart, Resumption, resume
+from lumen.statechart import deserialize, serialize
 from tests.golden.texts import in_one_line
 
 __all__ = [

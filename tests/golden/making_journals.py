@@ -24,13 +24,13 @@ from lumen.app.compose import compose
 from lumen.app.plan import Plan
 from lumen.app.services import Services
 from lumen.cli.main import main
-from lumen.interpreters.statechart import Step, deserialize, serialize
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.machines import MachineDefinition
 from lumen.loading.files import read_files
 from lumen.runtime.home import Home
 from lumen.runtime.loop import Observer
 from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.statechart import Step, deserialize, serialize
+from lumen.statechart.direct_entry import entered_directly
 from tests.golden.golden import HERE, PROJECTS
 from tests.guarded import PIPE, Guarded
 

@@ -9,11 +9,10 @@ import pytest
 from lumen.errors import SnapshotError, UsageError
 from lumen.interpreters.exploration import explore
 from lumen.interpreters.migration import MigrationPlan, migrate
-from lumen.interpreters.statechart import Snapshot, deserialize, elapse, initial, serialize, step
 from lumen.language.events import Event
 from lumen.runtime.resuming import resume
 from lumen.runtime.wall_clock_watch import WallClockWatch
-from lumen.statechart import Interpreter, Machine
+from lumen.statechart import Interpreter, Machine, Snapshot, deserialize, elapse, initial, serialize, step
 from tests.tables import for_each
 
 HALL = {

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lumen.interpreters.wall_clock import MICROSECONDS, local_time, next_moment
+from lumen.expressions.wall_clock import MICROSECONDS, local_time, next_moment
 from lumen.language.hours import WEEKDAYS, Schedule
 from lumen.loading.schedules import MisreadTimeError, read_schedule
 from tests.tables import for_each

@@ -83,7 +83,7 @@ def test_a_story_begins_once(copy: Path) -> None:
 def test_every_caption_says_the_time(copy: Path) -> None:
     from lumen.app.causes import _trigger as told
     from lumen.formats.captions import caption
-    from lumen.interpreters.statechart import initial
+    from lumen.statechart import initial
 
     (copy / "behaviors" / "door.yaml").write_text(DOOR, "utf-8")
     machine = load(copy).behaviors["door"]

@@ -7,10 +7,10 @@ from types import ModuleType
 import pytest
 
 import lumen.buses as bus
-import lumen.interpreters.inference as fuzzy
+import lumen.fuzzy as fuzzy
 import lumen.interpreters.motion as motion
-import lumen.interpreters.statechart as statechart
 import lumen.loading as project
+import lumen.statechart as statechart
 
 PACKAGES = [bus, fuzzy, motion, project, statechart]
 

@@ -17,9 +17,9 @@ from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import set_up_house
 from lumen.cli.main import main
 from lumen.errors import LumenError, RobotModelError, UsageError
-from lumen.interpreters.statechart import Step
 from lumen.runtime.home import home_of
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER
+from lumen.statechart import Step
 
 NAMES = ("ana", "ben")
 

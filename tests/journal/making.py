@@ -12,7 +12,6 @@ from lumen.errors import LumenError
 from lumen.interpreters.migration import MigrationPlan
 from lumen.interpreters.replay.entries import RecordedEntry
 from lumen.interpreters.replay.replaying import ReplayedStep, replay
-from lumen.interpreters.statechart import Step, deserialize, due, serialize
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import to_the_nanosecond
@@ -22,6 +21,7 @@ from lumen.runtime.inputs.journal_folder import JournalFolder
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.resuming import Resumption, resume
 from lumen.runtime.runtime import Runtime
+from lumen.statechart import Step, deserialize, due, serialize
 from tests import ROOT
 
 MAX_TIMERS = 12

@@ -15,10 +15,9 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError
 from lumen.interpreters.replay.entries import JournalInput, entry_data, read_entry
-from lumen.interpreters.statechart import Step, microstep, stepping
 from lumen.language.causes import Cause
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Step, microstep, stepping
 from tests import ROOT
 from tests.guarded import PIPE, run_guarded
 from tests.journal.making import Recorded

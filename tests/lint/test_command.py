@@ -279,7 +279,7 @@ def test_lint_imports_nothing_heavy(project: Path) -> None:
         "import sys; from lumen.cli.main import main; main(['lint', sys.argv[1]]);"
         "heavy = {'mujoco', 'dm_control', 'pika', 'numpy', 'PIL', 'nicegui', 'matplotlib'} & set(sys.modules);"
         "heavy |= {'lumen.rules.pages', 'lumen.rules.fixes', 'watchfiles', 'pygls'} & set(sys.modules);"
-        "heavy |= {'lumen.interpreters.statechart.stepping', 'jsonschema', 'shutil'} & set(sys.modules);"
+        "heavy |= {'lumen.statechart.stepping', 'jsonschema', 'shutil'} & set(sys.modules);"
         "sys.exit(f'imported {heavy}' if heavy else 0)"
     )
     assert run("-c", code, str(project)).returncode == 0

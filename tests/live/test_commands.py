@@ -9,11 +9,11 @@ import pytest
 
 from lumen.bus import connect
 from lumen.buses.consumer import Consumer
-from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
+from lumen.statechart.direct_entry import entered_directly
 from tests.live.conftest import PATIENT, wait_for_visitors
 from tests.live.shows import Live
 from tests.rabbitmq import RabbitMQ

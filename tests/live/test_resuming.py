@@ -15,13 +15,13 @@ import lumen
 from lumen.app.recovery.previous_run import LATELY
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.cli.main import main
-from lumen.interpreters.statechart import serialize
 from lumen.language.commands import Track
 from lumen.loading.files import read_files
 from lumen.runtime.home import ADDRESS_FILE, Home, home_of
 from lumen.runtime.journal import MAX_JOURNAL_BYTES, Journal
 from lumen.runtime.resuming import LOST_COMMAND_REASON, FreshStart, Resumption, resume
 from lumen.runtime.snapshot_store import ALIVE_FILE, SNAPSHOT_FILE, SnapshotStore
+from lumen.statechart import serialize
 from tests.guarded import PIPE, Guarded
 from tests.live.shows import Live
 from tests.waiting import until

@@ -10,8 +10,8 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.plan import Plan
 from lumen.app.setup import set_up
-from lumen.interpreters.statechart import Step
 from lumen.language.projects import Project
+from lumen.statechart import Step
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector
 

@@ -14,13 +14,13 @@ from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.latest_visits import latest_first
 from lumen.interpreters.replay.entries import JournalInput, JournalJump
 from lumen.interpreters.replay.replaying import replay
-from lumen.interpreters.statechart import serialize
 from lumen.language.people import PersonName
 from lumen.runtime.home import home_of
 from lumen.runtime.inputs.frames import FramePacker
 from lumen.runtime.inputs.journal_file import line_of, read_journal
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER
 from lumen.runtime.inputs.redaction import redact
+from lumen.statechart import serialize
 from tests import ROOT
 from tests.live.shows import Live
 

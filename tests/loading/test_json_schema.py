@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from lumen.interpreters.json_schema import MAX_DATA_DEPTH, JsonSchema
+from lumen.expressions.json_schema import MAX_DATA_DEPTH, JsonSchema
 from lumen.loading.document import MAX_NODE_DEPTH, Document
 from lumen.loading.files import read_files
 from lumen.loading.messages import build_message

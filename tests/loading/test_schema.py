@@ -7,7 +7,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
+from lumen.expressions.expression_findings import UNKNOWN_STATE
 from lumen.loading import misindented, schema
 from lumen.loading.complaints import Complaint
 from lumen.loading.document import Document

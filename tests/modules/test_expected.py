@@ -8,8 +8,6 @@ import pytest
 
 import lumen
 from lumen import statechart
-from lumen.interpreters.statechart.nesting import active_names
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, State
 from lumen.language.projects import Project
@@ -18,6 +16,8 @@ from lumen.modules.ears.active_states import LOST_AFTER, ActiveStates
 from lumen.modules.ears.expected import MAX_SENTENCES, STORY_WEIGHT, HeardName, expected, heard_names
 from lumen.modules.ears.recogniser import Hypothesis
 from lumen.modules.sound import Sound
+from lumen.statechart.nesting import active_names
+from lumen.talk.speech import TABLES, WORD_LISTS
 from tests.modules.conftest import Stand, with_options
 from tests.modules.test_own_voice import SAY, Ear
 from tests.tables import for_each

@@ -11,7 +11,6 @@ from lumen.app.exploring import explored
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
-from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Publish, Start, Volume
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlaces
@@ -21,6 +20,7 @@ from lumen.loading.lending import model_files
 from lumen.robots.simulation import SimulatedRobot
 from lumen.rules import check_files
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
 from tests import ROOT
 from tests.scanning import matching
 from tests.tour.playing import play

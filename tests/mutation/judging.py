@@ -10,7 +10,6 @@ from types import FrameType
 from typing import NamedTuple
 
 from lumen.app.rehearsal import rehearse
-from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Play, Start
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
@@ -19,6 +18,7 @@ from lumen.loading.document import Document
 from lumen.rules import check_files
 from lumen.rules.codes import codes
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
 
 PATIENCE = 60.0
 """CPU time that lint, or a story, may take [s]."""

@@ -8,13 +8,12 @@ import pytest
 from lumen.buses.memory import MemoryBus
 from lumen.clocks.virtual import VirtualClock
 from lumen.interpreters.migration import MigrationPlan
-from lumen.interpreters.statechart import Step, deserialize, serialize
 from lumen.language.commands import Walk
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.loop import BehaviorLoop, Observer
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Step, deserialize, serialize
 from tests.exhibits import BODY, project
 
 PLACES = {"organ": HallPlace(1.0, 0.0, 1.5), "clock": HallPlace(1.0, 1.0), "door": HallPlace(0.0, 0.0)}

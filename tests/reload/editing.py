@@ -8,9 +8,8 @@ from typing import Any
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.statechart import Snapshot, due, initial, step
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Snapshot, due, initial, step
 from tests.statechart.oracle.generating import Data
 
 Happenings = list[tuple[str, Any] | None]

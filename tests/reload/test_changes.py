@@ -13,7 +13,6 @@ from lumen.cli.main import main
 from lumen.errors import UsageError
 from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
 from lumen.interpreters.changes.machines import machine_changes
-from lumen.interpreters.statechart import initial, step
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading import revisions
@@ -23,7 +22,7 @@ from lumen.project import load
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial, step
 from tests import ROOT
 from tests.guarded import run_guarded
 from tests.provided import program

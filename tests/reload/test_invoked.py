@@ -3,10 +3,9 @@
 from typing import Any
 
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal, migrate
-from lumen.interpreters.statechart import deserialize, initial, serialize, step
 from lumen.language.commands import Cancel, Log, Say, Start
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, deserialize, initial, serialize, step
 
 QUIZ: dict[str, Any] = {
     "context": {"asked": 0},

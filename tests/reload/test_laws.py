@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal, migrate
-from lumen.interpreters.statechart import Snapshot, deserialize, initial, serialize, step
 from lumen.language.commands import Log
 from lumen.language.machines import StateKind
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Snapshot, deserialize, initial, serialize, step
 from tests.reload.editing import Happenings, built, edits, happen, snapshots, states_of
 from tests.statechart.oracle.generating import Data, happenings, machine_data
 from tests.statechart.test_laws import HAPPENINGS, machines, run, running

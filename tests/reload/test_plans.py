@@ -5,10 +5,9 @@ from typing import Any
 import pytest
 
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal, migrate
-from lumen.interpreters.statechart import Snapshot, deserialize, initial, serialize, step
 from lumen.language.commands import Cancel, Log, Play, Say, Start
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Snapshot, deserialize, initial, serialize, step
 
 NAMED = {"context": {"visitor": "", "tries": 0}}
 TOUR: dict[str, Any] = {

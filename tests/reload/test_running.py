@@ -9,7 +9,6 @@ from lumen.app.setup import Setup
 from lumen.buses.memory import MemoryBus
 from lumen.clocks.simulated import SimulatedClock
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan
-from lumen.interpreters.statechart import Snapshot, Step
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
@@ -21,7 +20,7 @@ from lumen.robots.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.approvals import Approvals
 from lumen.runtime.loop import TICK_PERIOD, BehaviorLoop, Observer
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Snapshot, Step
 from tests import ROOT, exhibits
 from tests.nodes import whole
 from tests.tables import for_each

@@ -21,7 +21,6 @@ from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.console.entry_words import OTHERS, text_of
-from lumen.interpreters.statechart import Step
 from lumen.language.commands import Say, Start, Wake
 from lumen.language.events import HELD, Event
 from lumen.ports import Message, Perform
@@ -31,6 +30,7 @@ from lumen.robots.simulation.robot import SimulatedRobot
 from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.trace_subscriber import TraceSubscriber
 from lumen.runtime.troubles import RunTrouble
+from lumen.statechart import Step
 from tests import exhibits
 from tests.tables import for_each
 from tests.waiting import HANG, until

@@ -11,11 +11,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError, ProjectError
-from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event
 from lumen.language.nanoseconds import to_the_nanosecond
-from lumen.statechart import Interpreter, Machine
+from lumen.statechart import Interpreter, Machine, Snapshot, Step, deserialize, due, initial, serialize, step
 from tests.statechart.oracle.generating import Data, happenings, machine_data
 
 PATIENT = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])

@@ -5,10 +5,9 @@ from typing import Any
 import pytest
 
 from lumen.errors import UsageError
-from lumen.interpreters.statechart import initial, step
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.events import Event
-from lumen.statechart import Machine
+from lumen.statechart import Machine, initial, step
+from lumen.statechart.direct_entry import entered_directly
 from tests.tables import for_each
 
 TOUR: dict[str, Any] = {

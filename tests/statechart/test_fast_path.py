@@ -8,13 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.statechart import Snapshot, Step, fast_path
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.external_events import process
-from lumen.interpreters.statechart.invocations import open_context
-from lumen.interpreters.statechart.step_writer import StepWriter
 from lumen.language.commands import Start
-from lumen.statechart import Event, Interpreter, Machine, due, initial
+from lumen.statechart import Event, Interpreter, Machine, Snapshot, Step, due, fast_path, initial
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.external_events import process
+from lumen.statechart.invocations import open_context
+from lumen.statechart.step_writer import StepWriter
 from tests.tables import for_each
 
 GUARDS = [

@@ -7,9 +7,9 @@ import pytest
 
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import LumenError, ProjectError, SnapshotError, UsageError
-from lumen.interpreters.statechart.stepping import elapse
-from lumen.interpreters.statechart.values import MAX_TIMERS
 from lumen.statechart import Event, Interpreter, Machine, Step, due, initial, step
+from lumen.statechart.stepping import elapse
+from lumen.statechart.values import MAX_TIMERS
 from tests.tables import for_each
 
 COUNTING = {"assign": {"n": "context.n + 1"}}

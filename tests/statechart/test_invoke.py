@@ -8,8 +8,7 @@ import pytest
 
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import ProjectError, SnapshotError, UsageError
-from lumen.interpreters.statechart import deserialize, serialize
-from lumen.statechart import Event, Interpreter, Machine, due, initial, step
+from lumen.statechart import Event, Interpreter, Machine, deserialize, due, initial, serialize, step
 
 QUIZ: dict[str, Any] = {
     "context": {"asked": 0},

@@ -10,12 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
-from lumen.interpreters.statechart.values import awaited
 from lumen.language.commands import Cancel, Start
 from lumen.language.events import Event
 from lumen.language.machines import StateKind
-from lumen.statechart import Machine
+from lumen.statechart import Machine, Snapshot, Step, deserialize, due, initial, serialize, step
+from lumen.statechart.values import awaited
 
 EVENTS = ["e", "f", "g.h"]
 ACTIONS: list[dict[str, Any]] = [

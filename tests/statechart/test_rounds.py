@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 
 from lumen.interpreters.migration import MigrationPlan, migrate
-from lumen.interpreters.statechart import deserialize, serialize
 from lumen.language.commands import Say, Start
-from lumen.statechart import Interpreter, Machine, Step
+from lumen.statechart import Interpreter, Machine, Step, deserialize, serialize
 from tests.statechart.table import read
 
 HERE = Path(__file__).parent / "museum"

@@ -4,9 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from lumen.interpreters.statechart import Snapshot, Step
-from lumen.interpreters.statechart.fast_path import FastPaths
-from lumen.statechart import Event
+from lumen.statechart import Event, Snapshot, Step
+from lumen.statechart.fast_path import FastPaths
 from tests.statechart.table import CASES, play, read
 from tests.tables import for_each
 

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from lumen.clocks.real import RealClock
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import LumenError, SnapshotError, UsageError
-from lumen.interpreters.statechart import serialize
-from lumen.statechart import Event, Interpreter, Machine, initial, step
+from lumen.statechart import Event, Interpreter, Machine, initial, serialize, step
 from tests.tables import for_each
 
 QUIZ = {"states": {"ask": {"after": {"3s": "end"}}, "end": {"type": "final"}}}

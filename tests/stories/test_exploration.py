@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 
 from lumen.cli.main import main
+from lumen.expressions import parse_expression
 from lumen.interpreters.exploration import Exploration, explore
 from lumen.interpreters.exploration.samples import phrases_at, samples
-from lumen.interpreters.expressions import parse_expression
 from lumen.statechart import Machine
 from tests.tables import for_each
 

@@ -5,10 +5,9 @@ from math import pi
 import pytest
 
 from lumen.formats.behavior_data import plain_action
-from lumen.interpreters.statechart import initial
 from lumen.language.commands import Move, Start, Walk
 from lumen.robots.recording import RecordingRobot
-from lumen.statechart import Interpreter, Machine
+from lumen.statechart import Interpreter, Machine, initial
 from tests.motions.making import nao
 
 MACHINE = {

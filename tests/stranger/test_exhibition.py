@@ -15,7 +15,7 @@ from lumen.app.setup import set_up, set_up_house
 from lumen.app.voice import speaker
 from lumen.cli.main import main
 from lumen.errors import ExpressionError, LumenError, UsageError
-from lumen.interpreters.expressions import Scope, compile_expression
+from lumen.expressions import Scope, compile_expression
 from lumen.language.events import robot_events
 from lumen.language.routes import route_meanings
 from lumen.language.stories import Visitor

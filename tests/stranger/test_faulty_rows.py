@@ -13,8 +13,8 @@ from lumen.app.setup import set_up
 from lumen.app.voice import AddedVoice
 from lumen.bus import connect
 from lumen.errors import ExpressionError, LumenError, Refused
+from lumen.expressions import Scope, compile_expression
 from lumen.feature import features, owner, resolve, table
-from lumen.interpreters.expressions import Scope, compile_expression
 from lumen.language.people import PersonName
 from lumen.loading.files import read_files
 from lumen.ports import Joints, Message, Sense

@@ -1,8 +1,8 @@
 """One folding of words, for phrases, names and passages."""
 
-from lumen.interpreters.expressions.phrases import is_heard
+from lumen.expressions.phrases import is_heard
 from lumen.interpreters.retrieval.words import words
-from lumen.interpreters.talk.folding import folded, read_words
+from lumen.talk.folding import folded, read_words
 from tests.tables import for_each
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lumen.interpreters.talk.patterns import MAX_FORMS, PatternError, Slot, forms, read_pattern
+from lumen.talk.patterns import MAX_FORMS, PatternError, Slot, forms, read_pattern
 from tests.tables import for_each
 
 

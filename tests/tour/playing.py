@@ -7,7 +7,6 @@ from typing import Protocol
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
-from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.commands import Log as LogLine
 from lumen.language.events import Event
@@ -15,6 +14,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Hall, Robot
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
 from tests.tour.names import GUIDE
 
 

@@ -7,14 +7,14 @@ import pytest
 import yaml
 
 import lumen
+from lumen.expressions import Scope, compile_expression
 from lumen.interpreters.explaining.sayings import tried
 from lumen.interpreters.explaining.sentences import explained, first_context
-from lumen.interpreters.expressions import Scope, compile_expression
-from lumen.interpreters.talk.speech import NEGATIONS_AFTER, TABLES
 from lumen.language.actions import If, Parallel, PlacedAction, SayText
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.projects import Project
 from lumen.loading.common_words import common_words
+from lumen.talk.speech import NEGATIONS_AFTER, TABLES
 from tests.tables import for_each
 from tests.tour.names import GUIDE, SAFETY
 

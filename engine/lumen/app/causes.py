@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Mapping
 
-from lumen.interpreters.statechart import Step
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
+from lumen.statechart import Step
 
 
 def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:

@@ -5,8 +5,6 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.statechart import Snapshot, Step
-from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.language.commands import Ask, Command, GoTo, Move, Play, Posture, Rest, Say, Start, VerbCommand, Wake, Walk
 from lumen.language.events import Event
 from lumen.language.people import PersonName
@@ -16,6 +14,8 @@ from lumen.ports import Message
 from lumen.robots.command_table import speech_duration
 from lumen.runtime.loop import Observer
 from lumen.runtime.visitor import SPEECH_ROUTE
+from lumen.statechart import Snapshot, Step
+from lumen.statechart.nesting import active_names, entered_names
 
 _OWN = re.compile(r"(.*\.)?[cd]\d+(@.*)?")
 """The id of a command of the behaviour, as it travels between processes, too."""

@@ -17,7 +17,6 @@ from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
 from lumen.errors import UsageError
 from lumen.interpreters.explaining import RecordedStep
-from lumen.interpreters.statechart import Step
 from lumen.language.causes import PROGRAM, MessageOrigin
 from lumen.language.commands import Say
 from lumen.language.operator_requests import WHY, WHY_NOT
@@ -26,6 +25,7 @@ from lumen.runtime.loop import BehaviorLoop, Observer
 from lumen.runtime.sending import send
 from lumen.runtime.story import StoryPlayer
 from lumen.runtime.visitor import VisitorActor
+from lumen.statechart import Step
 
 
 class Exhibition:

@@ -5,10 +5,10 @@ import re
 from typing import Any
 
 from lumen.interpreters.explaining.ignored_events import FalseGuard, IgnoredEvent, ignored
-from lumen.interpreters.statechart import Step
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.runtime.visitor import SPEECH_ROUTE
+from lumen.statechart import Step
 
 _TIME = re.compile(r"(after|at)\.(.+)\.[^.]*")
 """The event of an `after` or `at`: the key, and its time."""

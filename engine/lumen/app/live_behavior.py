@@ -8,7 +8,6 @@ from lumen.app.local_timezone import local_timezone
 from lumen.app.setup import Setup
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.replay.entries import JumpKind
-from lumen.interpreters.statechart.compiled_machine import prepare
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story
@@ -18,6 +17,7 @@ from lumen.runtime.story import staged
 from lumen.runtime.story_time import story_epoch
 from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.wall_clock_watch import WallClockWatch
+from lumen.statechart.compiled_machine import prepare
 
 
 class Forgetter(Protocol):

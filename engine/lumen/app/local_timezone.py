@@ -6,7 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.interpreters.wall_clock import zone
+from lumen.expressions.wall_clock import zone
 
 _log = logging.getLogger(__name__)
 

@@ -5,8 +5,6 @@ from typing import Protocol
 
 from lumen.app.causes import innermost, reason_of, why
 from lumen.app.ignoring import IgnoredEvents
-from lumen.interpreters.statechart import Step, finished
-from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.language.commands import Ask, BodyCommand, Command, Log, Publish, Say, Start, Tell
 from lumen.language.counts import counted
 from lumen.language.events import CUE, HELD, RECORDED, Event
@@ -28,6 +26,8 @@ from lumen.language.verbs import verb_of
 from lumen.runtime.loop import Observer
 from lumen.runtime.performer import LEFT_OUT
 from lumen.runtime.troubles import RunTrouble, wanted
+from lumen.statechart import Step, finished
+from lumen.statechart.nesting import flattened_steps
 
 MAX_TROUBLES = 100
 """The number of troubles of a run that are kept for its end; later ones are dropped."""

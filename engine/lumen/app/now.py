@@ -7,7 +7,6 @@ from lumen.app.doings import Doings, Spoken, UnderWay
 from lumen.interpreters.explaining.names import machines_in
 from lumen.interpreters.explaining.outlook import GuardTruth, Running, WayOut, running, ways_out
 from lumen.interpreters.explaining.pressing import ShownButton, shown_buttons
-from lumen.interpreters.statechart import Snapshot
 from lumen.language.approvals import Autonomy
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import robot_events
@@ -15,6 +14,7 @@ from lumen.language.iso_time import iso_time
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.projects import Project
 from lumen.runtime.approvals import Approvals, HeldEvent
+from lumen.statechart import Snapshot
 
 Status = dict[str, Any]
 

@@ -7,12 +7,12 @@ from lumen.app.plan import Plan
 from lumen.app.setup import Setup, runs_in_real_time, set_up, set_up_with
 from lumen.app.stories import stories_of
 from lumen.errors import UsageError
-from lumen.interpreters.arguments import need_methods
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, Clock, Robot
 from lumen.project import load
 from lumen.robots.bounded_robot import BoundedRobot
+from lumen.upkeep.arguments import need_methods
 
 
 def open(

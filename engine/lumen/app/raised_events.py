@@ -5,13 +5,13 @@ from typing import Any, NamedTuple
 
 from lumen.app.event_data import EventData
 from lumen.interpreters.explaining.pressing import pressed, takes
-from lumen.interpreters.statechart import Step
 from lumen.language.causes import UNNAMED_PROGRAM, Cause
 from lumen.language.events import Event
 from lumen.language.operator_requests import MAX_NAME, PRESS
 from lumen.language.shared import SHARED_EVENT
 from lumen.ports import Message
 from lumen.runtime.loop import BehaviorLoop, Observer
+from lumen.statechart import Step
 
 _INTERNAL = ("done.", "error.", "cancelled.", "lost.", SHARED_EVENT)
 """How the names begin of what robots tell themselves or one another: an event of such a name would be taken for it."""

@@ -11,7 +11,6 @@ from lumen.errors import JournalError, UsageError
 from lumen.interpreters.explaining import RecordedStep
 from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
 from lumen.interpreters.replay.replaying import Replayer
-from lumen.interpreters.statechart import Snapshot, Step
 from lumen.language.iso_time import time_of
 from lumen.language.operator_requests import WHY, WHY_NOT
 from lumen.language.projects import Project
@@ -19,6 +18,7 @@ from lumen.loading.running_project import running_project
 from lumen.runtime.home import home_of
 from lumen.runtime.inputs.journal_file import read_journal
 from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
+from lumen.statechart import Snapshot, Step
 
 NOT_ASKED = "no running exhibition was asked"
 MAX_FILES = 8

@@ -4,14 +4,14 @@ from collections.abc import Iterator, Mapping
 from datetime import datetime
 from typing import Any, NamedTuple
 
-from lumen.interpreters.statechart import Snapshot, Timer
-from lumen.interpreters.statechart.nesting import ID_SEPARATOR, active_names
 from lumen.language.iso_time import iso_time
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import MEMORY, VISITOR_KEY
 from lumen.language.projects import Project
 from lumen.ports import Battery
 from lumen.robots.person_hold import StoppedBy
+from lumen.statechart import Snapshot, Timer
+from lumen.statechart.nesting import ID_SEPARATOR, active_names
 
 
 class LastReload(NamedTuple):

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from heapq import merge
 
 from lumen.interpreters.explaining import RecordedStep
-from lumen.interpreters.statechart import Snapshot, Step
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.loop import Observer
+from lumen.statechart import Snapshot, Step
 
 MAX_STEPS = 4_000
 """Steps that changed something: some hours of visits."""

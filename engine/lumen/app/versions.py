@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from lumen.app.one_robot import one_robot
 from lumen.errors import ProjectError, UsageError
-from lumen.interpreters.statechart import Snapshot, deserialize
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
@@ -16,6 +15,7 @@ from lumen.loading.revisions import files_at
 from lumen.rules import check_files
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
+from lumen.statechart import Snapshot, deserialize
 
 LIVE = "live"
 

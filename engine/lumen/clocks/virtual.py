@@ -4,8 +4,8 @@ from math import inf
 from typing import Protocol
 
 from lumen.errors import UsageError
-from lumen.interpreters.arguments import need_number
 from lumen.language.nanoseconds import to_the_nanosecond
+from lumen.upkeep.arguments import need_number
 
 
 class Sleeper(Protocol):

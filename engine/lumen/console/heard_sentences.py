@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 from lumen.interpreters.explaining.outlook import Running, running
 from lumen.interpreters.explaining.sentences import explained, rows_around
 from lumen.interpreters.replay.replaying import ReplayedStep
-from lumen.interpreters.statechart import Snapshot
-from lumen.interpreters.statechart.asking import unnamed
-from lumen.interpreters.talk.hearing import hearing_of
 from lumen.language.machines import MachineDefinition
+from lumen.statechart import Snapshot
+from lumen.statechart.asking import unnamed
+from lumen.talk.hearing import hearing_of
 
 ELSE = "else"
 

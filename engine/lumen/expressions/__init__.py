@@ -5,16 +5,16 @@ evaluate(Scope(context={"asked": 1}, event={"name": "heard", "data": {"result": 
 """
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.checker import check_expression
-from lumen.interpreters.expressions.compiler import compile_expression, compile_guard
-from lumen.interpreters.expressions.expression_findings import ExpressionFinding
-from lumen.interpreters.expressions.parser import parse_expression
-from lumen.interpreters.expressions.printer import unparse
-from lumen.interpreters.expressions.scope import Scope
-from lumen.interpreters.expressions.substitution import substituted, substituted_template
-from lumen.interpreters.expressions.templates import check_template, compile_template, split_template
-from lumen.interpreters.expressions.tree import ExpressionNode, MentionedNames, names
-from lumen.interpreters.expressions.value_types import schema_of
+from lumen.expressions.checker import check_expression
+from lumen.expressions.compiler import compile_expression, compile_guard
+from lumen.expressions.expression_findings import ExpressionFinding
+from lumen.expressions.parser import parse_expression
+from lumen.expressions.printer import unparse
+from lumen.expressions.scope import Scope
+from lumen.expressions.substitution import substituted, substituted_template
+from lumen.expressions.templates import check_template, compile_template, split_template
+from lumen.expressions.tree import ExpressionNode, MentionedNames, names
+from lumen.expressions.value_types import schema_of
 
 __all__ = [
     "ExpressionError",

@@ -9,11 +9,11 @@ import ast
 from itertools import count
 from types import CodeType
 
-from lumen.interpreters.expressions.error_explanation import EXPRESSION_FILE
-from lumen.interpreters.expressions.function_table import all_functions
-from lumen.interpreters.expressions.kinds import BOOLEAN
-from lumen.interpreters.expressions.scope import MAX_INT, MIN_INT, Scope
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.error_explanation import EXPRESSION_FILE
+from lumen.expressions.function_table import all_functions
+from lumen.expressions.kinds import BOOLEAN
+from lumen.expressions.scope import MAX_INT, MIN_INT, Scope
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     ExpressionNode,

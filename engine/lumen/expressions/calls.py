@@ -3,7 +3,7 @@
 from collections.abc import Collection
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.expression_findings import (
+from lumen.expressions.expression_findings import (
     UNKNOWN_ANSWERS,
     UNKNOWN_FUNCTION,
     UNKNOWN_PHRASE,
@@ -13,9 +13,9 @@ from lumen.interpreters.expressions.expression_findings import (
     Declarations,
     ExpressionFindings,
 )
-from lumen.interpreters.expressions.function_table import Function, all_functions, example_of, fault_of, functions
-from lumen.interpreters.expressions.patterns import compile_pattern
-from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal
+from lumen.expressions.function_table import Function, all_functions, example_of, fault_of, functions
+from lumen.expressions.patterns import compile_pattern
+from lumen.expressions.tree import ExpressionNode, FunctionCall, Literal
 from lumen.language.diagnostics import Code, did_you_mean, mean
 
 _INSTEAD = {

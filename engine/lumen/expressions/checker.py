@@ -4,8 +4,8 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.calls import check_names, function_of
-from lumen.interpreters.expressions.expression_findings import (
+from lumen.expressions.calls import check_names, function_of
+from lumen.expressions.expression_findings import (
     CODES_OF_COMPILE_ERRORS,
     EXPRESSION_SYNTAX,
     TYPE_MISMATCH,
@@ -19,12 +19,12 @@ from lumen.interpreters.expressions.expression_findings import (
     ExpressionFindings,
     in_words,
 )
-from lumen.interpreters.expressions.facts import KnownFacts, facts, prefixes
-from lumen.interpreters.expressions.function_table import functions
-from lumen.interpreters.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT
-from lumen.interpreters.expressions.parser import parse_expression
-from lumen.interpreters.expressions.scope import ROOTS
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.facts import KnownFacts, facts, prefixes
+from lumen.expressions.function_table import functions
+from lumen.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT
+from lumen.expressions.parser import parse_expression
+from lumen.expressions.scope import ROOTS
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     ExpressionNode,
@@ -40,7 +40,7 @@ from lumen.interpreters.expressions.tree import (
     children,
     path_of,
 )
-from lumen.interpreters.expressions.value_types import (
+from lumen.expressions.value_types import (
     ANY,
     FieldPresence,
     ValueType,

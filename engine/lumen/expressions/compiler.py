@@ -9,14 +9,14 @@ from functools import cache, lru_cache
 from types import CodeType
 from typing import Any
 
-from lumen.interpreters.expressions import operators as values
-from lumen.interpreters.expressions.builder import OPERATOR_FUNCTIONS, CodeBuilder
-from lumen.interpreters.expressions.checker import must_hold
-from lumen.interpreters.expressions.error_explanation import explain
-from lumen.interpreters.expressions.function_table import all_functions
-from lumen.interpreters.expressions.parser import parse_expression
-from lumen.interpreters.expressions.scope import Scope
-from lumen.interpreters.expressions.tree import ExpressionNode, Logic, walk
+from lumen.expressions import operators as values
+from lumen.expressions.builder import OPERATOR_FUNCTIONS, CodeBuilder
+from lumen.expressions.checker import must_hold
+from lumen.expressions.error_explanation import explain
+from lumen.expressions.function_table import all_functions
+from lumen.expressions.parser import parse_expression
+from lumen.expressions.scope import Scope
+from lumen.expressions.tree import ExpressionNode, Logic, walk
 
 Evaluate = Callable[[Scope], Any]
 

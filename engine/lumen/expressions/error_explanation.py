@@ -6,9 +6,9 @@ from types import TracebackType
 from typing import Any
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.kinds import KIND_DESCRIPTIONS, FaultError, MismatchError, WrongKindError, kind_of
-from lumen.interpreters.expressions.scope import Scope
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.kinds import KIND_DESCRIPTIONS, FaultError, MismatchError, WrongKindError, kind_of
+from lumen.expressions.scope import Scope
+from lumen.expressions.tree import (
     ExpressionNode,
     FieldAccess,
     FunctionCall,

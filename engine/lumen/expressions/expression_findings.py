@@ -4,8 +4,8 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions.kinds import KIND_DESCRIPTIONS
-from lumen.interpreters.expressions.tree import ExpressionNode
+from lumen.expressions.kinds import KIND_DESCRIPTIONS
+from lumen.expressions.tree import ExpressionNode
 from lumen.language.diagnostics import ERROR, Code
 
 UNKNOWN_CONTEXT_KEY = Code(

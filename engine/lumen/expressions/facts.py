@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.tree import (
     Binary,
     ExpressionNode,
     FieldAccess,

@@ -6,10 +6,10 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
+from lumen.expressions.functions import CAUGHT, caught
+from lumen.expressions.kinds import KINDS, MAP, NUMBER, FaultError, WrongKindError, kind_of
+from lumen.expressions.operators import bounded
 from lumen.feature import FunctionRow, described, distribution_of, owner, resolve, table
-from lumen.interpreters.expressions.functions import CAUGHT, caught
-from lumen.interpreters.expressions.kinds import KINDS, MAP, NUMBER, FaultError, WrongKindError, kind_of
-from lumen.interpreters.expressions.operators import bounded
 
 KindSet = frozenset[str]
 

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from datetime import datetime
 from typing import Any
 
-from lumen.interpreters.expressions import phrases
-from lumen.interpreters.expressions.kinds import (
+from lumen.expressions import phrases
+from lumen.expressions.kinds import (
     LIST,
     MAP,
     TEXT,
@@ -13,14 +13,14 @@ from lumen.interpreters.expressions.kinds import (
     WrongKindError,
     kind_of,
 )
-from lumen.interpreters.expressions.operators import bounded_text
-from lumen.interpreters.expressions.patterns import compile_pattern
-from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
-from lumen.interpreters.talk import folding
-from lumen.interpreters.talk.hearing import hearing_of
-from lumen.interpreters.wall_clock import local_time, moment
+from lumen.expressions.operators import bounded_text
+from lumen.expressions.patterns import compile_pattern
+from lumen.expressions.scope import MAX_TEXT_EXAMINED, Scope
+from lumen.expressions.wall_clock import local_time, moment
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.hours import WEEKDAYS
+from lumen.talk import folding
+from lumen.talk.hearing import hearing_of
 
 CAUGHT = "caught"
 """The function that `heard` is compiled to in a row of `hears`; files do not call it."""

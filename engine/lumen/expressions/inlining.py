@@ -8,11 +8,11 @@ import ast
 from functools import lru_cache
 from typing import NamedTuple
 
-from lumen.interpreters.expressions.builder import CodeBuilder
-from lumen.interpreters.expressions.function_table import all_functions
-from lumen.interpreters.expressions.functions import CAUGHT
-from lumen.interpreters.expressions.parser import parse_expression
-from lumen.interpreters.expressions.tree import ExpressionNode, FieldAccess, FunctionCall, Identifier, walk
+from lumen.expressions.builder import CodeBuilder
+from lumen.expressions.function_table import all_functions
+from lumen.expressions.functions import CAUGHT
+from lumen.expressions.parser import parse_expression
+from lumen.expressions.tree import ExpressionNode, FieldAccess, FunctionCall, Identifier, walk
 from lumen.language.events import Event
 
 

@@ -11,7 +11,7 @@ from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.patterns import compile_pattern, for_every_script
+from lumen.expressions.patterns import compile_pattern, for_every_script
 
 if TYPE_CHECKING:
     import jsonschema_rs

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.interpreters.expressions.kinds import LIST, NUMBER, FaultError, WrongKindError
-from lumen.interpreters.expressions.scope import Scope
+from lumen.expressions.kinds import LIST, NUMBER, FaultError, WrongKindError
+from lumen.expressions.scope import Scope
 from lumen.language.language_tags import is_language_tag
 from lumen.language.numbers import is_number
 

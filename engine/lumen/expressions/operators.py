@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from math import fmod, isfinite
 from typing import Any
 
-from lumen.interpreters.expressions.kinds import (
+from lumen.expressions.kinds import (
     BOOLEAN,
     LIST,
     MAP,
@@ -18,7 +18,7 @@ from lumen.interpreters.expressions.kinds import (
     WrongKindError,
     kind_of,
 )
-from lumen.interpreters.expressions.scope import (
+from lumen.expressions.scope import (
     MAX_COLLECTION_VALUES,
     MAX_INT,
     MAX_TEXT_LENGTH,

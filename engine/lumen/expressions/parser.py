@@ -5,10 +5,10 @@ from functools import lru_cache
 from typing import ClassVar
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.pratt import PrattParser
-from lumen.interpreters.expressions.scope import MAX_INT, MAX_TREE_DEPTH, MIN_INT
-from lumen.interpreters.expressions.tokens import Token, tokenize
-from lumen.interpreters.expressions.tree import ExpressionNode, Literal
+from lumen.expressions.pratt import PrattParser
+from lumen.expressions.scope import MAX_INT, MAX_TREE_DEPTH, MIN_INT
+from lumen.expressions.tokens import Token, tokenize
+from lumen.expressions.tree import ExpressionNode, Literal
 
 _HINTS = {
     "and": "write `&&`", "or": "write `||`", "not": "write `!`", "is": "compare with `==`", "None": "write `null`",

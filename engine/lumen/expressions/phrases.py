@@ -3,14 +3,14 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias, cast
 
-from lumen.interpreters.expressions.kinds import FaultError
-from lumen.interpreters.expressions.scope import MAX_TEXT_EXAMINED, Scope
-from lumen.interpreters.talk.finder import Finder
-from lumen.interpreters.talk.folding import padded
-from lumen.interpreters.talk.hearing import in_language, languages_of, phrases_in
-from lumen.interpreters.talk.patterns import forms
-from lumen.interpreters.talk.speech import Speech
+from lumen.expressions.kinds import FaultError
+from lumen.expressions.scope import MAX_TEXT_EXAMINED, Scope
 from lumen.language.machines import Answer
+from lumen.talk.finder import Finder
+from lumen.talk.folding import padded
+from lumen.talk.hearing import in_language, languages_of, phrases_in
+from lumen.talk.patterns import forms
+from lumen.talk.speech import Speech
 
 _MAX_PREPARED_TABLES = 256
 Lists: TypeAlias = Mapping[str, Sequence[Mapping[str, Any]]]

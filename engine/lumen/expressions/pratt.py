@@ -9,9 +9,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Mapping
 from typing import Any, ClassVar
 
-from lumen.interpreters.expressions.scope import MAX_TREE_DEPTH
-from lumen.interpreters.expressions.tokens import Token
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.scope import MAX_TREE_DEPTH
+from lumen.expressions.tokens import Token
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     ExpressionNode,

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     ExpressionNode,

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.compiler import compile_expression
-from lumen.interpreters.expressions.functions import CAUGHT
-from lumen.interpreters.expressions.parser import parse_expression
-from lumen.interpreters.expressions.printer import unparse
-from lumen.interpreters.expressions.scope import Scope
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.compiler import compile_expression
+from lumen.expressions.functions import CAUGHT
+from lumen.expressions.parser import parse_expression
+from lumen.expressions.printer import unparse
+from lumen.expressions.scope import Scope
+from lumen.expressions.tree import (
     ExpressionNode,
     FieldAccess,
     FunctionCall,

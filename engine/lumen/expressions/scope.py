@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions.kinds import FaultError
-from lumen.interpreters.talk.folding import MAX_TEXT_EXAMINED as MAX_TEXT_EXAMINED
+from lumen.expressions.kinds import FaultError
 from lumen.language.machines import Answer, MachineDefinition
+from lumen.talk.folding import MAX_TEXT_EXAMINED as MAX_TEXT_EXAMINED
 
 MAX_EXPRESSION_LENGTH = 2_000
 """Characters in an expression."""

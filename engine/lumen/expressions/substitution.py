@@ -5,10 +5,10 @@ from dataclasses import replace
 from functools import lru_cache
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.parser import MAX_REMEMBERED_TREES, parse_expression
-from lumen.interpreters.expressions.printer import unparse
-from lumen.interpreters.expressions.templates import split_template
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.parser import MAX_REMEMBERED_TREES, parse_expression
+from lumen.expressions.printer import unparse
+from lumen.expressions.templates import split_template
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     ExpressionNode,

@@ -6,13 +6,13 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.checker import check_expression
-from lumen.interpreters.expressions.compiler import compile_expression
-from lumen.interpreters.expressions.expression_findings import EXPRESSION_SYNTAX, ExpressionFinding
-from lumen.interpreters.expressions.kinds import FaultError
-from lumen.interpreters.expressions.operators import bounded
-from lumen.interpreters.expressions.scope import MAX_TEXT_LENGTH, Scope
-from lumen.interpreters.expressions.tokens import token_at
+from lumen.expressions.checker import check_expression
+from lumen.expressions.compiler import compile_expression
+from lumen.expressions.expression_findings import EXPRESSION_SYNTAX, ExpressionFinding
+from lumen.expressions.kinds import FaultError
+from lumen.expressions.operators import bounded
+from lumen.expressions.scope import MAX_TEXT_LENGTH, Scope
+from lumen.expressions.tokens import token_at
 
 
 class Placeholder(NamedTuple):

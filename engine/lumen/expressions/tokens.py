@@ -4,7 +4,7 @@ import re
 from typing import NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH
+from lumen.expressions.scope import MAX_EXPRESSION_LENGTH
 from lumen.language.lookalikes import other_sign, typed
 
 _TOKEN = re.compile(

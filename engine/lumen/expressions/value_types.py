@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-from lumen.interpreters.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT, FaultError, kind_of
+from lumen.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT, FaultError, kind_of
 
 _JSON_TYPES = {
     "null": NULL, "boolean": BOOLEAN, "integer": NUMBER, "number": NUMBER, "string": TEXT, "array": LIST, "object": MAP,

@@ -105,7 +105,7 @@ FEATURE = Feature(
     ),
     last_rules=("lumen.rules.unused:check",),
     codes=(
-        "lumen.interpreters.expressions.expression_findings",
+        "lumen.expressions.expression_findings",
         "lumen.loading.actions",
         "lumen.loading.behaviors",
         "lumen.loading.bindings",

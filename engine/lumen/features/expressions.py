@@ -2,16 +2,14 @@
 
 from lumen.feature import Feature, FunctionRow
 
-_FUNCTIONS = "lumen.interpreters.expressions.functions"
-_LISTS = "lumen.interpreters.expressions.lists"
+_FUNCTIONS = "lumen.expressions.functions"
+_LISTS = "lumen.expressions.lists"
 
 FEATURE = Feature(
     name="expressions",
     functions={
         "size": FunctionRow(f"{_FUNCTIONS}:size", ("text|list|map",), "number", example="text", exact=True),
-        "has": FunctionRow(
-            "lumen.interpreters.expressions.operators:has", ("any",), "boolean", example="event.data.x", exact=True
-        ),
+        "has": FunctionRow("lumen.expressions.operators:has", ("any",), "boolean", example="event.data.x", exact=True),
         "lower": FunctionRow(f"{_FUNCTIONS}:lower", ("text",), "text", example="text", exact=True),
         "trim": FunctionRow(f"{_FUNCTIONS}:trim", ("text",), "text", example="text", exact=True),
         "contains": FunctionRow(

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 from math import isfinite
 from typing import Any, assert_never
 
+from lumen.expressions import unparse
+from lumen.expressions.readings import as_written
+from lumen.expressions.tree import Literal
 from lumen.formats.durations import duration
-from lumen.interpreters.expressions import unparse
-from lumen.interpreters.expressions.readings import as_written
-from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import (
     Action,
     AskQuestion,

@@ -4,7 +4,7 @@ import json
 from math import isinf
 from typing import Any, NoReturn
 
-from lumen.interpreters.expressions.scope import MAX_INT, MIN_INT
+from lumen.expressions.scope import MAX_INT, MIN_INT
 
 _MAX_INTEGER_DIGITS = 20
 """Characters of an integer of 64 bits; what is longer is a number with a point, as in JavaScript."""

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from lumen.interpreters.talk.hearing import ENTRY
 from lumen.language.actions import Expression
 from lumen.language.machines import Hears, Transition
+from lumen.talk.hearing import ENTRY
 
 LOST_ELSEWHERE = "implement this guard in the other tool: the longest match, negation, questions and captured values"
 """The hint of a finding about a row of `hears`: what is lost."""

@@ -8,9 +8,9 @@ from lumen.upkeep.lazy_names import lazy
 __all__ = ["Controller", "Evaluator", "Explanation"]
 
 _HOMES = {
-    "lumen.fuzzy": ("Controller",),
-    "lumen.interpreters.inference.evaluator": ("Evaluator",),
-    "lumen.interpreters.inference.explanation": ("Explanation",),
+    "lumen.standalone.controller": ("Controller",),
+    "lumen.fuzzy.evaluator": ("Evaluator",),
+    "lumen.fuzzy.explanation": ("Explanation",),
 }
 
 __getattr__ = lazy(__name__, _HOMES)

@@ -1,5 +1,5 @@
-from lumen.fuzzy import Controller as Controller
-from lumen.interpreters.inference.evaluator import Evaluator as Evaluator
-from lumen.interpreters.inference.explanation import Explanation as Explanation
+from lumen.fuzzy.evaluator import Evaluator as Evaluator
+from lumen.fuzzy.explanation import Explanation as Explanation
+from lumen.standalone.controller import Controller as Controller
 
 __all__ = ["Controller", "Evaluator", "Explanation"]

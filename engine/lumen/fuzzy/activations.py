@@ -9,7 +9,7 @@ from math import inf, nan
 from operator import eq, ge, gt, le, lt, ne
 from typing import Any
 
-from lumen.interpreters.inference.arithmetic import Arithmetic, Number, total
+from lumen.fuzzy.arithmetic import Arithmetic, Number, total
 from lumen.language.controllers import Activation
 
 Degrees = list[Number]

@@ -4,16 +4,16 @@ from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Protocol
 
-from lumen.interpreters.inference.arithmetic import NUMBERS
-from lumen.interpreters.inference.layers import MAX_LAYERED_TERMS, LayeredCentroid
-from lumen.interpreters.inference.memberships import membership
-from lumen.interpreters.inference.program import Conclusion
-from lumen.interpreters.inference.sampled import Sampled
-from lumen.interpreters.inference.weighted import Weighted
+from lumen.fuzzy.arithmetic import NUMBERS
+from lumen.fuzzy.layers import MAX_LAYERED_TERMS, LayeredCentroid
+from lumen.fuzzy.memberships import membership
+from lumen.fuzzy.program import Conclusion
+from lumen.fuzzy.sampled import Sampled
+from lumen.fuzzy.weighted import Weighted
 from lumen.language.controllers import VALUE_TERMS, Term, Variable
 
 if TYPE_CHECKING:
-    from lumen.interpreters.inference.arithmetic import Array
+    from lumen.fuzzy.arithmetic import Array
 
 
 class Defuzzifier(Protocol):

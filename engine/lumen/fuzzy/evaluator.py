@@ -6,16 +6,16 @@ from math import isnan
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import LumenError, UsageError
-from lumen.interpreters.inference.arithmetic import NUMBERS, arrays
-from lumen.interpreters.inference.defuzzifiers import defuzzifier
-from lumen.interpreters.inference.program import InferenceProgram
+from lumen.fuzzy.arithmetic import NUMBERS, arrays
+from lumen.fuzzy.defuzzifiers import defuzzifier
+from lumen.fuzzy.program import InferenceProgram
 from lumen.language.controllers import ControllerDefinition, Variable
 from lumen.language.diagnostics import did_you_mean
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from lumen.interpreters.inference.arithmetic import Array
+    from lumen.fuzzy.arithmetic import Array
 
 _CHUNK = 1 << 13  # rows of a batch that are worked on together: they stay in the cache
 

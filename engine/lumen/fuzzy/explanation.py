@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import reduce
 
-from lumen.interpreters.inference.arithmetic import NUMBERS
-from lumen.interpreters.inference.defuzzifiers import midpoints, sampled
-from lumen.interpreters.inference.evaluator import Evaluator
-from lumen.interpreters.inference.memberships import membership
-from lumen.interpreters.inference.norms import norm
+from lumen.fuzzy.arithmetic import NUMBERS
+from lumen.fuzzy.defuzzifiers import midpoints, sampled
+from lumen.fuzzy.evaluator import Evaluator
+from lumen.fuzzy.memberships import membership
+from lumen.fuzzy.norms import norm
 from lumen.language.controllers import Rule, Variable
 
 

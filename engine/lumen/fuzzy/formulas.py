@@ -10,9 +10,9 @@ from functools import cache, reduce
 from operator import add, and_, eq, ge, gt, le, lt, mul, ne, neg, sub, truediv
 from typing import Any
 
-from lumen.interpreters.expressions import ExpressionNode, parse_expression
-from lumen.interpreters.expressions.tree import Binary, Conditional, FunctionCall, Identifier, Literal, Logic, Unary
-from lumen.interpreters.inference.arithmetic import NUMBERS, Arithmetic, Number
+from lumen.expressions import ExpressionNode, parse_expression
+from lumen.expressions.tree import Binary, Conditional, FunctionCall, Identifier, Literal, Logic, Unary
+from lumen.fuzzy.arithmetic import NUMBERS, Arithmetic, Number
 
 Formula = Callable[[Number, Sequence[Number]], Number]
 """The value at x, the named variables being as they are."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
-from lumen.interpreters.inference.arithmetic import Arithmetic, Number
+from lumen.fuzzy.arithmetic import Arithmetic, Number
 
 
 def _extremely(m: Arithmetic, x: Number) -> Number:

@@ -17,7 +17,7 @@ from math import nan
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from lumen.interpreters.inference.arithmetic import Array
+    from lumen.fuzzy.arithmetic import Array
 
 MAX_LAYERED_TERMS = 6
 """Layers are kept for every union of terms that occurs: at most 2^6."""

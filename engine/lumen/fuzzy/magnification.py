@@ -13,8 +13,8 @@ from math import isfinite
 from operator import mul
 
 from lumen.errors import LumenError
-from lumen.interpreters.inference.evaluator import Evaluator
-from lumen.interpreters.inference.survey import Survey, asked
+from lumen.fuzzy.evaluator import Evaluator
+from lumen.fuzzy.survey import Survey, asked
 from lumen.language.controllers import ControllerDefinition
 
 ZOOM_STEP = 2**0.5

@@ -7,8 +7,8 @@ function takes x (a float or an array, as its arithmetic has it) and returns the
 from collections.abc import Callable, Mapping
 from math import inf, pi
 
-from lumen.interpreters.inference.arithmetic import Arithmetic, Number
-from lumen.interpreters.inference.formulas import formula
+from lumen.fuzzy.arithmetic import Arithmetic, Number
+from lumen.fuzzy.formulas import formula
 from lumen.language.controllers import Term
 
 Membership = Callable[[Number], Number]

@@ -5,7 +5,7 @@ A sum without bound may hand more than 1 on to another norm: then too no denomin
 
 from collections.abc import Callable, Mapping
 
-from lumen.interpreters.inference.arithmetic import Arithmetic, Number
+from lumen.fuzzy.arithmetic import Arithmetic, Number
 
 Norm = Callable[[Arithmetic, Number, Number], Number]
 

@@ -9,11 +9,11 @@ from collections.abc import Callable, Sequence
 from functools import reduce
 from typing import Any, NamedTuple
 
-from lumen.interpreters.inference.activations import ACTIVATE
-from lumen.interpreters.inference.arithmetic import Arithmetic
-from lumen.interpreters.inference.hedges import hedged
-from lumen.interpreters.inference.memberships import membership
-from lumen.interpreters.inference.norms import norm
+from lumen.fuzzy.activations import ACTIVATE
+from lumen.fuzzy.arithmetic import Arithmetic
+from lumen.fuzzy.hedges import hedged
+from lumen.fuzzy.memberships import membership
+from lumen.fuzzy.norms import norm
 from lumen.language.controllers import (
     Antecedent,
     Conjunction,

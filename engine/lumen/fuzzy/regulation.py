@@ -10,8 +10,7 @@ from math import floor, inf, log10
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
-from lumen.interpreters.inference.evaluator import Evaluator
-from lumen.interpreters.message_numbers import number, number_at
+from lumen.fuzzy.evaluator import Evaluator
 from lumen.language.commands import Publish
 from lumen.language.controllers import (
     CONTROLLER_EVENT,
@@ -25,6 +24,7 @@ from lumen.language.controllers import (
     VolumeBinding,
 )
 from lumen.language.events import Event
+from lumen.language.message_numbers import number, number_at
 
 RouteField = tuple[str, ...]
 """A route and a field of its messages, step by step."""

@@ -3,14 +3,14 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from lumen.interpreters.inference.arithmetic import arrays
-from lumen.interpreters.inference.norms import norm
+from lumen.fuzzy.arithmetic import arrays
+from lumen.fuzzy.norms import norm
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from lumen.interpreters.inference.arithmetic import Array
+    from lumen.fuzzy.arithmetic import Array
 
 _ROOM = 1 << 18  # values of a chunk: small enough for the cache
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 from math import isfinite, isnan, nan
 from typing import NamedTuple
 
-from lumen.interpreters.expressions import parse_expression
-from lumen.interpreters.expressions.tree import Identifier, walk
-from lumen.interpreters.inference.evaluator import Evaluator
+from lumen.expressions import parse_expression
+from lumen.expressions.tree import Identifier, walk
+from lumen.fuzzy.evaluator import Evaluator
 from lumen.language.controllers import (
     Antecedent,
     Conjunction,

@@ -5,13 +5,13 @@ from functools import reduce
 from math import nan
 from typing import TYPE_CHECKING
 
-from lumen.interpreters.inference.arithmetic import NUMBERS, Arithmetic, Number, arrays, total
-from lumen.interpreters.inference.formulas import formula
-from lumen.interpreters.inference.norms import norm
+from lumen.fuzzy.arithmetic import NUMBERS, Arithmetic, Number, arrays, total
+from lumen.fuzzy.formulas import formula
+from lumen.fuzzy.norms import norm
 from lumen.language.controllers import Term
 
 if TYPE_CHECKING:
-    from lumen.interpreters.inference.arithmetic import Array
+    from lumen.fuzzy.arithmetic import Array
 
 TermValue = Callable[[Number, Sequence[Number]], Number]
 """What a term stands for at a degree, the controller's variables being as they are."""

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 
 from lumen.errors import BadCommandError, ExpressionError
+from lumen.expressions import Scope, compile_template, split_template, substituted
+from lumen.expressions.json_schema import JsonSchema
 from lumen.feature import Feature, VerbRow, rows
-from lumen.interpreters.expressions import Scope, compile_template, split_template, substituted
-from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.added_verbs import added_verbs, argument_schema
 from lumen.language.body_parts import PARTS
 from lumen.language.commands import Do

@@ -16,12 +16,12 @@ from math import inf, isfinite, pi, sin
 from typing import Any
 
 from lumen.errors import LumenError
-from lumen.interpreters.controllers_by_role import by_role
+from lumen.fuzzy.controllers_by_role import by_role
 from lumen.interpreters.joint_history import JointAngles, JointHistory
 from lumen.interpreters.limits import coupled_range
-from lumen.interpreters.message_numbers import number, number_at
 from lumen.interpreters.visual_servo import VisualServo
 from lumen.language.controllers import ControllerDefinition
+from lumen.language.message_numbers import number, number_at
 from lumen.language.robots import Body
 
 SEARCH_SWING = 0.5235987755982988

@@ -13,8 +13,8 @@ step of a flat surface leaves over need not wait for the next image.
 
 from collections.abc import Mapping
 
+from lumen.fuzzy.magnification import Magnifier
 from lumen.interpreters.joint_history import JointAngles
-from lumen.interpreters.magnification import Magnifier
 from lumen.interpreters.projection import after_turning
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body

@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
+from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.shared import SHARED, SharedKey, first_values, shared_schema

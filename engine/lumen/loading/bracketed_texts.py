@@ -4,9 +4,9 @@ import json
 import re
 from collections.abc import Iterator
 
-from lumen.interpreters.talk.patterns import TYPES
 from lumen.loading.line_marks import marks_of
 from lumen.loading.slips import KEY, Slip, short
+from lumen.talk.patterns import TYPES
 
 _BRACKETED_TEXT = re.compile(r"^(?!\{\w+: )(?=.*[\[{])(?:[\[{][^\[\]{}]*[\]}]|[^\[{(\w])*[\w(]")
 """A text with brackets and something outside of them, and no map with something behind it."""

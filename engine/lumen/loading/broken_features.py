@@ -136,7 +136,7 @@ def fault_of_package(error: BaseException) -> str:
 
 def need_made(feature: Feature, where: str, value: Any, kind: type, what: str) -> None:
     """Raise LumenError if what an import string made lacks a method of a protocol."""
-    from lumen.interpreters.arguments import need_methods  # kept findings need no interpreters
+    from lumen.upkeep.arguments import need_methods  # kept findings need no interpreters
 
     try:
         need_methods(value, kind, what)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.interpreters.json_schema import occurs
+from lumen.expressions.json_schema import occurs
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, mean, nearest
 from lumen.language.lookalikes import other_sign, typed
 from lumen.loading.schema_messages import Error, describe, like, node, wording

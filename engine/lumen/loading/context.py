@@ -1,11 +1,11 @@
 """What a behaviour remembers: first values and JSON Schemas of context keys and events, checked to be sound."""
 
-from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
 from lumen.language.machines import MachineDefinition
 from lumen.loading.complaints import WRONG_VALUE
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.messages import examine
 from lumen.loading.numbers import finite, numbers_in
+from lumen.statechart.type_checks import fits, refusal, type_checks
 
 
 def check_memory(machine: MachineDefinition, report: DocumentReport) -> list[tuple[str, str]]:

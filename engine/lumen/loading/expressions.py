@@ -4,23 +4,22 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from lumen.interpreters.expressions import (
+from lumen.expressions import (
     ExpressionFinding,
     check_expression,
     check_template,
     substituted,
     substituted_template,
 )
-from lumen.interpreters.expressions.expression_findings import (
+from lumen.expressions.expression_findings import (
     MISPLACED_DRAW,
     UNGUARDED_FIELD,
     UNKNOWN_CONTEXT_KEY,
     UNKNOWN_FUNCTION,
     UNKNOWN_NAME,
 )
-from lumen.interpreters.expressions.function_table import drawing_functions
-from lumen.interpreters.expressions.functions import CAUGHT
-from lumen.interpreters.talk.hearing import HEARD
+from lumen.expressions.function_table import drawing_functions
+from lumen.expressions.functions import CAUGHT
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import NodePath, Place, did_you_mean
 from lumen.language.text_lines import lines_of
@@ -31,6 +30,7 @@ from lumen.loading.numbers import finite
 from lumen.loading.remembered_findings import Check, RememberedFindings
 from lumen.loading.rounds import Rounds
 from lumen.loading.scalars import within
+from lumen.talk.hearing import HEARD
 
 
 class Expressions:

@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions import parse_expression
-from lumen.interpreters.expressions.expression_findings import (
+from lumen.expressions import parse_expression
+from lumen.expressions.expression_findings import (
     EXPRESSION_SYNTAX,
     TYPE_MISMATCH,
     UNKNOWN_FUNCTION,
     UNKNOWN_NAME,
     WRONG_ARGUMENT_COUNT,
 )
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     ExpressionNode,
@@ -22,7 +22,7 @@ from lumen.interpreters.expressions.tree import (
     Unary,
     walk,
 )
-from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
+from lumen.fuzzy.formulas import FORMULA_FUNCTIONS
 from lumen.language.diagnostics import Code, NodePath, did_you_mean
 from lumen.language.numbers import is_number
 from lumen.loading.document_report import DocumentReport

@@ -4,13 +4,13 @@ import re
 from itertools import pairwise
 from typing import Literal
 
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_PHRASE
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
+from lumen.expressions.expression_findings import UNKNOWN_PHRASE
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, did_you_mean
 from lumen.language.text_lines import lines_of
 from lumen.loading.common_words import COMMON
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.expressions import Expressions
+from lumen.talk.speech import TABLES, WORD_LISTS
 
 BAD_ROW = Code("bad-row", "hearing", ERROR, "a key of `hears` can't be read")
 RowWay = Literal["", "not", "asked", "else"]

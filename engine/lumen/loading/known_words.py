@@ -3,7 +3,6 @@
 from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, Related, did_you_mean
 from lumen.language.machines import Answer
 from lumen.language.words import Words
@@ -12,6 +11,7 @@ from lumen.loading.common_words import COMMON
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.project_folders import WORDS_FOLDER
 from lumen.loading.words import anyhow, tables
+from lumen.talk.speech import TABLES, WORD_LISTS
 
 UNKNOWN_WORDS = Code("unknown-words", "references", ERROR, "the named words file is not in behaviors/words/")
 DUPLICATE_WORDS = Code(

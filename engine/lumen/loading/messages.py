@@ -6,8 +6,8 @@ from functools import lru_cache
 from typing import Any
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.patterns import compile_pattern
-from lumen.interpreters.json_schema import deeper_than
+from lumen.expressions.json_schema import deeper_than
+from lumen.expressions.patterns import compile_pattern
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
 from lumen.language.json_paths import values_in
 from lumen.loading.complaints import WRONG_TYPE, WRONG_VALUE

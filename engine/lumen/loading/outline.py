@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
+from lumen.expressions.expression_findings import UNKNOWN_STATE
 from lumen.language.diagnostics import ERROR, MAX_COMPARED_NAMES, Code, NodePath, did_you_mean, nearest
 from lumen.language.machines import StateKind
 from lumen.loading.document_report import DocumentReport

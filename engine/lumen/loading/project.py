@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 from unicodedata import normalize
 
-from lumen.interpreters.controllers_by_role import by_role
+from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
 from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.machines import MachineDefinition

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from lumen.interpreters.expressions import check_expression
+from lumen.expressions import check_expression
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
 from lumen.language.properties import Property

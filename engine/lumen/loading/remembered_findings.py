@@ -3,7 +3,7 @@
 from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
-from lumen.interpreters.expressions import ExpressionFinding
+from lumen.expressions import ExpressionFinding
 from lumen.loading.memoization import memoize
 
 MAX_REMEMBERED_FINDINGS = 20_000

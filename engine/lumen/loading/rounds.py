@@ -10,14 +10,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from lumen.interpreters.expressions.functions import CAUGHT
-from lumen.interpreters.talk.hearing import HEARD
+from lumen.expressions.functions import CAUGHT
 from lumen.language.actions import Assign, Expression, PlacedAction
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.machines import ForEach, State, StateKind, Transition
 from lumen.language.shared import SHARED
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.talk.hearing import HEARD
 
 BAD_FOR = Code("bad-for", "statecharts", ERROR, "a `for` can't run through its list here")
 

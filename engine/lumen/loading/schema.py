@@ -7,9 +7,9 @@ from functools import cache, partial
 from typing import Any
 
 from lumen.errors import LumenError
+from lumen.expressions.json_schema import JsonSchema
 from lumen.feature import VerbRow
 from lumen.interpreters.added_verbs import usable_verbs
-from lumen.interpreters.json_schema import JsonSchema
 from lumen.language.added_verbs import expected_schema, written_schema
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of

@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
-from lumen.interpreters.json_schema import occurs
+from lumen.expressions.json_schema import occurs
 from lumen.language.counts import counted
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.durations import duration_hint, meant_duration

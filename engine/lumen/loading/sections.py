@@ -5,8 +5,8 @@ from dataclasses import is_dataclass, replace
 from functools import cache
 from typing import Any
 
+from lumen.expressions.json_schema import JsonSchema, keywords
 from lumen.feature import Section, resolve, rows, table
-from lumen.interpreters.json_schema import JsonSchema, keywords
 from lumen.language.diagnostics import Diagnostic
 from lumen.loading.broken_features import faults_reported
 from lumen.loading.document_report import DocumentReport

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 from zoneinfo import available_timezones
 
 from lumen.errors import UsageError
-from lumen.interpreters.wall_clock import zone
+from lumen.expressions.wall_clock import zone
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, did_you_mean, nearest
 from lumen.language.house import RobotSpec
 from lumen.language.modules import ModuleSettings

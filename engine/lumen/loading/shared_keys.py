@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.interpreters.json_schema import JsonSchema
+from lumen.expressions.json_schema import JsonSchema
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.shared import SharedKey, SharedKeys
 from lumen.loading.complaints import WRONG_VALUE

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeVar
 
-from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.actions import Template
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.hours import Schedule
@@ -16,6 +15,7 @@ from lumen.loading.hears_keys import HearsKeys
 from lumen.loading.invocations import invoked
 from lumen.loading.outline import BehaviorOutline, OutlinedState
 from lumen.loading.schedules import schedule
+from lumen.talk.hearing import HEARD
 
 CONFLICTING_TARGETS = Code(
     "conflicting-targets", "statecharts", ERROR, "the states of a target can't be active together"

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import isfinite
 from typing import Any
 
-from lumen.interpreters.inference.weighted import INVERSE_MEMBERSHIPS
+from lumen.fuzzy.weighted import INVERSE_MEMBERSHIPS
 from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, Variable
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.loading.document_report import DocumentReport

@@ -4,9 +4,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions.function_table import functions
-from lumen.interpreters.talk.patterns import TYPES, slots_of
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
+from lumen.expressions.function_table import functions
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import robot_events
@@ -22,6 +20,8 @@ from lumen.lsp.index import WORD_KINDS, NameIndex, stem
 from lumen.lsp.names import NameKind
 from lumen.lsp.schemas import keys_at, values_at
 from lumen.rules.events import BUILT_IN_FAMILIES, hears
+from lumen.talk.patterns import TYPES, slots_of
+from lumen.talk.speech import TABLES, WORD_LISTS
 
 _CALL = re.compile(r"\b(heard|lookup|In)\([^()]*?(?:\([^()]*\)[^()]*?)*['\"](\w*)$")
 _NAMED = {"heard": NameKind.PHRASE, "lookup": NameKind.ANSWERS, "In": NameKind.STATE}

@@ -6,7 +6,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions.tokens import Token, tokenize
+from lumen.expressions.tokens import Token, tokenize
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.text_lines import LineIndex
 from lumen.loading.document import Document

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from lumen.errors import UsageError
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.language.routes import route_meanings
 from lumen.lsp.analysis import Analysis
@@ -13,6 +12,7 @@ from lumen.lsp.heard_rows import ELSE, WAYS
 from lumen.lsp.index import WORD_KINDS
 from lumen.lsp.names import KIND_FOLDERS, NameKind, NameUse
 from lumen.rules.fixes import Edit, edited
+from lumen.talk.speech import TABLES, WORD_LISTS
 
 _NAMES = {
     NameKind.STATE: (r"[^\s.#*,\[\]{}:'\"]+", "without spaces, dots, `#` or `*`"),

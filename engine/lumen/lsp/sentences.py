@@ -5,9 +5,6 @@ from itertools import islice
 from typing import Any
 
 from lumen.interpreters.explaining.words import shown
-from lumen.interpreters.talk.hearing import HEARD, hearing_of
-from lumen.interpreters.talk.patterns import forms, slots_of
-from lumen.interpreters.talk.sample_sentences import SampleSentence, of_phrase, of_row
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Hears, MachineDefinition
 from lumen.loading.draft import ProjectDraft
@@ -15,6 +12,9 @@ from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.index import stem
 from lumen.lsp.locating import key_at
+from lumen.talk.hearing import HEARD, hearing_of
+from lumen.talk.patterns import forms, slots_of
+from lumen.talk.sample_sentences import SampleSentence, of_phrase, of_row
 
 MAX_SENTENCES, MAX_TRIED = 4, 40
 """Sentences that are shown for a row or a phrase, and those that are tried."""

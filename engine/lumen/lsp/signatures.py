@@ -4,8 +4,8 @@ import inspect
 import re
 from typing import NamedTuple
 
+from lumen.expressions.function_table import fault_of, functions
 from lumen.feature import resolve, table
-from lumen.interpreters.expressions.function_table import fault_of, functions
 from lumen.language.text_lines import lines_of
 from lumen.lsp.analysis import Analysis
 

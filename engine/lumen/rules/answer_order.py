@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, walk
-from lumen.interpreters.talk.patterns import Form, forms
+from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, walk
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Answer, MachineDefinition, State
 from lumen.loading.document_report import DocumentReport
@@ -14,6 +13,7 @@ from lumen.rules.guards import covers, heard_call
 from lumen.rules.logic import tree
 from lumen.rules.speech import SHADOWED_ANSWER
 from lumen.rules.word_tables import is_taken, word_tables, written_phrases
+from lumen.talk.patterns import Form, forms
 
 
 class Asking(NamedTuple):

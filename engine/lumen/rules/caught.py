@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lumen.interpreters.expressions import schema_of
-from lumen.interpreters.expressions.lists import is_text_by_language
-from lumen.interpreters.talk.patterns import TYPES, PatternError, Slot, forms, read_pattern
+from lumen.expressions import schema_of
+from lumen.expressions.lists import is_text_by_language
 from lumen.language.machines import Hears, MachineDefinition
 from lumen.rules.lists import entry_schema
+from lumen.talk.patterns import TYPES, PatternError, Slot, forms, read_pattern
 
 _TEXT: Mapping[str, Any] = {"type": "string"}
 

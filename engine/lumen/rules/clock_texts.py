@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping
 
-from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLiteral, Literal, walk
+from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLiteral, Literal, walk
 from lumen.language.diagnostics import WARNING, Code
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.naming import trees

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from lumen.interpreters.expressions.tree import Identifier, walk
+from lumen.expressions.tree import Identifier, walk
 from lumen.language.actions import (
     PARENT,
     Assign,

@@ -3,8 +3,6 @@
 from collections.abc import Collection
 from itertools import islice
 
-from lumen.interpreters.talk.hearing import HEARD, Taken, hearing_of
-from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.diagnostics import WARNING, Code, NodePath, Related
 from lumen.language.machines import Hears, Transition
 from lumen.loading.draft import ProjectDraft
@@ -15,6 +13,8 @@ from lumen.rules.naming import looked_up
 from lumen.rules.speech import SHADOWED_ANSWER
 from lumen.rules.statecharts import within
 from lumen.rules.word_tables import home_of
+from lumen.talk.hearing import HEARD, Taken, hearing_of
+from lumen.talk.sample_sentences import of_row
 
 NEVER_HEARD = Code("never-heard", "hearing", WARNING, "a row of `hears` never matches a sentence")
 SHADOWED_PHRASE = Code("shadowed-phrase", "hearing", WARNING, "a phrase matches a different row instead of its own")

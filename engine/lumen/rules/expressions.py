@@ -5,9 +5,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from lumen.interpreters.expressions import ExpressionFinding, check_expression, check_template, schema_of
-from lumen.interpreters.expressions.expression_findings import TYPE_MISMATCH
-from lumen.interpreters.talk.hearing import HEARD
+from lumen.expressions import ExpressionFinding, check_expression, check_template, schema_of
+from lumen.expressions.expression_findings import TYPE_MISMATCH
 from lumen.language.actions import Template, context_key
 from lumen.language.diagnostics import Place, Related
 from lumen.language.json_paths import schema_at
@@ -23,6 +22,7 @@ from lumen.rules.lists import entry_schema, list_schema
 from lumen.rules.recipients import sent_to
 from lumen.rules.traps import LOOKS_LIKE_TRUTH
 from lumen.rules.walk import ExpressionSite, expression_sites
+from lumen.talk.hearing import HEARD
 
 _TRUTHS = (LOOKS_LIKE_TRUTH, TYPE_MISMATCH)
 

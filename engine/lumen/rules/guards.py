@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
-from lumen.interpreters.expressions.parser import MAX_REMEMBERED_TREES
-from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Literal, Logic
+from lumen.expressions.parser import MAX_REMEMBERED_TREES
+from lumen.expressions.tree import ExpressionNode, FunctionCall, Literal, Logic
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition

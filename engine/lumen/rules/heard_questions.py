@@ -3,8 +3,6 @@
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 
-from lumen.interpreters.talk.finder import Find
-from lumen.interpreters.talk.hearing import Taken, hearing_of
 from lumen.language.actions import AskQuestion, PlacedAction, nested
 from lumen.language.diagnostics import WARNING, Code, Related
 from lumen.language.folders import KNOWLEDGE_FOLDER
@@ -14,6 +12,8 @@ from lumen.rules.buttons import together
 from lumen.rules.heard_rows import HeardRows, SaidRow, hearing_behaviors, remembered, shown
 from lumen.rules.statecharts import within
 from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
+from lumen.talk.finder import Find
+from lumen.talk.hearing import Taken, hearing_of
 
 SHADOWED_QUESTION = Code(
     "shadowed-question", "hearing", WARNING, "a question in knowledge/ matches a row of `hears`, so it is not answered"

@@ -7,9 +7,6 @@ from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, 
 from itertools import islice
 from typing import NamedTuple
 
-from lumen.interpreters.talk.finder import Find
-from lumen.interpreters.talk.hearing import RowOrder, Taken, hearing_of
-from lumen.interpreters.talk.sample_sentences import of_phrase
 from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.language.machines import Hears, MachineDefinition, State, StateKind, Transition
 from lumen.loading.document_report import DocumentReport
@@ -20,6 +17,9 @@ from lumen.rules.events import descriptor_path
 from lumen.rules.naming import heard_rows
 from lumen.rules.statecharts import within
 from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
+from lumen.talk.finder import Find
+from lumen.talk.hearing import RowOrder, Taken, hearing_of
+from lumen.talk.sample_sentences import of_phrase
 
 MAX_EXAMPLES = 5_000
 """The most sentences that are tried for a row: a file may have very many phrases."""

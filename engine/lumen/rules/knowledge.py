@@ -2,13 +2,13 @@
 
 from datetime import date
 
-from lumen.interpreters.talk.folding import folded
 from lumen.language.diagnostics import ERROR, WARNING, Code, Place, Related, did_you_mean
 from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.knowledge import Passage
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import first
+from lumen.talk.folding import folded
 
 CLAIMED_TWICE = Code("claimed-twice", "knowledge", WARNING, "two passages have the same question")
 OUT_OF_DATE = Code("out-of-date", "knowledge", WARNING, "the `until` date of a passage has passed")

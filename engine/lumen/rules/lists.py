@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from lumen.interpreters.expressions.lists import by_language, is_text_by_language
-from lumen.interpreters.expressions.value_types import schema_of
+from lumen.expressions.lists import by_language, is_text_by_language
+from lumen.expressions.value_types import schema_of
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.language_tags import is_language_tag
 from lumen.loading.document_report import DocumentReport

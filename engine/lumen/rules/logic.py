@@ -10,8 +10,8 @@ from itertools import product
 from math import inf
 from typing import NamedTuple
 
-from lumen.interpreters.expressions import parse_expression, unparse
-from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLiteral, Literal, Logic, Unary
+from lumen.expressions import parse_expression, unparse
+from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLiteral, Literal, Logic, Unary
 from lumen.language.numbers import is_number
 
 MAX_ALTERNATIVES = 24

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_FIELD
+from lumen.expressions.expression_findings import UNKNOWN_FIELD
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft

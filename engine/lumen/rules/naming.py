@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from lumen.interpreters.expressions import split_template
-from lumen.interpreters.expressions.templates import Placeholder
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions import split_template
+from lumen.expressions.templates import Placeholder
+from lumen.expressions.tree import (
     ExpressionNode,
     FieldAccess,
     FunctionCall,
@@ -15,12 +15,12 @@ from lumen.interpreters.expressions.tree import (
     children,
     walk,
 )
-from lumen.interpreters.talk.patterns import slots_of
 from lumen.language.actions import Expression, Template
 from lumen.language.machines import Hears, MachineDefinition
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.logic import tree
 from lumen.rules.walk import expression_sites
+from lumen.talk.patterns import slots_of
 
 
 class Named(NamedTuple):

@@ -4,16 +4,16 @@ import re
 from collections.abc import Iterator
 from functools import partial
 
-from lumen.interpreters.talk.folding import folded
-from lumen.interpreters.talk.hearing import phrases_in
-from lumen.interpreters.talk.patterns import TYPES, PatternError, Slot, read_pattern, slots_of
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.diagnostics import WARNING, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import place_within
 from lumen.rules.word_tables import WordTables, WrittenPhrase, known_by, slot_place, word_tables, written_phrases
+from lumen.talk.folding import folded
+from lumen.talk.hearing import phrases_in
+from lumen.talk.patterns import TYPES, PatternError, Slot, read_pattern, slots_of
+from lumen.talk.speech import TABLES, WORD_LISTS
 
 BAD_PATTERN = Code("bad-pattern", "hearing", WARNING, "a phrase is not a valid pattern, so it is read as plain words")
 DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can never catch anything")

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from itertools import combinations
 from math import hypot, pi
 
-from lumen.interpreters.expressions import split_template
+from lumen.expressions import split_template
 from lumen.language.commands import GoTo
 from lumen.language.diagnostics import ERROR, INFO, WARNING, Code, NodePath, did_you_mean, has_errors
 from lumen.language.folders import KNOWLEDGE_FOLDER

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_FIELD
+from lumen.expressions.expression_findings import UNKNOWN_FIELD
 from lumen.language.actions import PublishBody
 from lumen.language.diagnostics import did_you_mean, nearest
 from lumen.loading.draft import ProjectDraft

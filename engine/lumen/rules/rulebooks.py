@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from itertools import product
 
-from lumen.interpreters.inference.survey import propositions
+from lumen.fuzzy.survey import propositions
 from lumen.language.controllers import (
     Antecedent,
     Conjunction,

@@ -1,9 +1,8 @@
 """Sayings as tests: the behaviour, state, row and slots that they name."""
 
+from lumen.expressions.expression_findings import UNKNOWN_STATE
 from lumen.interpreters.explaining.sayings import path_of
 from lumen.interpreters.explaining.sentences import hearing_states, rows_around
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
-from lumen.interpreters.talk.patterns import slots_of
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.machines import Hears, MachineDefinition
@@ -11,6 +10,7 @@ from lumen.language.sayings import Saying
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.rules.lookups import References
+from lumen.talk.patterns import slots_of
 
 UNKNOWN_ROW = Code("unknown-row", "references", ERROR, "a saying names a row of `hears` that its state does not have")
 UNKNOWN_SLOT = Code("unknown-slot", "references", ERROR, "a saying names a slot that no phrase of its row has")

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumen.interpreters.expressions.tree import Binary, ExpressionNode, ListLiteral, Literal, path_of, walk
+from lumen.expressions.tree import Binary, ExpressionNode, ListLiteral, Literal, path_of, walk
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.robots import Body

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from itertools import pairwise
 from math import isfinite
 
-from lumen.interpreters.inference.arithmetic import NUMBERS
-from lumen.interpreters.inference.memberships import membership
-from lumen.interpreters.inference.survey import grid
+from lumen.fuzzy.arithmetic import NUMBERS
+from lumen.fuzzy.memberships import membership
+from lumen.fuzzy.survey import grid
 from lumen.language.controllers import VALUE_TERMS, ControllerDefinition, Term, Variable
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.scales import ranks

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY
+from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY
 from lumen.language.actions import Assign, Send
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition

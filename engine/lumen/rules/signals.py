@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from itertools import combinations
 from typing import Any
 
-from lumen.interpreters.expressions import schema_of
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY
+from lumen.expressions import schema_of
+from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY
 from lumen.language.commands import Track
 from lumen.language.controllers import (
     ContextBinding,

@@ -5,7 +5,6 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
 from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePath, Place, Related, did_you_mean, nearest
@@ -24,6 +23,7 @@ from lumen.rules.torn_texts import TORN_TEXT
 from lumen.rules.translation import begun, is_empty, language_entries, switched_to
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import WordTables, is_taken, word_tables
+from lumen.talk.speech import TABLES, WORD_LISTS
 
 UNKNOWN_LANGUAGE = Code(
     "unknown-language", "references", ERROR, "a name refers to a language that the project does not speak"

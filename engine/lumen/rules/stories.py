@@ -4,10 +4,8 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.interpreters.expressions import check_expression, schema_of
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
-from lumen.interpreters.statechart.nesting import ID_SEPARATOR, resolutions
-from lumen.interpreters.statechart.type_checks import fits, refusal, type_checks
+from lumen.expressions import check_expression, schema_of
+from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
@@ -23,6 +21,8 @@ from lumen.rules.events import UNKNOWN_EVENT, declared, descriptors, hears, rais
 from lumen.rules.lookups import References, first
 from lumen.rules.recipients import sent_to
 from lumen.rules.references import known_route
+from lumen.statechart.nesting import ID_SEPARATOR, resolutions
+from lumen.statechart.type_checks import fits, refusal, type_checks
 
 UNKNOWN_SENSOR = Code("unknown-sensor", "references", ERROR, "the robot has no tactile sensor of that name")
 

@@ -5,7 +5,7 @@ from itertools import product
 from math import isnan
 from typing import NamedTuple
 
-from lumen.interpreters.inference.survey import Slice, SurfaceJump, Survey, asked, grid
+from lumen.fuzzy.survey import Slice, SurfaceJump, Survey, asked, grid
 from lumen.language.controllers import INTEGRAL_DEFUZZIFIERS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Variable
 from lumen.language.diagnostics import WARNING, Code
 from lumen.loading.document_report import DocumentReport

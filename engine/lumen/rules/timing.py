@@ -5,8 +5,8 @@ from contextlib import suppress
 from math import hypot
 
 from lumen.errors import BadCommandError
+from lumen.expressions import split_template
 from lumen.interpreters.added_verbs import time_taken
-from lumen.interpreters.expressions import split_template
 from lumen.language.actions import If, Parallel, PlacedAction, SayText, Wait
 from lumen.language.commands import Do, Play, Posture, Walk
 from lumen.language.diagnostics import WARNING, Code

@@ -2,9 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumen.interpreters.expressions.tree import Literal, walk
-from lumen.interpreters.talk.hearing import HEARD
-from lumen.interpreters.talk.patterns import slots_of
+from lumen.expressions.tree import Literal, walk
 from lumen.language.actions import Expression, Template
 from lumen.language.diagnostics import WARNING, Code, did_you_mean, nearest
 from lumen.language.machines import MachineDefinition, Transition
@@ -15,6 +13,8 @@ from lumen.rules.logic import tree
 from lumen.rules.naming import heard_rows, read_names, trees
 from lumen.rules.walk import expression_sites
 from lumen.rules.word_tables import WordTables, known_by, slot_place, word_tables, written_phrases
+from lumen.talk.hearing import HEARD
+from lumen.talk.patterns import slots_of
 
 UNHEARD_NAME = Code("unheard-name", "hearing", WARNING, "a row with `not` or `asked` has a name that no other row has")
 UNUSED_SLOT = Code("unused-slot", "hearing", WARNING, "no row uses the value of a slot")

@@ -3,9 +3,8 @@
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from lumen.interpreters.expressions import expression_findings
-from lumen.interpreters.expressions.expression_findings import UNKNOWN_STATE
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS
+from lumen.expressions import expression_findings
+from lumen.expressions.expression_findings import UNKNOWN_STATE
 from lumen.language.actions import context_key
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath, has_errors, nearest
@@ -20,6 +19,7 @@ from lumen.rules.events import UNUSED_EVENT, descriptors, hears
 from lumen.rules.naming import Named, heard_rows, named_in
 from lumen.rules.walk import action_sites
 from lumen.rules.word_tables import word_tables
+from lumen.talk.speech import TABLES, WORD_LISTS
 
 SAME_BUT_CASE = Code("same-but-case", "references", WARNING, "two names differ only in capital letters")
 UNUSED_ANSWERS = Code("unused-answers", "references", WARNING, "no expression looks up a table of answers")

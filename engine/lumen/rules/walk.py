@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions import schema_of
+from lumen.expressions import schema_of
 from lumen.language.actions import (
     AskQuestion,
     Assign,

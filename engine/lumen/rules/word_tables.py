@@ -3,8 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions.phrases import is_heard
-from lumen.interpreters.talk.patterns import Slot, forms
+from lumen.expressions.phrases import is_heard
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import Answer
 from lumen.loading.document_report import DocumentReport
@@ -12,6 +11,7 @@ from lumen.loading.draft import ProjectDraft
 from lumen.loading.expressions import place_within
 from lumen.loading.project_folders import WORDS_FOLDER
 from lumen.loading.words import ANYHOW
+from lumen.talk.patterns import Slot, forms
 
 
 class WordTables(NamedTuple):

@@ -11,13 +11,13 @@ from typing import NamedTuple, Protocol
 
 from lumen.errors import LumenError
 from lumen.interpreters.explaining.names import machines_in
-from lumen.interpreters.statechart import Snapshot, Step, step
-from lumen.interpreters.statechart.nesting import behavior_of
 from lumen.language.approvals import Autonomy
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.machines import Approval, MachineDefinition, Transition
 from lumen.language.people import PersonName
+from lumen.statechart import Snapshot, Step, step
+from lumen.statechart.nesting import behavior_of
 
 MAX_WAITING = 20
 """Events that may wait for GO at once; the oldest gives way."""

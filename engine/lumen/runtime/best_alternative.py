@@ -9,12 +9,12 @@ from itertools import islice
 from typing import Any
 
 from lumen.errors import LumenError
-from lumen.interpreters.expressions.parser import parse_expression
-from lumen.interpreters.expressions.tree import ExpressionNode, FunctionCall, Unary, children
-from lumen.interpreters.statechart import Snapshot, Step, step
+from lumen.expressions.parser import parse_expression
+from lumen.expressions.tree import ExpressionNode, FunctionCall, Unary, children
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.routes import HEARD
+from lumen.statechart import Snapshot, Step, step
 
 MAX_ALTERNATIVES = 10
 """How many alternatives are looked at."""

@@ -4,12 +4,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.nesting import behavior_of
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.language.projects import Project
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
+from lumen.statechart.nesting import behavior_of
 
 
 class Gap(NamedTuple):

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.interpreters.statechart import Snapshot
-from lumen.interpreters.statechart.type_checks import fits, type_checks
 from lumen.language.machines import MachineDefinition
 from lumen.language.people import PersonName
+from lumen.statechart import Snapshot
+from lumen.statechart.type_checks import fits, type_checks
 
 
 def forgetful(machine: MachineDefinition, snapshot: Snapshot, person: PersonName) -> Snapshot:
@@ -34,7 +34,7 @@ def forgetful(machine: MachineDefinition, snapshot: Snapshot, person: PersonName
 
 
 def forgetful_data(frozen: Mapping[str, Any], person: PersonName) -> dict[str, Any]:
-    """The same of a snapshot that was frozen (`lumen.interpreters.statechart.serialize`); of what is none, itself."""
+    """The same of a snapshot that was frozen (`lumen.statechart.serialize`); of what is none, itself."""
     found = dict(frozen)
     if "context" in found:
         found["context"] = _values(found["context"], person)

@@ -1,11 +1,11 @@
 """Tells the robot in which style it is alive, and with which gestures it speaks, as the active states say."""
 
 from lumen.interpreters.life import gestures_wanted, style_name
-from lumen.interpreters.statechart import Snapshot
 from lumen.language.gestures import NO_GESTURES, merged
 from lumen.language.life import STILL_STYLE
 from lumen.language.projects import Project
 from lumen.ports import Live, Robot
+from lumen.statechart import Snapshot
 
 REMIND_PERIOD = 5.0
 """How long after the last time the robot is told again [s]: one that was restarted meanwhile has forgotten it."""

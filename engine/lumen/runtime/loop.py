@@ -5,12 +5,10 @@ from datetime import date
 from math import inf
 from typing import Any, Protocol
 
+from lumen.expressions.wall_clock import local_time, moment
 from lumen.interpreters.explaining.pressing import pressed
 from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
 from lumen.interpreters.replay.entries import JumpKind
-from lumen.interpreters.statechart import Step, due
-from lumen.interpreters.statechart.offers import offers
-from lumen.interpreters.wall_clock import local_time, moment
 from lumen.language.approvals import Autonomy
 from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event
@@ -29,6 +27,8 @@ from lumen.runtime.shared_board import SharedBoard
 from lumen.runtime.tracking import LocalTracking, TrackingService
 from lumen.runtime.troubles import RunTrouble, trouble_of_answer, troubles_of_step
 from lumen.runtime.wall_clock_watch import WallClockWatch
+from lumen.statechart import Step, due
+from lumen.statechart.offers import offers
 
 TICK_PERIOD = 0.02
 BRAIN_LOST_AFTER = 5.0

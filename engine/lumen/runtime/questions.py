@@ -9,16 +9,16 @@ from time import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import BusError
-from lumen.interpreters.json_schema import JsonSchema
+from lumen.expressions.json_schema import JsonSchema
 from lumen.interpreters.replay.visits import home_of
 from lumen.interpreters.retrieval.ranking import Weights
-from lumen.interpreters.statechart import Step
 from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.commands import Ask
 from lumen.language.events import Event
 from lumen.language.modules import ANSWERS
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
+from lumen.statechart import Step
 
 if TYPE_CHECKING:
     from lumen.interpreters.retrieval.retriever import Retriever

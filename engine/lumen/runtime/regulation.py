@@ -3,8 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.regulation import Regulator, RouteField
-from lumen.interpreters.statechart import Snapshot
+from lumen.fuzzy.regulation import Regulator, RouteField
 from lumen.language.commands import Command, Start, Track, Volume
 from lumen.language.controllers import MessageBinding
 from lumen.language.events import Event
@@ -12,6 +11,7 @@ from lumen.language.json_paths import schema_at
 from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.runtime.route_inbox import RouteInbox
+from lumen.statechart import Snapshot
 
 
 class Regulated(NamedTuple):

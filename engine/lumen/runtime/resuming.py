@@ -4,13 +4,13 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from lumen.interpreters.migration import MigrationPlan, Refusal, plan
-from lumen.interpreters.statechart import Snapshot, initial, paused, retimed
-from lumen.interpreters.statechart.command_ids import outer_id
-from lumen.interpreters.statechart.type_checks import fits, type_checks
-from lumen.interpreters.statechart.values import awaited
 from lumen.language.commands import Cancel, Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.statechart import Snapshot, initial, paused, retimed
+from lumen.statechart.command_ids import outer_id
+from lumen.statechart.type_checks import fits, type_checks
+from lumen.statechart.values import awaited
 
 LOST_COMMAND_REASON = "the engine was restarted while the command was running"
 

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple, Protocol
 from lumen.errors import LumenError
 from lumen.interpreters.migration import MigrationVerdict, plan
 from lumen.interpreters.replay.entries import How, JumpKind
-from lumen.interpreters.statechart import Snapshot, Step, elapse, initial, step
 from lumen.language.causes import Cause
 from lumen.language.commands import Command
 from lumen.language.events import Event
@@ -16,6 +15,7 @@ from lumen.language.projects import Project
 from lumen.runtime.approvals import Approvals
 from lumen.runtime.best_alternative import best_alternative
 from lumen.runtime.forgetting import forgetful
+from lumen.statechart import Snapshot, Step, elapse, initial, step
 
 _log = logging.getLogger(__name__)
 

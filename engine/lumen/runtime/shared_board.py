@@ -8,14 +8,14 @@ from time import time
 from typing import Any
 
 from lumen.errors import BusError
-from lumen.interpreters.json_schema import JsonSchema
-from lumen.interpreters.statechart import Snapshot
+from lumen.expressions.json_schema import JsonSchema
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.routing_keys import SHARED_KEY, key_of_house
 from lumen.language.shared import SHARED, SHARED_EVENT, SharedKey, SharedKeys
 from lumen.ports import Bus, Message
+from lumen.statechart import Snapshot
 
 RETELL_PERIOD = 10.0
 """How often a robot tells its values though they are as they were [s]: a broker keeps none of them."""

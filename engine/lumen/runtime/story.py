@@ -5,10 +5,7 @@ from dataclasses import replace
 from math import inf
 from typing import Any, NamedTuple, Protocol, assert_never
 
-from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.nesting import active_names, entered_names
-from lumen.interpreters.statechart.property_monitor import Violation, monitors
-from lumen.interpreters.wall_clock import MICROSECONDS, next_moment
+from lumen.expressions.wall_clock import MICROSECONDS, next_moment
 from lumen.language.approvals import Autonomy
 from lumen.language.causes import OPERATOR, VISITOR, Cause, MessageOrigin
 from lumen.language.commands import Ask, Cancel, Command, Do, Play, Publish, Say, Start
@@ -41,6 +38,9 @@ from lumen.runtime.story_observations import StoryObservations, UnmetExpectation
 from lumen.runtime.story_time import story_moment
 from lumen.runtime.troubles import RunTrouble
 from lumen.runtime.visitor import VisitorActor
+from lumen.statechart import Step
+from lumen.statechart.nesting import active_names, entered_names
+from lumen.statechart.property_monitor import Violation, monitors
 
 
 class StoryFailure(NamedTuple):

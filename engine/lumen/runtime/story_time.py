@@ -2,7 +2,7 @@
 
 from datetime import date
 
-from lumen.interpreters.wall_clock import MICROSECONDS, moment, next_moment
+from lumen.expressions.wall_clock import MICROSECONDS, moment, next_moment
 from lumen.language.hours import Schedule
 from lumen.language.stories import Story
 

@@ -6,8 +6,6 @@ from typing import Any
 
 from lumen.errors import BusError
 from lumen.interpreters.migration import MigrationPlan
-from lumen.interpreters.statechart import Snapshot, Step
-from lumen.interpreters.statechart.nesting import active_names, entered_names, flattened_steps
 from lumen.language.causes import Cause
 from lumen.language.command_data import trace_verb, traced
 from lumen.language.commands import Command, Start
@@ -18,6 +16,8 @@ from lumen.ports import Bus
 from lumen.runtime.approvals import HeldEvent
 from lumen.runtime.loop import Observer
 from lumen.runtime.troubles import RunTrouble
+from lumen.statechart import Snapshot, Step
+from lumen.statechart.nesting import active_names, entered_names, flattened_steps
 
 TRACE_ROUTE = "state"
 TRACE_TTL = 10.0

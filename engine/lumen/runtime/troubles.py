@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
-from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.nesting import flattened_steps
 from lumen.language.events import FALLEN, HELD, MISSED, Event
 from lumen.language.machines import MachineDefinition
+from lumen.statechart import Step
+from lumen.statechart.nesting import flattened_steps
 
 TroubleKind = Literal["fall", "dropped", "do", "joint"]
 

@@ -3,9 +3,9 @@
 import time
 from collections.abc import Callable
 
-from lumen.interpreters.statechart import Snapshot
 from lumen.language.causes import Cause
 from lumen.language.events import CLOCK_SET, Event
+from lumen.statechart import Snapshot
 
 TOLERANCE = 1.0
 """How far it may be off [s] before that is said: a tick is late at times, and a simulation slower than real time."""

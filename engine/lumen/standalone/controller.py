@@ -6,9 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
 from lumen.errors import ProjectError
-from lumen.interpreters.arguments import need, need_map, need_numbers, need_path, need_text
-from lumen.interpreters.inference.evaluator import Evaluator
-from lumen.interpreters.inference.explanation import Explanation, explain
+from lumen.fuzzy.evaluator import Evaluator
+from lumen.fuzzy.explanation import Explanation, explain
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import has_errors
 from lumen.loading.controllers import build_controller
@@ -17,6 +16,7 @@ from lumen.loading.document import Document
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.schema import check_schema
 from lumen.loading.single_file import read_document
+from lumen.upkeep.arguments import need, need_map, need_numbers, need_path, need_text
 
 if TYPE_CHECKING:
     import numpy as np

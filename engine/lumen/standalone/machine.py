@@ -9,8 +9,13 @@ from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
 from lumen.clocks.virtual import VirtualClock
 from lumen.errors import UsageError
-from lumen.interpreters.arguments import need, need_map, need_methods, need_path, need_text
-from lumen.interpreters.statechart import (
+from lumen.language import machines
+from lumen.language.events import Event
+from lumen.language.nanoseconds import HALF
+from lumen.loading.derived import derived
+from lumen.loading.standalone import machine_from_dict, machine_from_file
+from lumen.ports import Clock
+from lumen.statechart import (
     Snapshot,
     Step,
     TimerPolicy,
@@ -23,16 +28,11 @@ from lumen.interpreters.statechart import (
     serialize,
     step,
 )
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.json_cursor import plain
-from lumen.interpreters.statechart.stepping import in_full
-from lumen.interpreters.statechart.values import Timer
-from lumen.language import machines
-from lumen.language.events import Event
-from lumen.language.nanoseconds import HALF
-from lumen.loading.derived import derived
-from lumen.loading.standalone import machine_from_dict, machine_from_file
-from lumen.ports import Clock
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.json_cursor import plain
+from lumen.statechart.stepping import in_full
+from lumen.statechart.values import Timer
+from lumen.upkeep.arguments import need, need_map, need_methods, need_path, need_text
 
 if TYPE_CHECKING:
     from typing_extensions import TypeVar

@@ -9,13 +9,13 @@ from lumen.upkeep.lazy_names import lazy
 __all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock", "due", "initial", "step"]
 
 _HOMES = {
-    "lumen.statechart": ("Interpreter", "Machine"),
+    "lumen.standalone.machine": ("Interpreter", "Machine"),
     "lumen.clocks.virtual": ("VirtualClock",),
     "lumen.language.events": ("Event",),
-    "lumen.interpreters.statechart.serialization": ("TimerPolicy", "paused", "retimed", "serialize"),
-    "lumen.interpreters.statechart.stepping": ("due", "elapse", "finished", "initial", "step"),
-    "lumen.interpreters.statechart.deserialization": ("deserialize",),
-    "lumen.interpreters.statechart.values": (
+    "lumen.statechart.serialization": ("TimerPolicy", "paused", "retimed", "serialize"),
+    "lumen.statechart.stepping": ("due", "elapse", "finished", "initial", "step"),
+    "lumen.statechart.deserialization": ("deserialize",),
+    "lumen.statechart.values": (
         "Awaiting",
         "Counters",
         "Fork",

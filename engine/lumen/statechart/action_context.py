@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from lumen.interpreters.expressions import Scope
+from lumen.expressions import Scope
 from lumen.language.commands import BodyCommand, Command
 from lumen.language.events import Event
 

@@ -3,12 +3,12 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
-from lumen.interpreters.statechart.advancing import ActivityContext, ActivityError, Advance, cancel, resumption_of
-from lumen.interpreters.statechart.asking import sentence_of
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.question_position import asks
-from lumen.interpreters.statechart.values import Halted, Within, awaited
 from lumen.language.events import Event
+from lumen.statechart.advancing import ActivityContext, ActivityError, Advance, cancel, resumption_of
+from lumen.statechart.asking import sentence_of
+from lumen.statechart.chart import StateNode
+from lumen.statechart.question_position import asks
+from lumen.statechart.values import Halted, Within, awaited
 
 
 class Activities:

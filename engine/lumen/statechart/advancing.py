@@ -2,11 +2,14 @@
 
 from typing import Literal, Protocol
 
-from lumen.interpreters.expressions import ExpressionError
-from lumen.interpreters.statechart.action_context import ActionContext, ActionError
-from lumen.interpreters.statechart.asking import MAX_SENTENCES, Sentence
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.do_actions import (
+from lumen.expressions import ExpressionError
+from lumen.language.commands import Cancel
+from lumen.language.diagnostics import NodePath
+from lumen.language.events import Event
+from lumen.statechart.action_context import ActionContext, ActionError
+from lumen.statechart.asking import MAX_SENTENCES, Sentence
+from lumen.statechart.chart import StateNode
+from lumen.statechart.do_actions import (
     AskedQuestion,
     AwaitedCommand,
     CompiledAction,
@@ -15,12 +18,9 @@ from lumen.interpreters.statechart.do_actions import (
     ParallelActions,
     TimedWait,
 )
-from lumen.interpreters.statechart.question_position import QuestionPosition, fork
-from lumen.interpreters.statechart.spoken import rest_of
-from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Timer, Within, awaited
-from lumen.language.commands import Cancel
-from lumen.language.diagnostics import NodePath
-from lumen.language.events import Event
+from lumen.statechart.question_position import QuestionPosition, fork
+from lumen.statechart.spoken import rest_of
+from lumen.statechart.values import Awaiting, Fork, Position, Timer, Within, awaited
 
 
 class ActivityContext(ActionContext, Protocol):

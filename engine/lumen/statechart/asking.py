@@ -3,12 +3,12 @@
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions import Scope, compile_expression
-from lumen.interpreters.statechart.action_context import ActionContext, ActionError
+from lumen.expressions import Scope, compile_expression
 from lumen.language.actions import AskQuestion
 from lumen.language.commands import Ask, BodyCommand, Say
 from lumen.language.modules import VISITOR_KEY
 from lumen.language.people import PersonName
+from lumen.statechart.action_context import ActionContext, ActionError
 
 MAX_QUESTION = 1_000
 """Characters of a question; the rest is not asked."""

@@ -3,9 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
-from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
-from lumen.interpreters.statechart.action_context import ActionContext, ActionError
-from lumen.interpreters.statechart.nested_values import with_value
+from lumen.expressions import Scope, compile_expression, compile_guard, compile_template
 from lumen.language.actions import (
     Action,
     AskQuestion,
@@ -29,6 +27,8 @@ from lumen.language.commands import BodyCommand, Do, GoTo, Language, Log, Publis
 from lumen.language.diagnostics import NodePath
 from lumen.language.durations import seconds
 from lumen.language.events import Event
+from lumen.statechart.action_context import ActionContext, ActionError
+from lumen.statechart.nested_values import with_value
 
 ActionFunction: TypeAlias = Callable[[ActionContext], None]
 CompiledBlock: TypeAlias = tuple[tuple[ActionFunction, NodePath], ...]

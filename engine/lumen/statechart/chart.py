@@ -3,17 +3,17 @@
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions import Scope, compile_guard
-from lumen.interpreters.statechart.action_context import ActionContext
-from lumen.interpreters.statechart.blocks import CompiledBlock, compile_block, compile_delay, compile_value
-from lumen.interpreters.statechart.do_actions import CompiledAction, compile_do
-from lumen.interpreters.statechart.hears import RowBlock
-from lumen.interpreters.statechart.type_checks import type_checks
+from lumen.expressions import Scope, compile_guard
 from lumen.language.actions import Template
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
 from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
 from lumen.language.nanoseconds import nanoseconds
+from lumen.statechart.action_context import ActionContext
+from lumen.statechart.blocks import CompiledBlock, compile_block, compile_delay, compile_value
+from lumen.statechart.do_actions import CompiledAction, compile_do
+from lumen.statechart.hears import RowBlock
+from lumen.statechart.type_checks import type_checks
 
 CompiledGuard = Callable[[Scope], bool]
 

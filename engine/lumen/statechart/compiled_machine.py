@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from lumen.interpreters.statechart.chart import Chart
-from lumen.interpreters.statechart.fast_path import FastPaths
-from lumen.interpreters.statechart.plans import MicrostepPlanner
-from lumen.interpreters.talk.hearing import hearing_of
 from lumen.language.machines import MachineDefinition
+from lumen.statechart.chart import Chart
+from lumen.statechart.fast_path import FastPaths
+from lumen.statechart.plans import MicrostepPlanner
+from lumen.talk.hearing import hearing_of
 from lumen.upkeep.garbage import gc_paused
 
 

@@ -1,11 +1,11 @@
 """The timers of `after` whose delay is computed: set when a state is entered, once its `entry` is done."""
 
-from lumen.interpreters.expressions import ExpressionError
-from lumen.interpreters.statechart.action_context import ActionError
-from lumen.interpreters.statechart.chart import ComputedAfter, StateNode
-from lumen.interpreters.statechart.execution_context import ExecutionContext
-from lumen.interpreters.statechart.values import Timer
+from lumen.expressions import ExpressionError
 from lumen.language.nanoseconds import nanoseconds
+from lumen.statechart.action_context import ActionError
+from lumen.statechart.chart import ComputedAfter, StateNode
+from lumen.statechart.execution_context import ExecutionContext
+from lumen.statechart.values import Timer
 
 
 def begin_computed(context: ExecutionContext, node: StateNode) -> None:

@@ -4,8 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from lumen.errors import SnapshotError, UsageError
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.do_actions import (
+from lumen.expressions.wall_clock import zone
+from lumen.language.machines import MachineDefinition, State, StateKind
+from lumen.language.nanoseconds import nanoseconds
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.do_actions import (
     AskedQuestion,
     AwaitedCommand,
     CompiledAction,
@@ -13,9 +16,9 @@ from lumen.interpreters.statechart.do_actions import (
     ParallelActions,
     TimedWait,
 )
-from lumen.interpreters.statechart.json_cursor import JsonCursor
-from lumen.interpreters.statechart.type_checks import TypeCheck, fits, refusal
-from lumen.interpreters.statechart.values import (
+from lumen.statechart.json_cursor import JsonCursor
+from lumen.statechart.type_checks import TypeCheck, fits, refusal
+from lumen.statechart.values import (
     Awaiting,
     Counters,
     Fork,
@@ -26,9 +29,6 @@ from lumen.interpreters.statechart.values import (
     Timer,
     Within,
 )
-from lumen.interpreters.wall_clock import zone
-from lumen.language.machines import MachineDefinition, State, StateKind
-from lumen.language.nanoseconds import nanoseconds
 
 SNAPSHOT_VERSION = 1
 

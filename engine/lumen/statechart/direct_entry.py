@@ -3,17 +3,17 @@
 from collections.abc import Iterator
 
 from lumen.errors import UsageError
-from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.invocations import open_context
-from lumen.interpreters.statechart.macrostep import complete
-from lumen.interpreters.statechart.microstep import microstep
-from lumen.interpreters.statechart.nesting import ID_SEPARATOR
-from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, StateKind, Transition
+from lumen.statechart.chart import Chart, CompiledTransition, StateNode
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.invocations import open_context
+from lumen.statechart.macrostep import complete
+from lumen.statechart.microstep import microstep
+from lumen.statechart.nesting import ID_SEPARATOR
+from lumen.statechart.plans import Configuration
+from lumen.statechart.values import Snapshot, Step
 
 
 def entered_directly(machine: MachineDefinition, snapshot: Snapshot, name: str, event: Event) -> Step:

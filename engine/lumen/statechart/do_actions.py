@@ -4,10 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from lumen.interpreters.expressions import Scope, compile_guard
-from lumen.interpreters.statechart.action_context import ActionContext
-from lumen.interpreters.statechart.asking import Sentence, compile_question, spoken
-from lumen.interpreters.statechart.blocks import ActionFunction, CommandFactory, compile_action, compile_command
+from lumen.expressions import Scope, compile_guard
 from lumen.language.actions import (
     Action,
     AskQuestion,
@@ -24,6 +21,9 @@ from lumen.language.actions import (
 )
 from lumen.language.commands import BodyCommand
 from lumen.language.diagnostics import NodePath
+from lumen.statechart.action_context import ActionContext
+from lumen.statechart.asking import Sentence, compile_question, spoken
+from lumen.statechart.blocks import ActionFunction, CommandFactory, compile_action, compile_command
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,20 +5,20 @@ from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol, Self
 
-from lumen.interpreters.expressions import Scope
-from lumen.interpreters.statechart.action_context import ActionError
-from lumen.interpreters.statechart.activities import Activities
-from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
-from lumen.interpreters.statechart.compiled_machine import CompiledMachine
-from lumen.interpreters.statechart.drawing import draw
-from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.values import MAX_TIMERS, Counters, Halted, Invoked, Snapshot, Step, Timer
+from lumen.expressions import Scope
 from lumen.language.actions import PARENT
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import ARRIVED, LEFT, Event
 from lumen.language.machines import Transition
 from lumen.language.nanoseconds import nanoseconds
+from lumen.statechart.action_context import ActionError
+from lumen.statechart.activities import Activities
+from lumen.statechart.chart import CompiledInvoke, StateNode
+from lumen.statechart.compiled_machine import CompiledMachine
+from lumen.statechart.drawing import draw
+from lumen.statechart.plans import Configuration
+from lumen.statechart.values import MAX_TIMERS, Counters, Halted, Invoked, Snapshot, Step, Timer
 
 _new = tuple.__new__  # a third of the price of Scope(…), Snapshot(…), Step(…)
 

@@ -2,18 +2,18 @@
 
 from collections.abc import Mapping
 
-from lumen.interpreters.message_numbers import number
-from lumen.interpreters.statechart.action_context import ActionError
-from lumen.interpreters.statechart.command_ids import CommandAnswer, answer_of, inner_id, result_of
-from lumen.interpreters.statechart.execution_context import ExecutionContext
-from lumen.interpreters.statechart.macrostep import complete
-from lumen.interpreters.statechart.microstep import take_enabled
-from lumen.interpreters.statechart.schedule_timers import schedule_timer, set_clock
-from lumen.interpreters.statechart.type_checks import fits
-from lumen.interpreters.statechart.values import Step, Timer, awaited
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import CLOCK_SET, Event
+from lumen.language.message_numbers import number
 from lumen.language.shared import SHARED, SHARED_EVENT
+from lumen.statechart.action_context import ActionError
+from lumen.statechart.command_ids import CommandAnswer, answer_of, inner_id, result_of
+from lumen.statechart.execution_context import ExecutionContext
+from lumen.statechart.macrostep import complete
+from lumen.statechart.microstep import take_enabled
+from lumen.statechart.schedule_timers import schedule_timer, set_clock
+from lumen.statechart.type_checks import fits
+from lumen.statechart.values import Step, Timer, awaited
 
 
 def process(context: ExecutionContext, event: Event) -> Step:

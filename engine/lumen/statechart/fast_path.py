@@ -10,15 +10,15 @@ from collections.abc import Callable
 from math import prod
 from typing import Any
 
-from lumen.interpreters.statechart.chart import CompiledTransition
-from lumen.interpreters.statechart.command_ids import result_of
-from lumen.interpreters.statechart.plans import NO_CANDIDATES, Candidates, MicrostepPlanner, make_room
-from lumen.interpreters.statechart.step_code import WrittenStep
-from lumen.interpreters.statechart.step_writer import StepWriter
-from lumen.interpreters.statechart.values import Awaiting, Fork, Snapshot, Step, Within
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, LEFT, Event
 from lumen.language.shared import SHARED_EVENT
+from lumen.statechart.chart import CompiledTransition
+from lumen.statechart.command_ids import result_of
+from lumen.statechart.plans import NO_CANDIDATES, Candidates, MicrostepPlanner, make_room
+from lumen.statechart.step_code import WrittenStep
+from lumen.statechart.step_writer import StepWriter
+from lumen.statechart.values import Awaiting, Fork, Snapshot, Step, Within
 
 MAX_WAYS = 2
 """How many ways through the guards are written into one function; of more, each gets its own when it is gone again."""

@@ -8,9 +8,9 @@ they are asked only if no state has taken anything else.
 from collections.abc import Callable, Mapping
 from functools import partial
 
-from lumen.interpreters.expressions import ExpressionError, Scope
-from lumen.interpreters.talk.hearing import Hearing, Taken, hearing_of, said_in
+from lumen.expressions import ExpressionError, Scope
 from lumen.language.machines import MachineDefinition
+from lumen.talk.hearing import Hearing, Taken, hearing_of, said_in
 
 RowGuard = Callable[[Scope], bool]
 

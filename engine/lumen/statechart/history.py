@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
 
-from lumen.interpreters.statechart.chart import StateNode
 from lumen.language.machines import StateKind
+from lumen.statechart.chart import StateNode
 
 History = Mapping[str, tuple[str, ...]]
 

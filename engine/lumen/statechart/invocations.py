@@ -6,18 +6,18 @@ from copy import deepcopy
 from typing import Any
 
 from lumen.errors import LumenError, UsageError
-from lumen.interpreters.expressions import ExpressionError
-from lumen.interpreters.statechart.chart import CompiledInvoke, StateNode
-from lumen.interpreters.statechart.command_ids import outer_command
-from lumen.interpreters.statechart.compiled_machine import CompiledMachine
-from lumen.interpreters.statechart.execution_context import ExecutionContext, place_after
-from lumen.interpreters.statechart.external_events import process
-from lumen.interpreters.statechart.macrostep import enter_machine, exit_machine
-from lumen.interpreters.statechart.microstep import MAX_MICROSTEPS
-from lumen.interpreters.statechart.type_checks import checked
-from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
+from lumen.expressions import ExpressionError
 from lumen.language.commands import Tell
 from lumen.language.events import Event
+from lumen.statechart.chart import CompiledInvoke, StateNode
+from lumen.statechart.command_ids import outer_command
+from lumen.statechart.compiled_machine import CompiledMachine
+from lumen.statechart.execution_context import ExecutionContext, place_after
+from lumen.statechart.external_events import process
+from lumen.statechart.macrostep import enter_machine, exit_machine
+from lumen.statechart.microstep import MAX_MICROSTEPS
+from lumen.statechart.type_checks import checked
+from lumen.statechart.values import Invoked, Snapshot, Step
 
 INVOKED_MICROSTEP_SHARE = 0.9
 """The part of the microsteps still allowed that an invoked behaviour may take: what is left serves to answer it."""

@@ -1,8 +1,8 @@
 """A macrostep: microsteps until nothing is enabled and the internal queue is empty (SCXML 3.13, `mainEventLoop`)."""
 
-from lumen.interpreters.statechart.execution_context import ExecutionContext
-from lumen.interpreters.statechart.microstep import count_microstep, microstep, take_enabled
-from lumen.interpreters.statechart.values import Step
+from lumen.statechart.execution_context import ExecutionContext
+from lumen.statechart.microstep import count_microstep, microstep, take_enabled
+from lumen.statechart.values import Step
 
 
 def enter_machine(context: ExecutionContext) -> Step:

@@ -3,19 +3,19 @@
 from typing import Any
 
 from lumen.errors import LumenError
-from lumen.interpreters.expressions import ExpressionError
-from lumen.interpreters.statechart.action_context import ActionError
-from lumen.interpreters.statechart.blocks import CompiledBlock
-from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
-from lumen.interpreters.statechart.computed_timers import begin_computed
-from lumen.interpreters.statechart.execution_context import Beginning, ExecutionContext
-from lumen.interpreters.statechart.plans import Candidates, Group, MicrostepPlan
-from lumen.interpreters.statechart.schedule_timers import begin_schedules
-from lumen.interpreters.statechart.values import Timer
+from lumen.expressions import ExpressionError
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.machines import StateKind, Transition
 from lumen.language.nanoseconds import nanoseconds
+from lumen.statechart.action_context import ActionError
+from lumen.statechart.blocks import CompiledBlock
+from lumen.statechart.chart import CompiledGuard, CompiledTransition, StateNode
+from lumen.statechart.computed_timers import begin_computed
+from lumen.statechart.execution_context import Beginning, ExecutionContext
+from lumen.statechart.plans import Candidates, Group, MicrostepPlan
+from lumen.statechart.schedule_timers import begin_schedules
+from lumen.statechart.values import Timer
 
 MAX_SHOWN_TRANSITIONS = 6
 """Transitions of an endless round that its error names."""

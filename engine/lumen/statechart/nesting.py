@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator
 from itertools import compress
 from operator import not_
 
-from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.machines import MachineDefinition
+from lumen.statechart.values import Snapshot, Step
 
 ID_SEPARATOR = "/"
 """Stands between the id of an `invoke` and a state of the behaviour that runs under it."""

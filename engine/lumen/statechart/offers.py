@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from lumen.interpreters.expressions import ExpressionError, Scope, compile_guard
-from lumen.interpreters.expressions.scope import no_draw
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.values import Snapshot
+from lumen.expressions import ExpressionError, Scope, compile_guard
+from lumen.expressions.scope import no_draw
 from lumen.language.machines import MachineDefinition
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.values import Snapshot
 
 
 def offers(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:

@@ -4,9 +4,10 @@ from collections.abc import Callable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from typing import Any, NamedTuple, TypeAlias
 
-from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
-from lumen.interpreters.statechart.history import History, recorded
-from lumen.interpreters.statechart.state_changes import (
+from lumen.language.machines import Transition
+from lumen.statechart.chart import Chart, CompiledTransition, StateNode
+from lumen.statechart.history import History, recorded
+from lumen.statechart.state_changes import (
     StateChange,
     entries,
     entry_order,
@@ -14,8 +15,7 @@ from lumen.interpreters.statechart.state_changes import (
     exits,
     names_of,
 )
-from lumen.interpreters.statechart.state_sets import StateSets, in_final
-from lumen.language.machines import Transition
+from lumen.statechart.state_sets import StateSets, in_final
 
 MAX_CACHE_ENTRIES = 4096
 """How many entries a cache holds before it is emptied: charts with many regions have no end of configurations."""

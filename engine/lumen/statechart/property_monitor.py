@@ -6,12 +6,12 @@ from math import inf
 from typing import NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions import Scope, compile_guard
-from lumen.interpreters.statechart.values import Snapshot
+from lumen.expressions import Scope, compile_guard
 from lumen.language.actions import Expression
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import nanoseconds
 from lumen.language.properties import Property
+from lumen.statechart.values import Snapshot
 
 Holds = Callable[[Snapshot], bool]
 

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from lumen.interpreters.statechart.do_actions import AskedQuestion, CompiledAction, ConditionalAction, ParallelActions
-from lumen.interpreters.statechart.values import Fork, Position, Within, awaited
+from lumen.statechart.do_actions import AskedQuestion, CompiledAction, ConditionalAction, ParallelActions
+from lumen.statechart.values import Fork, Position, Within, awaited
 
 
 class QuestionPosition(NamedTuple):

@@ -4,13 +4,13 @@ Such a timer waits for a moment by the clock on the wall, not for a length of ti
 it is set.
 """
 
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.execution_context import ExecutionContext
-from lumen.interpreters.statechart.values import Timer
-from lumen.interpreters.wall_clock import moment, next_moment, readjusted
+from lumen.expressions.wall_clock import moment, next_moment, readjusted
 from lumen.language.events import Event
 from lumen.language.hours import Schedule
 from lumen.language.nanoseconds import nanoseconds
+from lumen.statechart.chart import StateNode
+from lumen.statechart.execution_context import ExecutionContext
+from lumen.statechart.values import Timer
 
 
 def begin_schedules(context: ExecutionContext, node: StateNode) -> None:

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 from lumen.errors import SnapshotError, UsageError
-from lumen.interpreters.statechart.deserialization import SNAPSHOT_VERSION
-from lumen.interpreters.statechart.json_cursor import plain
-from lumen.interpreters.statechart.values import Awaiting, Fork, Halted, Position, Snapshot, Timer, Within
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import nanoseconds
+from lumen.statechart.deserialization import SNAPSHOT_VERSION
+from lumen.statechart.json_cursor import plain
+from lumen.statechart.values import Awaiting, Fork, Halted, Position, Snapshot, Timer, Within
 
 TimerPolicy = Literal["deadline", "remaining", "restart"]
 

@@ -4,9 +4,9 @@ from collections.abc import Container, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from typing import NamedTuple
 
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.state_sets import in_final
 from lumen.language.machines import StateKind
+from lumen.statechart.chart import StateNode
+from lumen.statechart.state_sets import in_final
 
 
 class StateChange(NamedTuple):

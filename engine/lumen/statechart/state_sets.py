@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 
-from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
-from lumen.interpreters.statechart.history import History
 from lumen.language.machines import StateKind
+from lumen.statechart.chart import Chart, CompiledTransition, StateNode
+from lumen.statechart.history import History
 
 
 class EntrySet(set[StateNode]):

@@ -7,13 +7,7 @@ from functools import partial
 from math import isfinite
 from typing import TypeAlias
 
-from lumen.interpreters.expressions.inlining import scope_needs
-from lumen.interpreters.statechart.asking import compile_question
-from lumen.interpreters.statechart.blocks import alternatives
-from lumen.interpreters.statechart.chart import Chart, StateNode
-from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.step_text import VARIABLES, NotPlainError, Sight, StepText, template_needs
-from lumen.interpreters.statechart.values import MAX_TIMERS
+from lumen.expressions.inlining import scope_needs
 from lumen.language.actions import (
     Action,
     AskQuestion,
@@ -34,6 +28,12 @@ from lumen.language.added_verbs import is_template
 from lumen.language.commands import Do, GoTo, Language
 from lumen.language.machines import Transition
 from lumen.language.nanoseconds import nanoseconds
+from lumen.statechart.asking import compile_question
+from lumen.statechart.blocks import alternatives
+from lumen.statechart.chart import Chart, StateNode
+from lumen.statechart.plans import Configuration
+from lumen.statechart.step_text import VARIABLES, NotPlainError, Sight, StepText, template_needs
+from lumen.statechart.values import MAX_TIMERS
 
 Op: TypeAlias = Callable[["Certain"], None]
 

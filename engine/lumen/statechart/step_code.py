@@ -4,15 +4,18 @@ from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
 from typing import Any, TypeAlias
 
-from lumen.interpreters.expressions import Scope
-from lumen.interpreters.expressions.compiler import code_names
-from lumen.interpreters.expressions.scope import no_draw
-from lumen.interpreters.statechart.activities import placed
-from lumen.interpreters.statechart.advancing import cancelled, resumption_of
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.drawing import draw
-from lumen.interpreters.statechart.nested_values import with_value
-from lumen.interpreters.statechart.values import (
+from lumen.expressions import Scope
+from lumen.expressions.compiler import code_names
+from lumen.expressions.scope import no_draw
+from lumen.language.commands import Command, GoTo, Log, Publish, Say, Start
+from lumen.language.events import Event
+from lumen.language.nanoseconds import nanoseconds
+from lumen.statechart.activities import placed
+from lumen.statechart.advancing import cancelled, resumption_of
+from lumen.statechart.chart import StateNode
+from lumen.statechart.drawing import draw
+from lumen.statechart.nested_values import with_value
+from lumen.statechart.values import (
     Awaiting,
     Counters,
     Fork,
@@ -24,9 +27,6 @@ from lumen.interpreters.statechart.values import (
     Within,
     awaited,
 )
-from lumen.language.commands import Command, GoTo, Log, Publish, Say, Start
-from lumen.language.events import Event
-from lumen.language.nanoseconds import nanoseconds
 
 Positions: TypeAlias = Mapping[str, Within]
 WrittenStep: TypeAlias = Callable[[Snapshot, Event], Step | None]

@@ -6,13 +6,13 @@ from functools import lru_cache, partial
 from math import isfinite
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions import compile_template, split_template
-from lumen.interpreters.expressions.inlining import inlined, scope_needs
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.step_code import WrittenStep, function_of
-from lumen.interpreters.statechart.values import Snapshot
+from lumen.expressions import compile_template, split_template
+from lumen.expressions.inlining import inlined, scope_needs
 from lumen.language.actions import ComputedValue, Expression
 from lumen.language.machines import MachineDefinition
+from lumen.statechart.chart import StateNode
+from lumen.statechart.step_code import WrittenStep, function_of
+from lumen.statechart.values import Snapshot
 
 MAX_LINES = 200
 """Of one function; what would be longer is not written."""

@@ -12,16 +12,16 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TypeAlias
 
-from lumen.interpreters.expressions.inlining import scope_needs
-from lumen.interpreters.statechart.chart import CompiledTransition, StateNode
-from lumen.interpreters.statechart.plans import Candidates, Configuration, Group, MicrostepPlan, MicrostepPlanner
-from lumen.interpreters.statechart.state_changes import StateChange
-from lumen.interpreters.statechart.step_actions import ActionText, Certain, Op
-from lumen.interpreters.statechart.step_code import WrittenStep
-from lumen.interpreters.statechart.step_text import MAX_LINES, NotPlainError, Sight
-from lumen.interpreters.statechart.values import Fork, Position, Within
+from lumen.expressions.inlining import scope_needs
 from lumen.language.actions import AskQuestion, If, Parallel, PlacedAction
 from lumen.language.machines import State, StateKind
+from lumen.statechart.chart import CompiledTransition, StateNode
+from lumen.statechart.plans import Candidates, Configuration, Group, MicrostepPlan, MicrostepPlanner
+from lumen.statechart.state_changes import StateChange
+from lumen.statechart.step_actions import ActionText, Certain, Op
+from lumen.statechart.step_code import WrittenStep
+from lumen.statechart.step_text import MAX_LINES, NotPlainError, Sight
+from lumen.statechart.values import Fork, Position, Within
 
 Enabled: TypeAlias = tuple[CompiledTransition, ...]
 DoPlace: TypeAlias = tuple[str, tuple[PlacedAction, ...], int]

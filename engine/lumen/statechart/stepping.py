@@ -7,19 +7,19 @@ from operator import itemgetter
 from typing import Any
 
 from lumen.errors import LumenError, SnapshotError
-from lumen.interpreters.arguments import need, need_map, need_number, need_text
-from lumen.interpreters.statechart.command_ids import outer_id
-from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
-from lumen.interpreters.statechart.external_events import process
-from lumen.interpreters.statechart.invocations import open_context
-from lumen.interpreters.statechart.macrostep import enter_machine
-from lumen.interpreters.statechart.microstep import MAX_MICROSTEPS
-from lumen.interpreters.statechart.type_checks import checked
-from lumen.interpreters.statechart.values import Snapshot, Step, Timer
-from lumen.interpreters.wall_clock import zone
+from lumen.expressions.wall_clock import zone
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import HALF, in_seconds
+from lumen.statechart.command_ids import outer_id
+from lumen.statechart.compiled_machine import CompiledMachine, compiled
+from lumen.statechart.external_events import process
+from lumen.statechart.invocations import open_context
+from lumen.statechart.macrostep import enter_machine
+from lumen.statechart.microstep import MAX_MICROSTEPS
+from lumen.statechart.type_checks import checked
+from lumen.statechart.values import Snapshot, Step, Timer
+from lumen.upkeep.arguments import need, need_map, need_number, need_text
 
 MAX_RATE = 10_000
 """How many timers may end [1/s]: where each sets others, a tick would have no end."""

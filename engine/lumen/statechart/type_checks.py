@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from lumen.errors import UsageError
-from lumen.interpreters.json_schema import JsonSchema
+from lumen.expressions.json_schema import JsonSchema
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition
 from lumen.language.numbers import is_number

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple, TypeAlias
 
-from lumen.interpreters.talk.folding import read_words
-from lumen.interpreters.talk.patterns import Form, Slot, forms
-from lumen.interpreters.talk.speech import Speech
+from lumen.talk.folding import read_words
+from lumen.talk.patterns import Form, Slot, forms
+from lumen.talk.speech import Speech
 
 NEAR = 5
 """The most words, fillers aside, between a negation and the words that it negates."""

@@ -4,11 +4,11 @@ from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
-from lumen.interpreters.talk.finder import Find, Finder, ReadSentence
-from lumen.interpreters.talk.patterns import Form, Slot, forms
-from lumen.interpreters.talk.speech import WORD_LISTS, Speech
 from lumen.language.json_paths import value_at
 from lumen.language.machines import Answer, Hears, MachineDefinition
+from lumen.talk.finder import Find, Finder, ReadSentence
+from lumen.talk.patterns import Form, Slot, forms
+from lumen.talk.speech import WORD_LISTS, Speech
 
 HEARD = "heard"
 """The event that rows of `hears` wait for; its text is `event.data.result`."""

@@ -10,7 +10,7 @@ from functools import lru_cache
 from itertools import product
 from typing import NamedTuple
 
-from lumen.interpreters.talk.folding import folded
+from lumen.talk.folding import folded
 
 MAX_FORMS = 200
 """The most forms of a pattern."""

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, islice
 from typing import Any, NamedTuple
 
-from lumen.interpreters.talk.finder import Languages
-from lumen.interpreters.talk.hearing import ENTRY, by_language, phrases_in
-from lumen.interpreters.talk.patterns import Slot, forms, written_forms
-from lumen.interpreters.talk.speech import NEGATIONS, NEGATIONS_AFTER, QUESTIONS
 from lumen.language.json_paths import value_at
 from lumen.language.machines import Hears, MachineDefinition
+from lumen.talk.finder import Languages
+from lumen.talk.hearing import ENTRY, by_language, phrases_in
+from lumen.talk.patterns import Slot, forms, written_forms
+from lumen.talk.speech import NEGATIONS, NEGATIONS_AFTER, QUESTIONS
 
 NONSENSE = ("lorem ipsum dolor sit amet", "")
 """Texts that take `else`: no phrase is in them, and the first is too long for a name."""

@@ -5,8 +5,8 @@ They are phrases and answers under reserved names, so a project replaces them as
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from lumen.interpreters.talk.folding import folded
 from lumen.language.machines import Answer
+from lumen.talk.folding import folded
 
 FILLERS, SMALL_WORDS = "fillers", "small_words"
 NEGATIONS, NEGATIONS_AFTER, CONTRASTS = "negations", "negations_after", "contrasts"

@@ -2,11 +2,11 @@
 
 from lumen.app.parts.part import Part
 from lumen.app.services import Services
-from lumen.interpreters.statechart import Step
 from lumen.language.commands import Do, Start
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
 from lumen_sprayer.settings import Sprayer
 
 

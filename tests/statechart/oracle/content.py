@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions import Scope, compile_expression, compile_guard, compile_template
+from lumen.expressions import Scope, compile_expression, compile_guard, compile_template
 from lumen.language.actions import Assign, CancelSend, ComputedValue, Expression, If, LogText, PlacedAction, Raise, Send
 from lumen.language.commands import Command, Log, Play, Start
 from lumen.language.diagnostics import NodePath

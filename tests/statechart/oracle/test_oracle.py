@@ -7,9 +7,9 @@ import pytest
 from hypothesis import HealthCheck, given, seed, settings
 
 from lumen.errors import LumenError
-from lumen.interpreters.statechart import Snapshot, Step, due, initial, step
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
+from lumen.statechart import Snapshot, Step, due, initial, step
 from tests.statechart.oracle.algorithm import Oracle
 from tests.statechart.oracle.content import RestlessError
 from tests.statechart.oracle.generating import Event as Happening

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
 
-from lumen.interpreters.statechart import Step
 from lumen.language.fleet import FleetMeasure
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
 
 
 class MeasureCounter(Observer):

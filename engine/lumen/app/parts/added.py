@@ -6,13 +6,13 @@ from typing import Any, TypeVar
 
 from lumen.app.parts.part import Part
 from lumen.feature import Feature, PartRow, described, distribution_of
-from lumen.interpreters.statechart import Step
 from lumen.language.commands import Command, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.broken_features import faulty, shown
 from lumen.runtime.loop import Observer
 from lumen.runtime.troubles import RunTrouble
+from lumen.statechart import Step
 
 T = TypeVar("T")
 _log = logging.getLogger(__name__)

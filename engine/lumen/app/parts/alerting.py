@@ -10,7 +10,6 @@ from lumen.app.alerts.falls import FallWatch
 from lumen.app.parts.brain import ENGINE, RUN_BEFORE
 from lumen.app.parts.part import Part
 from lumen.buses.validated import ValidatedBus
-from lumen.interpreters.statechart import Step
 from lumen.language.alerts import Alerts
 from lumen.language.commands import Command
 from lumen.language.events import Event
@@ -19,6 +18,7 @@ from lumen.ports import BlockableBus, UsesBroker
 from lumen.runtime.loop import Observer
 from lumen.runtime.presence import BRAIN, ROBOT_PART, Presence, unique_parts
 from lumen.runtime.resuming import FreshStart, Resumption
+from lumen.statechart import Step
 
 BROKER_PATIENCE = 5.0
 """How long a broker may be away before that is told [s]: it comes back from a restart within that."""

@@ -22,8 +22,6 @@ from lumen.app.request_checks import RequestChecks
 from lumen.app.status import LastReload, status_of
 from lumen.app.step_memory import StepMemory
 from lumen.errors import BusError, LumenError
-from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.modules import EARS
@@ -48,6 +46,8 @@ from lumen.robots.person_hold import StoppedBy
 from lumen.robots.robot_routes import TEXT_ROUTE
 from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
+from lumen.statechart.direct_entry import entered_directly
 
 DIRECT_ENTRY = "operator.goto"
 """The event of a step that an operator wanted."""

@@ -11,12 +11,12 @@ from lumen.app.reload.validation_worker import load_apart
 from lumen.errors import LumenError, ProjectError
 from lumen.interpreters.changes import changes
 from lumen.interpreters.migration import Refusal
-from lumen.interpreters.statechart import deserialize
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
 from lumen.runtime.crash_counter import MAX_CRASHES
 from lumen.runtime.resuming import FreshStart, Resumption, resume
 from lumen.runtime.snapshot_store import SNAPSHOT_VERSION, SnapshotStore, StoredSnapshot
+from lumen.statechart import deserialize
 
 LATELY = 600.0
 """How old a snapshot may be to be gone on with [s]: after that, whoever spoke with the robot has left."""

@@ -6,11 +6,11 @@ from lumen.app.reload.migration_preview import MigrationPreview, preview
 from lumen.interpreters.changes import live
 from lumen.interpreters.migration import Refusal
 from lumen.interpreters.migration.identity import Identity
-from lumen.interpreters.statechart.type_checks import type_checks, type_name
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.rules.on_request import RELOAD_FORGETS, RELOAD_MOVES, RELOAD_REFUSED
+from lumen.statechart.type_checks import type_checks, type_name
 
 BOUND = 10_000
 

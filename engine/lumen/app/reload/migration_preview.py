@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from lumen.app.exploring import outside
 from lumen.interpreters.exploration.search import StateSpaceSearch, leaves
 from lumen.interpreters.migration import MigrationDelay, MigrationPlan, MigrationVerdict, plan
-from lumen.interpreters.statechart import Snapshot
 from lumen.language.projects import Project
 from lumen.runtime.story_time import story_epoch
+from lumen.statechart import Snapshot
 
 
 @dataclass(frozen=True)

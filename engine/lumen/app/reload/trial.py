@@ -1,8 +1,8 @@
 """Saved files that are tried for one visitor."""
 
 from lumen.interpreters.replay.visits import home_of
-from lumen.interpreters.statechart import Snapshot
 from lumen.language.projects import Project
+from lumen.statechart import Snapshot
 
 
 class Trial:

@@ -13,7 +13,6 @@ from lumen.app.reload.validation_worker import FileJudge
 from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.interpreters.changes import Change, Risk, changes
-from lumen.interpreters.statechart.compiled_machine import prepare
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.language.replay_check import ReplayCheck
@@ -21,6 +20,7 @@ from lumen.language.stories import Story
 from lumen.loading.files import fingerprint
 from lumen.loading.project_folders import STORIES
 from lumen.runtime.watcher import SavedFiles
+from lumen.statechart.compiled_machine import prepare
 
 _log = logging.getLogger(__name__)
 

@@ -6,14 +6,14 @@ from typing import Any
 
 from lumen.app.rehearsal import Rehearsal, rehearse
 from lumen.interpreters.replay.against import noticed
-from lumen.interpreters.statechart import Step
-from lumen.interpreters.statechart.nesting import active_names, entered_names
 from lumen.language.command_data import command_data
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
+from lumen.statechart.nesting import active_names, entered_names
 
 
 @dataclass

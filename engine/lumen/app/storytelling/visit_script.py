@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 from lumen.interpreters.added_verbs import usable_verbs
 from lumen.interpreters.replay.entries import JournalInput
 from lumen.interpreters.replay.visits import RecordedVisit
-from lumen.interpreters.statechart.command_ids import result_of
 from lumen.language.command_data import started
 from lumen.language.controller_events import controller_events
 from lumen.language.events import CLOCK_SET, Event
@@ -25,6 +24,7 @@ from lumen.language.stories import (
 )
 from lumen.language.verbs import VERBS
 from lumen.runtime.visitor import APPROACH_DISTANCE, SPEECH_ROUTE, VISITOR_SPEED
+from lumen.statechart.command_ids import result_of
 
 FACE_ROUTE = "face"
 GONE = 3.0

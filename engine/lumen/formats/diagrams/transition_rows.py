@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from lumen.interpreters.expressions import ExpressionError, parse_expression, unparse
-from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, Logic
+from lumen.expressions import ExpressionError, parse_expression, unparse
+from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, Logic
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition

@@ -1,6 +1,6 @@
 """The common part of ECMAScript and of our expressions, both ways: what conditions and values in statecharts use.
 
-Both are read into the tree of `lumen.interpreters.expressions`; what ECMAScript has of its own stands in it as signs
+Both are read into the tree of `lumen.expressions`; what ECMAScript has of its own stands in it as signs
 (`===`, `typeof`) and as calls of methods (`.trim`, the object being the first argument).
 """
 

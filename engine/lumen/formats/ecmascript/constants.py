@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from lumen.interpreters.expressions.scope import MAX_INT, MIN_INT
-from lumen.interpreters.expressions.tree import ExpressionNode, Identifier, ListLiteral, Literal, MapLiteral
+from lumen.expressions.scope import MAX_INT, MIN_INT
+from lumen.expressions.tree import ExpressionNode, Identifier, ListLiteral, Literal, MapLiteral
 
 
 def constant(tree: ExpressionNode, otherwise: Any) -> Any:

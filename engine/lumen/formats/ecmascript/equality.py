@@ -1,11 +1,7 @@
 """ECMAScript's equality in our language: of values, of what is missing, and of what may be."""
 
-from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND
-from lumen.formats.ecmascript.known_fields import is_data, negated
-from lumen.formats.ecmascript.script_tokens import ScriptError
-from lumen.formats.ecmascript.translation import Translation
-from lumen.interpreters.expressions.kinds import LIST, MAP, NULL
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.kinds import LIST, MAP, NULL
+from lumen.expressions.tree import (
     Binary,
     ExpressionNode,
     FieldAccess,
@@ -16,6 +12,10 @@ from lumen.interpreters.expressions.tree import (
     Unary,
     path_of,
 )
+from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND
+from lumen.formats.ecmascript.known_fields import is_data, negated
+from lumen.formats.ecmascript.script_tokens import ScriptError
+from lumen.formats.ecmascript.translation import Translation
 
 EVENT, HAPPENED = Identifier("_event"), FunctionCall("has", (FieldAccess(Identifier("event"), "name"),))
 """An event as a whole, and that there is one: before the first `_event` is undefined (SCXML 5.10.1)."""

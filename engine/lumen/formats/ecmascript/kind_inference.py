@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.interpreters.expressions.function_table import functions
-from lumen.interpreters.expressions.kinds import BOOLEAN, LIST, MAP, NUMBER, TEXT, kind_of
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.function_table import functions
+from lumen.expressions.kinds import BOOLEAN, LIST, MAP, NUMBER, TEXT, kind_of
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     ExpressionNode,

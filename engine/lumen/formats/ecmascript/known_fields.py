@@ -1,6 +1,6 @@
 """Which fields of an event are known to be there: ECMAScript's undefined is a missing field here."""
 
-from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, Logic, Unary, path_of
+from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, Logic, Unary, path_of
 
 
 def negated(node: ExpressionNode) -> ExpressionNode:

@@ -2,11 +2,8 @@
 
 import re
 
-from lumen.formats.ecmascript.kind_inference import is_float
-from lumen.formats.ecmascript.script_tokens import ScriptError
-from lumen.formats.ecmascript.translation import Translation
-from lumen.interpreters.expressions.kinds import LIST, NUMBER, TEXT
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.kinds import LIST, NUMBER, TEXT
+from lumen.expressions.tree import (
     Binary,
     ExpressionNode,
     FieldAccess,
@@ -15,6 +12,9 @@ from lumen.interpreters.expressions.tree import (
     ListLiteral,
     Literal,
 )
+from lumen.formats.ecmascript.kind_inference import is_float
+from lumen.formats.ecmascript.script_tokens import ScriptError
+from lumen.formats.ecmascript.translation import Translation
 
 SIGN_FUNCTIONS = {"contained": "in", "same": "=="}
 """Calls that stand for a sign where ECMAScript's own is another one for texts and lists, or for lists and numbers."""

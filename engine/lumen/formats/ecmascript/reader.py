@@ -4,16 +4,10 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from lumen.formats.ecmascript.equality import EVENT, HAPPENED, equality, guarded
-from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND, is_float, kind
-from lumen.formats.ecmascript.known_fields import known, negated
-from lumen.formats.ecmascript.methods import LUMEN_FUNCTIONS, SIGN_FUNCTIONS, method
-from lumen.formats.ecmascript.script_parser import parse_script
-from lumen.formats.ecmascript.script_tokens import ScriptError
-from lumen.interpreters.expressions import unparse
-from lumen.interpreters.expressions.kinds import BOOLEAN, MAP, NUMBER, TEXT
-from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH, MAX_INT, MAX_TREE_DEPTH, MIN_INT
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions import unparse
+from lumen.expressions.kinds import BOOLEAN, MAP, NUMBER, TEXT
+from lumen.expressions.scope import MAX_EXPRESSION_LENGTH, MAX_INT, MAX_TREE_DEPTH, MIN_INT
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     ExpressionNode,
@@ -28,6 +22,12 @@ from lumen.interpreters.expressions.tree import (
     Unary,
     walk,
 )
+from lumen.formats.ecmascript.equality import EVENT, HAPPENED, equality, guarded
+from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND, is_float, kind
+from lumen.formats.ecmascript.known_fields import known, negated
+from lumen.formats.ecmascript.methods import LUMEN_FUNCTIONS, SIGN_FUNCTIONS, method
+from lumen.formats.ecmascript.script_parser import parse_script
+from lumen.formats.ecmascript.script_tokens import ScriptError
 
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _FALSY = ListLiteral((Literal(None), Literal(False), Literal(0), Literal("")))

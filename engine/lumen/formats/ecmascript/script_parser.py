@@ -3,10 +3,10 @@
 from collections.abc import Collection
 from typing import ClassVar
 
+from lumen.expressions.pratt import CONSTANTS, PrattParser
+from lumen.expressions.tokens import Token
+from lumen.expressions.tree import ExpressionNode, Literal
 from lumen.formats.ecmascript.script_tokens import ScriptError, tokenize_script
-from lumen.interpreters.expressions.pratt import CONSTANTS, PrattParser
-from lumen.interpreters.expressions.tokens import Token
-from lumen.interpreters.expressions.tree import ExpressionNode, Literal
 
 _FOREIGN = {
     "function": "functions", "new": "`new`", "instanceof": "`instanceof`", "=": "assignments", "++": "`++`",

@@ -3,8 +3,8 @@
 import re
 from math import isinf
 
-from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH
-from lumen.interpreters.expressions.tokens import Token
+from lumen.expressions.scope import MAX_EXPRESSION_LENGTH
+from lumen.expressions.tokens import Token
 from lumen.loading.yaml_scalars import MAX_DIGITS
 
 _TOKEN = re.compile(

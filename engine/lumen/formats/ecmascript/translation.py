@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from lumen.interpreters.expressions.tree import ExpressionNode
+from lumen.expressions.tree import ExpressionNode
 
 
 class Translation(Protocol):

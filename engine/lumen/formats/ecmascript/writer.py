@@ -4,13 +4,10 @@ import re
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from lumen.formats.ecmascript.kind_inference import is_float, kind
-from lumen.formats.ecmascript.methods import EQUIVALENT_METHODS
-from lumen.formats.ecmascript.script_tokens import ScriptError
-from lumen.interpreters.expressions import parse_expression, unparse
-from lumen.interpreters.expressions.kinds import LIST, MAP, TEXT
-from lumen.interpreters.expressions.readings import as_written
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions import parse_expression, unparse
+from lumen.expressions.kinds import LIST, MAP, TEXT
+from lumen.expressions.readings import as_written
+from lumen.expressions.tree import (
     Binary,
     Conditional,
     ExpressionNode,
@@ -25,6 +22,9 @@ from lumen.interpreters.expressions.tree import (
     Unary,
     path_of,
 )
+from lumen.formats.ecmascript.kind_inference import is_float, kind
+from lumen.formats.ecmascript.methods import EQUIVALENT_METHODS
+from lumen.formats.ecmascript.script_tokens import ScriptError
 
 _METHODS = {ours: theirs for theirs, ours in EQUIVALENT_METHODS.items()}
 _PREFIX = re.compile(r"\^((?:\\[^\w\s]|[\w\s])+)", re.ASCII)

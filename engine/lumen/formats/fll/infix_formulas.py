@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from typing import ClassVar, NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions import ExpressionNode, parse_expression, unparse
-from lumen.interpreters.expressions.pratt import PrattParser
-from lumen.interpreters.expressions.tokens import Token
-from lumen.interpreters.expressions.tree import Binary, Conditional, FunctionCall, Identifier, Literal, Logic, Unary
-from lumen.interpreters.inference.formulas import FORMULA_FUNCTIONS
+from lumen.expressions import ExpressionNode, parse_expression, unparse
+from lumen.expressions.pratt import PrattParser
+from lumen.expressions.tokens import Token
+from lumen.expressions.tree import Binary, Conditional, FunctionCall, Identifier, Literal, Logic, Unary
+from lumen.fuzzy.formulas import FORMULA_FUNCTIONS
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][\w.]*)"

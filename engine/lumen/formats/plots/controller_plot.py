@@ -6,9 +6,9 @@ from itertools import chain
 from math import isfinite, isnan
 
 from lumen.formats.plots.sheet import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
-from lumen.interpreters.inference.arithmetic import NUMBERS
-from lumen.interpreters.inference.memberships import membership
-from lumen.interpreters.inference.survey import Survey, asked, resting
+from lumen.fuzzy.arithmetic import NUMBERS
+from lumen.fuzzy.memberships import membership
+from lumen.fuzzy.survey import Survey, asked, resting
 from lumen.language.controllers import VALUE_TERMS, ControllerDefinition, Variable
 
 POINTS, ACROSS = 321, 41

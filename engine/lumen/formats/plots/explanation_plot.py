@@ -2,7 +2,7 @@
 
 from lumen.formats.plots.controller_plot import axis, memberships
 from lumen.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet
-from lumen.interpreters.inference.explanation import Concluded, Explanation
+from lumen.fuzzy.explanation import Concluded, Explanation
 from lumen.language.controllers import ControllerDefinition, Variable
 
 MAX_RULE_LENGTH = 60

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from lumen.expressions import unparse
 from lumen.formats.behavior_data import ActionData, quoted
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.durations import duration, milliseconds
@@ -15,7 +16,6 @@ from lumen.formats.scxml.data_model import ScxmlDataModel, written
 from lumen.formats.scxml.log_templates import plain_template, template_of
 from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
 from lumen.formats.xml_elements import XmlElement
-from lumen.interpreters.expressions import unparse
 
 PROCESSORS = ("", "scxml", "http://www.w3.org/TR/scxml/#SCXMLEventProcessor", "http://www.w3.org/TR/scxml/")
 _NOT_CONSTANT = object()

@@ -5,14 +5,14 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from lumen.expressions import parse_expression, unparse
+from lumen.expressions.tree import Literal
 from lumen.formats.behavior_data import plain_action, plain_value
 from lumen.formats.conversion_findings import ExportReport
 from lumen.formats.durations import duration
 from lumen.formats.ecmascript import ScriptError, Vocabulary, write_expression
 from lumen.formats.scxml.log_templates import expression_of
 from lumen.formats.scxml.xml_tags import XmlTag
-from lumen.interpreters.expressions import parse_expression, unparse
-from lumen.interpreters.expressions.tree import Literal
 from lumen.language.actions import (
     Assign,
     CancelSend,

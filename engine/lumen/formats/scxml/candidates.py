@@ -4,10 +4,9 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from lumen.formats.behavior_data import TransitionData, single
-from lumen.interpreters.expressions import parse_expression, unparse
-from lumen.interpreters.expressions.scope import MAX_EXPRESSION_LENGTH, MAX_TREE_DEPTH
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions import parse_expression, unparse
+from lumen.expressions.scope import MAX_EXPRESSION_LENGTH, MAX_TREE_DEPTH
+from lumen.expressions.tree import (
     Binary,
     ExpressionNode,
     FieldAccess,
@@ -17,6 +16,7 @@ from lumen.interpreters.expressions.tree import (
     Logic,
     walk,
 )
+from lumen.formats.behavior_data import TransitionData, single
 
 
 def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[TransitionData], None]) -> dict[str, Any]:

@@ -4,6 +4,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from lumen.expressions import unparse
+from lumen.expressions.kinds import kind_of
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.ecmascript import ScriptError, ScriptNames, parse_script, read_value
 from lumen.formats.ecmascript.constants import constant
@@ -12,8 +14,6 @@ from lumen.formats.foreign_json import foreign_json
 from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree
 from lumen.formats.unused_names import unused_name
 from lumen.formats.xml_elements import XmlElement
-from lumen.interpreters.expressions import unparse
-from lumen.interpreters.expressions.kinds import kind_of
 
 _UNFIT = re.compile(r"\W+", re.ASCII)
 _NOTHING = object()

@@ -1,8 +1,8 @@
 """The condition that a row of `hears` becomes in SCXML: `hears(_event.data.result, 'not dance') && (its guard)`."""
 
+from lumen.expressions import unparse
+from lumen.expressions.tree import Literal
 from lumen.formats.ecmascript import ScriptError
-from lumen.interpreters.expressions import unparse
-from lumen.interpreters.expressions.tree import Literal
 
 HEARS = "hears"
 _AND, _END = " && (", ")"

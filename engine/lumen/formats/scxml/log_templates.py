@@ -2,14 +2,14 @@
 
 import re
 
+from lumen.expressions import split_template, unparse
+from lumen.expressions.kinds import TEXT
+from lumen.expressions.templates import Placeholder
+from lumen.expressions.tree import Binary, ExpressionNode, Literal
 from lumen.formats.ecmascript import ScriptError, ScriptNames, Vocabulary, parse_script, write_expression
 from lumen.formats.ecmascript.kind_inference import kind
 from lumen.formats.ecmascript.reader import ScriptTranslator, printed
 from lumen.formats.xml_elements import XmlElement
-from lumen.interpreters.expressions import split_template, unparse
-from lumen.interpreters.expressions.kinds import TEXT
-from lumen.interpreters.expressions.templates import Placeholder
-from lumen.interpreters.expressions.tree import Binary, ExpressionNode, Literal
 
 
 def template_of(element: XmlElement, names: ScriptNames) -> str:

@@ -5,13 +5,13 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from lumen.expressions.kinds import kind_of
 from lumen.formats.behavior_data import ActionData, TransitionData, quoted
 from lumen.formats.conversion_findings import ConversionFindings
 from lumen.formats.durations import MAX_DELAY, duration
 from lumen.formats.xstate.json_source import JsonSource
 from lumen.formats.xstate.known import losses
 from lumen.formats.xstate.names import XStateNames
-from lumen.interpreters.expressions.kinds import kind_of
 from lumen.language.actions import PARENT
 from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.numbers import is_number

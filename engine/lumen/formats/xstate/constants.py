@@ -3,9 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from lumen.interpreters.expressions import ExpressionError, parse_expression
-from lumen.interpreters.expressions.readings import as_written
-from lumen.interpreters.expressions.tree import Literal
+from lumen.expressions import ExpressionError, parse_expression
+from lumen.expressions.readings import as_written
+from lumen.expressions.tree import Literal
 from lumen.language.actions import ComputedValue, Expression
 
 

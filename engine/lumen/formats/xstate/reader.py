@@ -15,10 +15,10 @@ from lumen.formats.xstate.known import STATE_KINDS, is_version_4, losses
 from lumen.formats.xstate.names import XStateNames
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.formats.xstate.transition_reader import XStateTransitionReader
-from lumen.interpreters.talk.hearing import HEARD
 from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.language.machines import RESUME_WORDS
 from lumen.language.numbers import is_number
+from lumen.talk.hearing import HEARD
 
 _MACHINE = ("types", "events", "phrases", "answers", "lists", "properties", "renamed")
 

@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from lumen.expressions.readings import as_written
 from lumen.formats.behavior_data import (
     plain_action,
     plain_block,
@@ -17,7 +18,6 @@ from lumen.formats.heard_rows import LOST_ELSEWHERE, as_guard, key_of
 from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD, HEARS_GUARD
 from lumen.formats.xstate.constants import constant
 from lumen.formats.xstate.descriptors import EventDescriptors
-from lumen.interpreters.expressions.readings import as_written
 from lumen.language.actions import Expression, PlacedAction, Template
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import Answer, Hears, Invoke, MachineDefinition, State, StateKind, Transition

@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
+from lumen.expressions.readings import as_written
 from lumen.interpreters.changes.actions import block_changes, paired
 from lumen.interpreters.changes.change import Change, Risk
 from lumen.interpreters.changes.formatting import code, names, seconds
-from lumen.interpreters.expressions.readings import as_written
 from lumen.language.actions import Expression, Template
 from lumen.language.machines import State, Transition
 

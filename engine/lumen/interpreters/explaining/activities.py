@@ -2,18 +2,18 @@
 
 from collections.abc import Iterator
 
+from lumen.expressions import Scope
+from lumen.expressions.scope import no_draw
 from lumen.interpreters.explaining.conditions import first_false
 from lumen.interpreters.explaining.history import StepHistory
 from lumen.interpreters.explaining.insides import within
 from lumen.interpreters.explaining.names import PlacedDeed
 from lumen.interpreters.explaining.refusals import Reason
 from lumen.interpreters.explaining.words import prefix_of
-from lumen.interpreters.expressions import Scope
-from lumen.interpreters.expressions.scope import no_draw
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.values import Snapshot, awaited
 from lumen.language.actions import AskQuestion, If, Parallel, PlacedAction
 from lumen.language.diagnostics import NodePath
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.values import Snapshot, awaited
 
 
 def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:

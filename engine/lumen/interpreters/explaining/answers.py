@@ -15,8 +15,8 @@ from lumen.interpreters.explaining.names import KnownNames, state_named
 from lumen.interpreters.explaining.refusals import ORDER, Reason, TransitionRefusals
 from lumen.interpreters.explaining.ways import deeds, ways
 from lumen.interpreters.explaining.words import of_event
-from lumen.interpreters.statechart.nesting import active_names
 from lumen.language.iso_time import iso_time
+from lumen.statechart.nesting import active_names
 
 LOOKED_BACK = 60.0
 """How long before the moment asked about something may have been decided against what is asked for [s]."""

@@ -3,9 +3,8 @@
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from lumen.interpreters.exploration.samples import SAMPLE_TEXT, phrases_at, texts_for
-from lumen.interpreters.expressions import ExpressionError, Scope, compile_expression, parse_expression, unparse
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions import ExpressionError, Scope, compile_expression, parse_expression, unparse
+from lumen.expressions.tree import (
     Binary,
     ExpressionNode,
     FunctionCall,
@@ -15,6 +14,7 @@ from lumen.interpreters.expressions.tree import (
     path_of,
     walk,
 )
+from lumen.interpreters.exploration.samples import SAMPLE_TEXT, phrases_at, texts_for
 from lumen.language.machines import MachineDefinition
 
 ValuePath = tuple[str, ...]

@@ -22,12 +22,12 @@ from lumen.interpreters.explaining.words import (
     ordinal,
     prefix_of,
 )
-from lumen.interpreters.statechart.command_ids import CommandAnswer, answer_of, inner_id
-from lumen.interpreters.statechart.values import Timer
 from lumen.language.commands import Command, Start
 from lumen.language.diagnostics import Place
 from lumen.language.events import HELD, Event
 from lumen.language.machines import MachineDefinition, Transition
+from lumen.statechart.command_ids import CommandAnswer, answer_of, inner_id
+from lumen.statechart.values import Timer
 
 LinkWalk: TypeAlias = Iterator["Link | partial[LinkWalk]"]
 """Links, and last, perhaps, how it goes on: chains are longer than Python's stack is high."""

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.explaining.words import prefix_of
-from lumen.interpreters.statechart.values import Invoked, Snapshot
 from lumen.language.events import Event
 from lumen.language.json_paths import with_value
+from lumen.statechart.values import Invoked, Snapshot
 
 ProposedChange = Mapping[str, Any]
 """By how expressions call it, its other value: `event.data.result`, `context.tries`; in what runs as `quiz`,

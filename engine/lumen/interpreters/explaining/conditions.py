@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions import ExpressionError, Scope, compile_guard, parse_expression, unparse
-from lumen.interpreters.expressions.readings import looks_at_what_was_heard, readings
-from lumen.interpreters.expressions.tree import ExpressionNode, Logic, path_of, walk
+from lumen.expressions import ExpressionError, Scope, compile_guard, parse_expression, unparse
+from lumen.expressions.readings import looks_at_what_was_heard, readings
+from lumen.expressions.tree import ExpressionNode, Logic, path_of, walk
 from lumen.language.actions import Expression
 
 

@@ -6,12 +6,12 @@ More may be named than is needed: it is asked what could have decided, not what 
 from collections.abc import Callable, Iterator
 from functools import partial
 
+from lumen.expressions import names
 from lumen.interpreters.explaining.history import RecordedStep, StepHistory
 from lumen.interpreters.exploration.expression_uses import of_block, of_transition
-from lumen.interpreters.expressions import names
-from lumen.interpreters.statechart.command_ids import answer_of, inner_id
-from lumen.interpreters.statechart.values import Snapshot
 from lumen.language.machines import MachineDefinition
+from lumen.statechart.command_ids import answer_of, inner_id
+from lumen.statechart.values import Snapshot
 
 
 def needed(history: StepHistory, number: int) -> tuple[int, ...]:

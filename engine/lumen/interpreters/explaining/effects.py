@@ -7,8 +7,8 @@ from lumen.errors import UsageError
 from lumen.interpreters.explaining.history import StepHistory
 from lumen.interpreters.explaining.names import KnownNames, same_text, state_named
 from lumen.interpreters.explaining.words import of_command
-from lumen.interpreters.statechart.nesting import entered_names
 from lumen.language.commands import Command, Publish, Say, Start, Tell
+from lumen.statechart.nesting import entered_names
 
 
 class Effect(NamedTuple):

@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple
 
+from lumen.expressions import Scope
 from lumen.interpreters.explaining.conditions import holds
-from lumen.interpreters.expressions import Scope
-from lumen.interpreters.talk.finder import Find
-from lumen.interpreters.talk.hearing import Dropped, hearing_of, said_in
 from lumen.language.machines import Hears, MachineDefinition, Transition
+from lumen.talk.finder import Find
+from lumen.talk.hearing import Dropped, hearing_of, said_in
 
 RowFate = Literal["taken", "not found", "guard", "better row"] | Dropped
 """The fate of a row; one that its state takes is `taken`, even if another state goes first."""

@@ -5,11 +5,11 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from lumen.interpreters.explaining.tracing import Deed, Trace, retaken
-from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.commands import Start
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
+from lumen.statechart.values import Snapshot, Step
 
 OPERATOR_GOTO = "operator.goto"
 """The event of a step that a person wanted, whatever the guards said."""

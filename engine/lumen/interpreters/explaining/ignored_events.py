@@ -3,20 +3,20 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from lumen.expressions import Scope
+from lumen.expressions.readings import readings
+from lumen.expressions.scope import no_draw
 from lumen.interpreters.explaining.hearing import heard_row, heard_rows
-from lumen.interpreters.expressions import Scope
-from lumen.interpreters.expressions.readings import readings
-from lumen.interpreters.expressions.scope import no_draw
-from lumen.interpreters.statechart.chart import Chart, StateNode
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.nesting import flattened_steps
-from lumen.interpreters.statechart.plans import Configuration
-from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.actions import Expression
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, StateKind
 from lumen.language.shared import SHARED_EVENT
+from lumen.statechart.chart import Chart, StateNode
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.nesting import flattened_steps
+from lumen.statechart.plans import Configuration
+from lumen.statechart.values import Snapshot, Step
 
 _TIMED = ("after.", "at.")
 _OWN = (*_TIMED, "done.do.", "done.state.", "done.invoke.", "error.do.", "error.invoke.")

@@ -1,10 +1,10 @@
 """What runs within a behaviour, by the ids of its invokes: `hint@quiz`; its snapshot, its machine, its timers."""
 
 from lumen.interpreters.explaining.history import RecordedStep
-from lumen.interpreters.statechart.command_ids import inner_id
-from lumen.interpreters.statechart.values import Snapshot, Timer
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
+from lumen.statechart.command_ids import inner_id
+from lumen.statechart.values import Snapshot, Timer
 
 
 def ended_timer(before: Snapshot | None, event: Event) -> Timer | None:

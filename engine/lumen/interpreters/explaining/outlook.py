@@ -4,18 +4,18 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+from lumen.expressions import Scope
+from lumen.expressions.scope import no_draw
 from lumen.interpreters.explaining.conditions import awaits_event, parts, values
 from lumen.interpreters.explaining.hearing import heard_row
 from lumen.interpreters.explaining.words import of_transition, prefix_of, shown
-from lumen.interpreters.expressions import Scope
-from lumen.interpreters.expressions.scope import no_draw
-from lumen.interpreters.statechart.chart import CompiledTransition
-from lumen.interpreters.statechart.command_ids import outer_id
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.plans import Configuration, in_order
-from lumen.interpreters.statechart.values import Snapshot, Timer
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
+from lumen.statechart.chart import CompiledTransition
+from lumen.statechart.command_ids import outer_id
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.plans import Configuration, in_order
+from lumen.statechart.values import Snapshot, Timer
 
 
 class GuardTruth(NamedTuple):

@@ -7,14 +7,14 @@ from lumen.errors import LumenError
 from lumen.interpreters.explaining.names import machines_in
 from lumen.interpreters.explaining.outlook import Running, running, ways_out
 from lumen.interpreters.explaining.words import prefix_of
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.stepping import step
-from lumen.interpreters.statechart.values import Snapshot, Step
 from lumen.language.buttons import Button
 from lumen.language.causes import Cause
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.stepping import step
+from lumen.statechart.values import Snapshot, Step
 
 MAX_NAMED_STATES = 3
 """Of the states in which a button works."""

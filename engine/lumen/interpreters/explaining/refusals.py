@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from lumen.errors import LumenError
+from lumen.expressions import Scope, parse_expression
 from lumen.interpreters.explaining.changes import ProposedChange, StepSituation
 from lumen.interpreters.explaining.conditions import GuardPart, first_false
 from lumen.interpreters.explaining.hearing import HeardRow, heard_row
@@ -14,16 +15,15 @@ from lumen.interpreters.explaining.searching import Happens, literals_in, smalle
 from lumen.interpreters.explaining.tracing import Moment
 from lumen.interpreters.explaining.words import awaited, of_transition, prefix_of
 from lumen.interpreters.exploration.samples import samples
-from lumen.interpreters.expressions import Scope, parse_expression
-from lumen.interpreters.statechart.chart import CompiledTransition
-from lumen.interpreters.statechart.direct_entry import entered_directly
-from lumen.interpreters.statechart.stepping import due
-from lumen.interpreters.statechart.values import Snapshot
-from lumen.interpreters.talk.hearing import said_in
-from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.diagnostics import Place
 from lumen.language.events import Event, robot_events
 from lumen.language.machines import MachineDefinition, Transition
+from lumen.statechart.chart import CompiledTransition
+from lumen.statechart.direct_entry import entered_directly
+from lumen.statechart.stepping import due
+from lumen.statechart.values import Snapshot
+from lumen.talk.hearing import said_in
+from lumen.talk.sample_sentences import of_row
 
 Because = Literal["inactive", "no-event", "preempted", "unheard", "guard"]
 ORDER: tuple[Because, ...] = ("guard", "unheard", "preempted", "no-event", "inactive")

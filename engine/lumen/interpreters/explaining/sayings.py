@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.interpreters.explaining.sentences import ExplainedRow, ExplainedSentence, explained, first_context
-from lumen.interpreters.talk.folding import folded
-from lumen.interpreters.talk.hearing import phrases_in
 from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.sayings import Saying, SayingSet
+from lumen.talk.folding import folded
+from lumen.talk.hearing import phrases_in
 
 
 class TriedSaying(NamedTuple):

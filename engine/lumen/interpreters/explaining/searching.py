@@ -5,21 +5,21 @@ from itertools import combinations, islice, product
 from typing import Any
 
 from lumen.errors import LumenError
+from lumen.expressions import Scope, parse_expression
+from lumen.expressions.tree import Literal, walk
 from lumen.interpreters.explaining.boundaries import boundaries
 from lumen.interpreters.explaining.changes import ProposedChange, StepSituation
 from lumen.interpreters.explaining.conditions import holds
 from lumen.interpreters.explaining.tracing import Moment, retaken
 from lumen.interpreters.explaining.words import prefix_of
-from lumen.interpreters.expressions import Scope, parse_expression
-from lumen.interpreters.expressions.tree import Literal, walk
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.nesting import entered_names
-from lumen.interpreters.statechart.type_checks import fits
-from lumen.interpreters.talk.hearing import said_in
-from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.actions import Expression
 from lumen.language.json_paths import with_value
 from lumen.language.machines import MachineDefinition, Transition
+from lumen.statechart.chart import StateNode
+from lumen.statechart.nesting import entered_names
+from lumen.statechart.type_checks import fits
+from lumen.talk.hearing import said_in
+from lumen.talk.sample_sentences import of_row
 
 MAX_TRIED = 40
 """Steps that are taken to find a change."""

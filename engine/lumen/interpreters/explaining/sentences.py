@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions import ExpressionError, Scope, compile_expression, compile_guard
-from lumen.interpreters.statechart.chart import CompiledGuard, CompiledTransition, StateNode
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.plans import in_order
-from lumen.interpreters.statechart.state_changes import names_of
-from lumen.interpreters.talk.hearing import HEARD, Dropped, hearing_of
+from lumen.expressions import ExpressionError, Scope, compile_expression, compile_guard
 from lumen.language.machines import Hears, MachineDefinition, State, Transition
+from lumen.statechart.chart import CompiledGuard, CompiledTransition, StateNode
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.plans import in_order
+from lumen.statechart.state_changes import names_of
+from lumen.talk.hearing import HEARD, Dropped, hearing_of
 
 _DROPPED: Mapping[Dropped, str] = {
     "": "",

@@ -2,12 +2,15 @@
 
 from typing import Any
 
-from lumen.interpreters.expressions import compile_guard
-from lumen.interpreters.statechart.asking import compile_question, spoken
-from lumen.interpreters.statechart.blocks import ActionFunction, CommandFactory, CompiledBlock, compile_action
-from lumen.interpreters.statechart.chart import Chart
-from lumen.interpreters.statechart.compiled_machine import CompiledMachine
-from lumen.interpreters.statechart.do_actions import (
+from lumen.expressions import compile_guard
+from lumen.language.actions import Action, AskQuestion, If, Parallel, PlacedAction
+from lumen.language.diagnostics import NodePath
+from lumen.language.machines import MachineDefinition
+from lumen.statechart.asking import compile_question, spoken
+from lumen.statechart.blocks import ActionFunction, CommandFactory, CompiledBlock, compile_action
+from lumen.statechart.chart import Chart
+from lumen.statechart.compiled_machine import CompiledMachine
+from lumen.statechart.do_actions import (
     AskedQuestion,
     AwaitedCommand,
     CompiledAction,
@@ -17,11 +20,8 @@ from lumen.interpreters.statechart.do_actions import (
     TimedWait,
     compile_do,
 )
-from lumen.interpreters.statechart.fast_path import FastPaths
-from lumen.interpreters.statechart.plans import MicrostepPlanner
-from lumen.language.actions import Action, AskQuestion, If, Parallel, PlacedAction
-from lumen.language.diagnostics import NodePath
-from lumen.language.machines import MachineDefinition
+from lumen.statechart.fast_path import FastPaths
+from lumen.statechart.plans import MicrostepPlanner
 
 
 def traced(definition: MachineDefinition) -> CompiledMachine:

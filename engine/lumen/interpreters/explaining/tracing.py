@@ -3,22 +3,22 @@
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Self
 
+from lumen.expressions import Scope
+from lumen.expressions.scope import no_draw
 from lumen.interpreters.explaining.traced_machine import traced
-from lumen.interpreters.expressions import Scope
-from lumen.interpreters.expressions.scope import no_draw
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.command_ids import answer_of, outer_command, outer_id
-from lumen.interpreters.statechart.compiled_machine import CompiledMachine
-from lumen.interpreters.statechart.execution_context import ExecutionContext, InvocationHandler
-from lumen.interpreters.statechart.external_events import process
-from lumen.interpreters.statechart.invocations import Invocations
-from lumen.interpreters.statechart.macrostep import enter_machine
-from lumen.interpreters.statechart.plans import NO_CANDIDATES, Candidates, Configuration, Group
-from lumen.interpreters.statechart.values import Snapshot, Step, Timer
 from lumen.language.commands import BodyCommand, Command
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
+from lumen.statechart.chart import StateNode
+from lumen.statechart.command_ids import answer_of, outer_command, outer_id
+from lumen.statechart.compiled_machine import CompiledMachine
+from lumen.statechart.execution_context import ExecutionContext, InvocationHandler
+from lumen.statechart.external_events import process
+from lumen.statechart.invocations import Invocations
+from lumen.statechart.macrostep import enter_machine
+from lumen.statechart.plans import NO_CANDIDATES, Candidates, Configuration, Group
+from lumen.statechart.values import Snapshot, Step, Timer
 
 
 class Moment(NamedTuple):

@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 from lumen.interpreters.explaining.names import PlacedDeed, deeds_in, machines_in, same_text, state_named
 from lumen.interpreters.explaining.words import prefix_of
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.history import History
-from lumen.interpreters.statechart.state_sets import StateSets
 from lumen.language.actions import SayText
 from lumen.language.machines import MachineDefinition, StateKind, Transition
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.history import History
+from lumen.statechart.state_sets import StateSets
 
 
 class Way(NamedTuple):

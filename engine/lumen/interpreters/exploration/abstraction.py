@@ -5,14 +5,14 @@ from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from lumen.expressions import names
+from lumen.expressions.tree import FunctionCall, Literal, path_of, walk
 from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_state, property_trees
 from lumen.interpreters.exploration.history_uses import history_uses
 from lumen.interpreters.exploration.liveness import Liveness
-from lumen.interpreters.expressions import names
-from lumen.interpreters.expressions.tree import FunctionCall, Literal, path_of, walk
-from lumen.interpreters.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 from lumen.language.machines import MachineDefinition
 from lumen.language.numbers import is_number
+from lumen.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 
 MAX_ITEMS_COMPARED = 4
 """Of a list or map in the context more is not looked at."""

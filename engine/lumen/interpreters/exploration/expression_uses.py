@@ -4,8 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
-from lumen.interpreters.expressions import ExpressionError, ExpressionNode, names, parse_expression, split_template
-from lumen.interpreters.talk.hearing import ENTRY
+from lumen.expressions import ExpressionError, ExpressionNode, names, parse_expression, split_template
 from lumen.language.actions import (
     AskQuestion,
     Assign,
@@ -21,6 +20,7 @@ from lumen.language.actions import (
 )
 from lumen.language.machines import MachineDefinition, State, Transition
 from lumen.language.properties import Property, conditions_of
+from lumen.talk.hearing import ENTRY
 
 
 class ExpressionUse(NamedTuple):

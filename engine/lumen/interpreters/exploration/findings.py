@@ -6,9 +6,9 @@ from typing import Literal
 
 from lumen.interpreters.exploration.search import SearchNode, StateSpaceSearch, leaves, reaching
 from lumen.interpreters.exploration.stimuli import Stimulus
-from lumen.interpreters.statechart.nesting import ID_SEPARATOR, innermost_names
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition, StateKind
+from lumen.statechart.nesting import ID_SEPARATOR, innermost_names
 
 FindingKind = Literal["dead-end", "no-way-back", "restless", "property"]
 

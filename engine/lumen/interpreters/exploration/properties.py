@@ -12,13 +12,13 @@ from lumen.errors import LumenError
 from lumen.interpreters.exploration.findings import ExplorationFinding, PathStep
 from lumen.interpreters.exploration.search import SearchNode, StateSpaceSearch, leaves, still
 from lumen.interpreters.exploration.stimuli import Stimulus, StimulusKind
-from lumen.interpreters.statechart import Snapshot, step
-from lumen.interpreters.statechart.nesting import innermost_names
-from lumen.interpreters.statechart.property_monitor import holds
 from lumen.language.commands import BodyCommand
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import nanoseconds
 from lumen.language.properties import Property
+from lumen.statechart import Snapshot, step
+from lumen.statechart.nesting import innermost_names
+from lumen.statechart.property_monitor import holds
 
 MAX_QUIET_STEPS = 2_000
 """How many steps are looked at from one configuration on."""

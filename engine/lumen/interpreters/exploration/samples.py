@@ -6,9 +6,9 @@ from math import prod
 from types import MappingProxyType
 from typing import Any
 
-from lumen.interpreters.expressions.kinds import FaultError
-from lumen.interpreters.expressions.phrases import phrases_of
-from lumen.interpreters.expressions.tree import (
+from lumen.expressions.kinds import FaultError
+from lumen.expressions.phrases import phrases_of
+from lumen.expressions.tree import (
     Binary,
     ExpressionNode,
     FunctionCall,

@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 from lumen.errors import LumenError
 from lumen.interpreters.exploration.abstraction import Abstraction, ConfigurationKey
 from lumen.interpreters.exploration.stimuli import Stimulus, StimulusFinder
-from lumen.interpreters.statechart import Snapshot, Step, initial, step
-from lumen.interpreters.statechart.command_ids import answer_of
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.property_monitor import holds
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
+from lumen.statechart import Snapshot, Step, initial, step
+from lumen.statechart.command_ids import answer_of
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.property_monitor import holds
 
 
 class SearchNode:

@@ -6,22 +6,22 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from lumen.errors import ExpressionError
+from lumen.expressions import ExpressionNode, Scope, compile_expression, names, unparse
+from lumen.expressions.function_table import clock_functions
+from lumen.expressions.tree import Binary, FunctionCall, children
 from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_block, of_transition
 from lumen.interpreters.exploration.samples import FieldPath, samples
-from lumen.interpreters.expressions import ExpressionNode, Scope, compile_expression, names, unparse
-from lumen.interpreters.expressions.function_table import clock_functions
-from lumen.interpreters.expressions.tree import Binary, FunctionCall, children
-from lumen.interpreters.statechart import Snapshot, Timer
-from lumen.interpreters.statechart.command_ids import outer_id
-from lumen.interpreters.statechart.compiled_machine import CompiledMachine, compiled
-from lumen.interpreters.statechart.values import awaited
-from lumen.interpreters.talk.hearing import hearing_of, said_in
-from lumen.interpreters.talk.sample_sentences import of_row
 from lumen.language.added_verbs import usual_result
 from lumen.language.commands import BodyCommand, GoTo
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import ARRIVED, Event
 from lumen.language.machines import Hears, MachineDefinition, Transition
+from lumen.statechart import Snapshot, Timer
+from lumen.statechart.command_ids import outer_id
+from lumen.statechart.compiled_machine import CompiledMachine, compiled
+from lumen.statechart.values import awaited
+from lumen.talk.hearing import hearing_of, said_in
+from lumen.talk.sample_sentences import of_row
 
 FAILURE_REASON = "a simulated failure"
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from lumen.errors import ExpressionError
-from lumen.interpreters.expressions import Scope, compile_guard, parse_expression
-from lumen.interpreters.expressions.tree import Binary, ExpressionNode, FieldAccess, Identifier, children, walk
+from lumen.expressions import Scope, compile_guard, parse_expression
+from lumen.expressions.tree import Binary, ExpressionNode, FieldAccess, Identifier, children, walk
 from lumen.language.diagnostics import did_you_mean
 
 BEFORE = "before"

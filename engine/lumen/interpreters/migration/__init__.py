@@ -7,9 +7,9 @@ whether a `do` under way can go on, in `activity_compatibility`; context, timers
 from lumen.interpreters.migration.migrating import migrated
 from lumen.interpreters.migration.situation import MigrationOptions
 from lumen.interpreters.migration.verdicts import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal
-from lumen.interpreters.statechart import Snapshot
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
+from lumen.statechart import Snapshot
 
 __all__ = ["MigrationDelay", "MigrationPlan", "MigrationVerdict", "Refusal", "migrate", "plan"]
 

@@ -1,7 +1,7 @@
 """Whether a `do` that is under way can go on as it is written now."""
 
-from lumen.interpreters.statechart.values import Awaiting, Fork, Position, Within
 from lumen.language.actions import Action, AskQuestion, If, Parallel, PlacedAction, SayText, Wait
+from lumen.statechart.values import Awaiting, Fork, Position, Within
 
 
 def can_continue(before: tuple[PlacedAction, ...], after: tuple[PlacedAction, ...], position: Within) -> bool:

@@ -6,18 +6,18 @@ from typing import Any, NamedTuple
 
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.migration.rounds import carried_round
-from lumen.interpreters.statechart.chart import Chart, StateNode
-from lumen.interpreters.statechart.computed_timers import computed_delay
-from lumen.interpreters.statechart.execution_context import ExecutionContext
-from lumen.interpreters.statechart.history import History
-from lumen.interpreters.statechart.schedule_timers import schedule_timer
-from lumen.interpreters.statechart.state_sets import EntrySet, StateSets
-from lumen.interpreters.statechart.type_checks import fits, type_name
-from lumen.interpreters.statechart.values import Halted, Timer
 from lumen.language.actions import Template
 from lumen.language.machines import StateKind
 from lumen.language.nanoseconds import nanoseconds
 from lumen.language.shared import SHARED
+from lumen.statechart.chart import Chart, StateNode
+from lumen.statechart.computed_timers import computed_delay
+from lumen.statechart.execution_context import ExecutionContext
+from lumen.statechart.history import History
+from lumen.statechart.schedule_timers import schedule_timer
+from lumen.statechart.state_sets import EntrySet, StateSets
+from lumen.statechart.type_checks import fits, type_name
+from lumen.statechart.values import Halted, Timer
 
 
 class CarriedContext(NamedTuple):

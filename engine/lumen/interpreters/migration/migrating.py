@@ -7,14 +7,14 @@ from lumen.interpreters.migration import carried_state
 from lumen.interpreters.migration.placing import Placement, Unplaced, is_legal
 from lumen.interpreters.migration.situation import MigrationOptions, Situation
 from lumen.interpreters.migration.verdicts import MigrationPlan, MigrationVerdict, Refusal
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.command_ids import outer_command
-from lumen.interpreters.statechart.execution_context import Beginning, ExecutionContext
-from lumen.interpreters.statechart.invocations import Invocations
-from lumen.interpreters.statechart.macrostep import complete
-from lumen.interpreters.statechart.microstep import microstep
-from lumen.interpreters.statechart.values import Invoked, Snapshot, Step
 from lumen.language.machines import MachineDefinition
+from lumen.statechart.chart import StateNode
+from lumen.statechart.command_ids import outer_command
+from lumen.statechart.execution_context import Beginning, ExecutionContext
+from lumen.statechart.invocations import Invocations
+from lumen.statechart.macrostep import complete
+from lumen.statechart.microstep import microstep
+from lumen.statechart.values import Invoked, Snapshot, Step
 
 
 def migrated(

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from lumen.interpreters.migration.identity import Identity
-from lumen.interpreters.statechart.chart import Chart, CompiledTransition, StateNode
-from lumen.interpreters.statechart.history import History
-from lumen.interpreters.statechart.state_sets import EntrySet, StateSets
 from lumen.language.machines import StateKind, Transition
+from lumen.statechart.chart import Chart, CompiledTransition, StateNode
+from lumen.statechart.history import History
+from lumen.statechart.state_sets import EntrySet, StateSets
 
 
 class Placement(NamedTuple):

@@ -8,10 +8,10 @@ from lumen.interpreters.migration.activity_compatibility import can_continue
 from lumen.interpreters.migration.identity import Identity
 from lumen.interpreters.migration.placing import Placement, Unplaced, place
 from lumen.interpreters.migration.verdicts import MigrationDelay, Refusal
-from lumen.interpreters.statechart.chart import StateNode
-from lumen.interpreters.statechart.compiled_machine import compiled
-from lumen.interpreters.statechart.values import Snapshot
 from lumen.language.machines import MachineDefinition, StateKind
+from lumen.statechart.chart import StateNode
+from lumen.statechart.compiled_machine import compiled
+from lumen.statechart.values import Snapshot
 
 
 class MigrationOptions(NamedTuple):

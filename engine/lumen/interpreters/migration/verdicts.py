@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from lumen.interpreters.statechart import Snapshot
 from lumen.language.commands import Command
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
+from lumen.statechart import Snapshot
 
 
 class MigrationPlan(NamedTuple):

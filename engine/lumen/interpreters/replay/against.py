@@ -15,8 +15,6 @@ from lumen.interpreters.explaining.tracing import retaken
 from lumen.interpreters.migration import MigrationPlan, plan
 from lumen.interpreters.replay.entries import JournalInput, JournalJump
 from lumen.interpreters.replay.visits import RecordedVisit, home_of
-from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, elapse, step
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.added_verbs import usual_result
 from lumen.language.command_data import command_data, started
 from lumen.language.commands import BodyCommand, Command, Start
@@ -24,6 +22,8 @@ from lumen.language.diagnostics import Place
 from lumen.language.events import Event
 from lumen.language.nanoseconds import HALF
 from lumen.language.projects import Project
+from lumen.statechart import Snapshot, Step, deserialize, due, elapse, step
+from lumen.statechart.direct_entry import entered_directly
 
 Duration = Callable[[Project, BodyCommand], float]
 """How long a command takes [s] where nobody knows how long it took."""

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Set
 from typing import Any
 from zlib import crc32
 
-from lumen.interpreters.statechart import Snapshot, Step
 from lumen.language.command_data import command_data
+from lumen.statechart import Snapshot, Step
 
 _encode = json.JSONEncoder(sort_keys=True, separators=(",", ":"), default=lambda value: _plain(value)).encode
 

@@ -11,10 +11,10 @@ from lumen.interpreters.migration import MigrationPlan, plan
 from lumen.interpreters.replay.against import Duration, OtherPlay
 from lumen.interpreters.replay.entries import HOWS, JournalInput, JournalJump, RecordedEntry, entry_data
 from lumen.interpreters.replay.replaying import Replayer
-from lumen.interpreters.statechart import Snapshot, Step
 from lumen.language.command_data import command_data
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.statechart import Snapshot, Step
 
 ProjectSource = Callable[[str, str], Project | None]
 """The bundle of a hash with that behaviour, None where it was not kept."""

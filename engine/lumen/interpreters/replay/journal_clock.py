@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from datetime import datetime, time, timedelta
 
+from lumen.expressions.wall_clock import zone
 from lumen.interpreters.replay.entries import LATEST, JournalJump, RecordedEntry
-from lumen.interpreters.wall_clock import zone
 from lumen.language.events import CLOCK_SET
 
 

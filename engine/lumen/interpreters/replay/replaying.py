@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 from lumen.errors import LumenError, SnapshotError
 from lumen.interpreters.replay.digest import StepDigest
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
-from lumen.interpreters.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
-from lumen.interpreters.statechart.direct_entry import entered_directly
 from lumen.language.causes import Cause
 from lumen.language.command_data import command_data
 from lumen.language.machines import MachineDefinition
+from lumen.statechart import Snapshot, Step, deserialize, due, initial, serialize, step
+from lumen.statechart.direct_entry import entered_directly
 
 MachineSource = Callable[[str, str], MachineDefinition | None]
 """The machine of a behaviour in the bundle of a hash, None where it was not kept."""

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from lumen.errors import LumenError
 from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.interpreters.replay.journal_clock import JournalClock
-from lumen.interpreters.statechart import initial
 from lumen.language.machines import MachineDefinition, StateKind
+from lumen.statechart import initial
 
 DROPPED = "dropped timer"
 """After it timers may be overdue, which then come in an order that no files would repeat."""

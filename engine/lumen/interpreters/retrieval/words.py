@@ -5,7 +5,7 @@ from functools import cache
 
 import snowballstemmer
 
-from lumen.interpreters.talk.folding import unbroken
+from lumen.talk.folding import unbroken
 
 STEMMERS = {"en": "english", "id": "indonesian", "de": "german", "fr": "french", "es": "spanish", "it": "italian",
             "nl": "dutch", "pt": "portuguese"}  # fmt: skip

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.interpreters.json_schema import JsonSchema
+from lumen.expressions.json_schema import JsonSchema
 from lumen.language.modules import ANSWERS
 from lumen.language.projects import Project
 from lumen.modules.answers.allowance import Allowance

@@ -4,17 +4,17 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
-from lumen.interpreters.expressions.parser import parse_expression
-from lumen.interpreters.expressions.tree import FunctionCall, Literal, path_of, walk
-from lumen.interpreters.statechart.nesting import resolutions
-from lumen.interpreters.talk.finder import Finder
-from lumen.interpreters.talk.folding import APOSTROPHES, folded, words
-from lumen.interpreters.talk.hearing import phrases_in
-from lumen.interpreters.talk.patterns import Slot, forms, slots_of
-from lumen.interpreters.talk.speech import TABLES, WORD_LISTS, Speech
+from lumen.expressions.parser import parse_expression
+from lumen.expressions.tree import FunctionCall, Literal, path_of, walk
 from lumen.language.machines import MachineDefinition, State
 from lumen.language.projects import Project
 from lumen.language.stories import Speak
+from lumen.statechart.nesting import resolutions
+from lumen.talk.finder import Finder
+from lumen.talk.folding import APOSTROPHES, folded, words
+from lumen.talk.hearing import phrases_in
+from lumen.talk.patterns import Slot, forms, slots_of
+from lumen.talk.speech import TABLES, WORD_LISTS, Speech
 
 MAX_SENTENCES = 1_000
 """The bound on sentences of one phrase: its forms, with the entries of lists in their slots."""

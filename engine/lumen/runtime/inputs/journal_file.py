@@ -10,9 +10,9 @@ import orjson
 
 from lumen.errors import JournalError
 from lumen.interpreters.replay.entries import RecordedEntry, entry_data, read_entry
-from lumen.interpreters.talk.hearing import MATCHER
 from lumen.loading.regular_files import read_regular
 from lumen.runtime.inputs.frames import unpack
+from lumen.talk.hearing import MATCHER
 
 JOURNAL_VERSION = 1
 JOURNAL_SUFFIX = ".journal"

@@ -7,11 +7,11 @@ from lumen.errors import SnapshotError
 from lumen.interpreters.replay.digest import StepDigest
 from lumen.interpreters.replay.entries import How, JournalInput, JournalJump, JumpKind
 from lumen.interpreters.replay.visits import home_of
-from lumen.interpreters.statechart import Snapshot, Step, serialize
 from lumen.language.command_data import command_data
 from lumen.language.commands import Command
 from lumen.language.projects import Project
 from lumen.runtime.inputs.journal_file import line_of
+from lumen.statechart import Snapshot, Step, serialize
 
 KEYFRAME_PERIOD = 60.0
 """How often it is written where the behaviour stands [s of the exhibition], besides each time it has come home."""

@@ -11,8 +11,6 @@ from typing import Any, BinaryIO
 
 from lumen.errors import ModuleError
 from lumen.interpreters.replay.entries import How, JumpKind
-from lumen.interpreters.statechart import Snapshot, Step
-from lumen.interpreters.talk.hearing import MATCHER
 from lumen.language.commands import Command
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
@@ -22,6 +20,8 @@ from lumen.runtime.inputs.journal_folder import JournalFolder
 from lumen.runtime.inputs.journal_pen import JournalPen, Jumped, Stepped
 from lumen.runtime.inputs.journal_tail import JournalTail
 from lumen.runtime.inputs.redaction import redact
+from lumen.statechart import Snapshot, Step
+from lumen.talk.hearing import MATCHER
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING = 20_000

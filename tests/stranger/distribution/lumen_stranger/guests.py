@@ -2,9 +2,9 @@
 
 from lumen.app.parts.part import Part
 from lumen.app.services import Services
-from lumen.interpreters.statechart import Step
 from lumen.language.people import PersonName
 from lumen.runtime.loop import Observer
+from lumen.statechart import Step
 
 FORGOTTEN: list[PersonName] = []
 """Whom this process forgot."""
