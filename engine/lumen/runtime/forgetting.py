@@ -34,7 +34,7 @@ def forgetful(machine: MachineDefinition, snapshot: Snapshot, person: PersonName
 
 
 def forgetful_data(frozen: Mapping[str, Any], person: PersonName) -> dict[str, Any]:
-    """The same of a snapshot that was frozen (`lumen.statechart.serialize`); of what is none, itself."""
+    """Do the same for the data of a snapshot (`lumen.statechart.serialize`); leave other data unchanged."""
     found = dict(frozen)
     if "context" in found:
         found["context"] = _values(found["context"], person)

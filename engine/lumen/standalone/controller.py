@@ -1,4 +1,4 @@
-"""Fuzzy controllers from files and dicts: evaluate them, and explain the result."""
+"""Fuzzy controllers from files and dicts: evaluate them, and explain the result; `lumen.fuzzy` offers the class."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -21,8 +21,6 @@ from lumen.upkeep.arguments import need, need_map, need_numbers, need_path, need
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
-
-__all__ = ["Controller", "Evaluator", "Explanation"]
 
 
 class Controller(ControllerDefinition):

@@ -1,4 +1,4 @@
-"""Statecharts from files and dicts, and a thin shell that runs one: `Machine`, `initial`, `step`, `Interpreter`."""
+"""Statecharts from files and dicts, and a thin shell that runs one; `lumen.statechart` offers both classes."""
 
 from collections.abc import Callable, Mapping
 from copy import deepcopy
@@ -26,7 +26,6 @@ from lumen.statechart import (
     initial,
     retimed,
     serialize,
-    step,
 )
 from lumen.statechart.compiled_machine import compiled
 from lumen.statechart.json_cursor import plain
@@ -50,9 +49,6 @@ _SOON = 2 * HALF
 
 def _unobserved(_: Step) -> None:
     """Nobody looks on."""
-
-
-__all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock", "due", "initial", "step"]
 
 
 class Machine(machines.MachineDefinition):

@@ -1,7 +1,7 @@
 """The common part of ECMAScript and of our expressions, both ways: what conditions and values in statecharts use.
 
-Both are read into the tree of `lumen.expressions`; what ECMAScript has of its own stands in it as signs
-(`===`, `typeof`) and as calls of methods (`.trim`, the object being the first argument).
+Both are read into the tree of `lumen.expressions`, which holds the rest of ECMAScript as signs (`===`, `typeof`) and as
+calls of methods (`.trim`, the object being the first argument).
 """
 
 from lumen.formats.ecmascript.reader import ScriptNames, ScriptTranslator, read_condition, read_value
