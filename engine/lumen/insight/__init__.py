@@ -1,0 +1,1 @@
+"""Why and why not, replay, exploration, differences and migration, all of it pure."""
