@@ -23,13 +23,13 @@ import lumen
 from lumen.app.rehearsal import rehearse
 from lumen.app.replaying.other_files import against
 from lumen.app.replaying.replay_report import replayed
-from lumen.interpreters.replay.entries import RecordedEntry
+from lumen.insight.replay.entries import RecordedEntry
+from lumen.journal.journal_file import read_journal
+from lumen.journal.journal_folder import JournalFolder
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.runtime.inputs.journal_file import read_journal
-from lumen.runtime.inputs.journal_folder import JournalFolder
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.loop import Observer
 from lumen.runtime.runtime import Runtime
 from lumen.runtime.watcher import SWITCH_INTERVAL

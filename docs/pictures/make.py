@@ -31,11 +31,11 @@ from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
 from lumen.fuzzy import Controller
-from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Posture, Walk
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.loading.lending import model_files
+from lumen.motion.trajectories import Trajectory
 from lumen.ports import Image as Frame
 from lumen.ports import Perform, Sense
 from lumen.robots.simulation import SimulatedRobot, available

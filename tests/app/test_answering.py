@@ -5,9 +5,9 @@ from typing import Any
 
 from lumen.app.answering import AnsweringThread
 from lumen.buses.memory import MemoryBus
+from lumen.journal.journal_folder import JournalFolder
+from lumen.journal.journal_writer import JournalWriter
 from lumen.ports import Message
-from lumen.runtime.inputs.journal_folder import JournalFolder
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from tests.waiting import until
 
 

@@ -12,7 +12,7 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.setup import Setup
 from lumen.cli.transcript import Transcript
 from lumen.clocks.simulated import SimulatedClock
-from lumen.interpreters.migration import MigrationPlan
+from lumen.insight.migration import MigrationPlan
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.robots.recording import RecordingRobot

@@ -15,8 +15,8 @@ from lumen.cli.answers import why_lines, why_not_lines
 from lumen.cli.main import main
 from lumen.cli.moments import moment
 from lumen.errors import UsageError
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.people import PersonName
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from tests.tables import for_each
 
 LINK = {"kind", "text", "at", "file", "line", "id", "values"}

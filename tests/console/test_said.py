@@ -15,7 +15,7 @@ from selenium.webdriver.common.keys import Keys
 from lumen.app.new_saying import DAY_FILE
 from lumen.console.day import Day, day_of
 from lumen.console.kept_days import KeptDays
-from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry, entry_data
+from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry, entry_data
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.loading.standalone import machine_from_dict

@@ -11,7 +11,7 @@ import lumen
 from lumen.app.new_passage import write_passage
 from lumen.console.day import day_of
 from lumen.errors import UsageError
-from lumen.interpreters.replay.entries import JournalInput
+from lumen.insight.replay.entries import JournalInput
 from lumen.language.command_data import command_data
 from lumen.language.commands import Ask, Start
 from lumen.language.events import Event

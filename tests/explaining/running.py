@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.explaining import RecordedStep
+from lumen.insight.explaining import RecordedStep
 from lumen.language.commands import Log, Play, Start
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition

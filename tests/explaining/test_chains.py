@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 
 from lumen.errors import UsageError
-from lumen.interpreters.explaining import RecordedStep
-from lumen.interpreters.explaining.answers import why, why_not
+from lumen.insight.explaining import RecordedStep
+from lumen.insight.explaining.answers import why, why_not
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.statechart import Machine, Snapshot, Step, due, initial, step

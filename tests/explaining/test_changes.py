@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from lumen.errors import ExpressionError
 from lumen.expressions import Scope, compile_guard
-from lumen.interpreters.explaining import RecordedStep
-from lumen.interpreters.explaining.answers import why_not
-from lumen.interpreters.explaining.changes import StepSituation
+from lumen.insight.explaining import RecordedStep
+from lumen.insight.explaining.answers import why_not
+from lumen.insight.explaining.changes import StepSituation
 from lumen.language.events import Event
 from lumen.statechart import Machine, initial, step
 from tests.tables import for_each

@@ -6,12 +6,12 @@ import pytest
 
 from lumen.app.ignoring import IgnoredEvents
 from lumen.expressions import Scope, names
-from lumen.interpreters.explaining.answers import why, why_not
-from lumen.interpreters.explaining.changes import StepSituation
-from lumen.interpreters.explaining.hearing import HeardRow, heard_rows
-from lumen.interpreters.explaining.outlook import ways_out
-from lumen.interpreters.explaining.pressing import refusal_of
-from lumen.interpreters.exploration.expression_uses import of_transition
+from lumen.insight.explaining.answers import why, why_not
+from lumen.insight.explaining.changes import StepSituation
+from lumen.insight.explaining.hearing import HeardRow, heard_rows
+from lumen.insight.explaining.outlook import ways_out
+from lumen.insight.explaining.pressing import refusal_of
+from lumen.insight.exploration.expression_uses import of_transition
 from lumen.language.buttons import Button
 from lumen.language.events import Event
 from lumen.statechart import Machine, initial, step

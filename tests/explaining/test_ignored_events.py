@@ -3,7 +3,7 @@
 from typing import Any
 
 from lumen.app.ignoring import BURST, IgnoredEvents
-from lumen.interpreters.explaining.ignored_events import ignored
+from lumen.insight.explaining.ignored_events import ignored
 from lumen.language.events import Event
 from lumen.statechart import Machine, initial, step
 from tests.tables import for_each

@@ -8,8 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.explaining.outlook import WayOut, ways_out
-from lumen.interpreters.explaining.tracing import retaken
+from lumen.insight.explaining.outlook import WayOut, ways_out
+from lumen.insight.explaining.tracing import retaken
 from lumen.language.events import Event
 from lumen.statechart import Machine, initial, step
 from tests.explaining.running import inputs, live, timed

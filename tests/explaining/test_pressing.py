@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from lumen.interpreters.explaining.pressing import pressed, shown_buttons, takes
+from lumen.insight.explaining.pressing import pressed, shown_buttons, takes
 from lumen.language.events import Event
 from lumen.statechart import Machine, initial, step
 from tests.explaining.running import inputs, live, timed

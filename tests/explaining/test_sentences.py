@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lumen.interpreters.explaining.sentences import explained, first_context, hearing_states, rows_around
+from lumen.insight.explaining.sentences import explained, first_context, hearing_states, rows_around
 from lumen.language.events import Event
 from lumen.statechart import initial, step
 from lumen.statechart.direct_entry import entered_directly

@@ -6,11 +6,11 @@ import pytest
 
 import lumen
 from lumen.errors import UsageError
-from lumen.interpreters.explaining import RecordedStep, StepHistory
-from lumen.interpreters.explaining.answers import why_not
-from lumen.interpreters.explaining.chains import chain
-from lumen.interpreters.explaining.effects import Effect
-from lumen.interpreters.explaining.outlook import ways_out
+from lumen.insight.explaining import RecordedStep, StepHistory
+from lumen.insight.explaining.answers import why_not
+from lumen.insight.explaining.chains import chain
+from lumen.insight.explaining.effects import Effect
+from lumen.insight.explaining.outlook import ways_out
 from lumen.language.commands import Cancel
 
 ENDS = {"person", "message", "start", "event"}

@@ -5,10 +5,10 @@ from collections import Counter
 import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
-from lumen.interpreters.explaining import RecordedStep, StepHistory
-from lumen.interpreters.explaining.chains import chain
-from lumen.interpreters.explaining.dependence import needed
-from lumen.interpreters.explaining.effects import Effect
+from lumen.insight.explaining import RecordedStep, StepHistory
+from lumen.insight.explaining.chains import chain
+from lumen.insight.explaining.dependence import needed
+from lumen.insight.explaining.effects import Effect
 from lumen.language.commands import Cancel
 from lumen.language.events import Event
 from lumen.statechart import Machine

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, seed, settings
 
 from lumen.errors import LumenError, UsageError
-from lumen.interpreters.explaining import RecordedStep
-from lumen.interpreters.explaining.answers import why_not
-from lumen.interpreters.explaining.changes import StepSituation
-from lumen.interpreters.explaining.refusals import Reason
+from lumen.insight.explaining import RecordedStep
+from lumen.insight.explaining.answers import why_not
+from lumen.insight.explaining.changes import StepSituation
+from lumen.insight.explaining.refusals import Reason
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.statechart import Machine, Snapshot, due, step

@@ -13,7 +13,6 @@ from lumen.cli.main import main
 from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.formats.yaml_document import document_yaml
-from lumen.interpreters.trajectory import Trajectory
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.motions import MotionDefinition
 from lumen.loading.document_report import DocumentReport
@@ -21,6 +20,7 @@ from lumen.loading.motions import build_motion
 from lumen.loading.packaged import shipped_root
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from lumen.motion.trajectories import Trajectory
 from tests.tables import for_each
 
 BODY = lumen.load(shipped_root()).body

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import copysign, inf, radians
 
-from lumen.interpreters.projection import Vector3, centring, seen
-from lumen.interpreters.tracking import Tracker
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Camera
+from lumen.motion.projection import Vector3, centring, seen
+from lumen.motion.tracking import Tracker
 from tests.fuzzy.nao import HEAD, TOP
 
 STEP = 1 / 300

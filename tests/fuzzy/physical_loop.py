@@ -6,11 +6,11 @@ from math import radians
 from pathlib import Path
 
 from lumen.bus import connect
-from lumen.interpreters.projection import centring
 from lumen.language.commands import Look, Track
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
+from lumen.motion.projection import centring
 from lumen.robots.server import RobotServer
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.perception import FaceDetector

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.projection import camera_pose, centring, into_camera, project, seen
 from lumen.language.robots import Camera
+from lumen.motion.projection import camera_pose, centring, into_camera, project, seen
 
 TOP = Camera(320, 240, radians(60.97), radians(47.64), (0.05871, 0.0, 0.06364), 0.0209)
 

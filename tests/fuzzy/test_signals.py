@@ -12,7 +12,7 @@ from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.clocks.virtual import VirtualClock
-from lumen.interpreters.migration import MigrationPlan
+from lumen.insight.migration import MigrationPlan
 from lumen.language.commands import Start, Track, Volume
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.loop import BehaviorLoop, Observer

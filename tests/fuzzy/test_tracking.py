@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.fuzzy import Controller
-from lumen.interpreters.limits import coupled_range
-from lumen.interpreters.projection import Vector3, centring, seen
-from lumen.interpreters.tracking import Tracker
+from lumen.motion.limits import coupled_range
+from lumen.motion.projection import Vector3, centring, seen
+from lumen.motion.tracking import Tracker
 from tests.fuzzy.closed_loop import off_by, run
 from tests.fuzzy.nao import COUPLED, HEAD, TOP
 from tests.tables import for_each

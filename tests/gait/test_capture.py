@@ -5,9 +5,9 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from lumen.interpreters.gait import FOUND, SIDES, LegGeometry, Side
-from lumen.interpreters.gait.capture import FARTHEST, HIP_STRETCHED, WIDEST_CATCH, hold_level, landing
-from lumen.interpreters.gait.legs import sign
+from lumen.motion.gait import FOUND, SIDES, LegGeometry, Side
+from lumen.motion.gait.capture import FARTHEST, HIP_STRETCHED, WIDEST_CATCH, hold_level, landing
+from lumen.motion.gait.legs import sign
 from tests.gait.nao_legs import CLASSIC_LEGS, NAO_LEGS
 
 OMEGA = 6.0

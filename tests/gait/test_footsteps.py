@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.gait.footsteps import (
+from lumen.motion.gait.footsteps import (
     Feet,
     beside,
     corners,
@@ -12,9 +12,9 @@ from lumen.interpreters.gait.footsteps import (
     footsteps,
     middle,
 )
-from lumen.interpreters.gait.legs import other, sign
-from lumen.interpreters.gait.parameters import GaitParameters
-from lumen.interpreters.gait.poses import Pose
+from lumen.motion.gait.legs import other, sign
+from lumen.motion.gait.parameters import GaitParameters
+from lumen.motion.gait.poses import Pose
 from tests.gait.nao_legs import NAO_LEGS
 
 PACE = GaitParameters()

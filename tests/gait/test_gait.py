@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait import Feet, Gait, Pose, middle
-from lumen.interpreters.gait.footsteps import beside
-from lumen.interpreters.gait.parameters import GaitParameters
-from lumen.interpreters.gait.pendulum import Pendulum
+from lumen.motion.gait import Feet, Gait, Pose, middle
+from lumen.motion.gait.footsteps import beside
+from lumen.motion.gait.parameters import GaitParameters
+from lumen.motion.gait.pendulum import Pendulum
 from tests.gait.nao_legs import NAO_LEGS
 from tests.motions.making import nao
 from tests.tables import for_each

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.gait import FOUND, SIDES, LegGeometry, Side, paces_of
-from lumen.interpreters.gait.legs import Placed, other, sign, torso_rotation
-from lumen.interpreters.gait.poses import Pose, wrap
-from lumen.interpreters.gait.stance import stand
 from lumen.language.robots import Body
+from lumen.motion.gait import FOUND, SIDES, LegGeometry, Side, paces_of
+from lumen.motion.gait.legs import Placed, other, sign, torso_rotation
+from lumen.motion.gait.poses import Pose, wrap
+from lumen.motion.gait.stance import stand
 from tests.gait.nao_legs import CLASSIC_LEGS, NAO_LEGS
 from tests.motions.making import nao
 from tests.tables import for_each

@@ -2,9 +2,9 @@
 
 import pytest
 
-from lumen.interpreters.gait import Feet, Gait, GaitParameters, Pose
-from lumen.interpreters.gait.footsteps import beside
-from lumen.interpreters.gait.tracking import StepTracker
+from lumen.motion.gait import Feet, Gait, GaitParameters, Pose
+from lumen.motion.gait.footsteps import beside
+from lumen.motion.gait.tracking import StepTracker
 from tests.gait.nao_legs import NAO_LEGS
 from tests.gait.test_gait import mass
 

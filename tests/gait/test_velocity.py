@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait import FOUND, Gait, GaitParameters, Pose, Velocity, fastest, fastest_of, middle
-from lumen.interpreters.gait.legs import other, sign
-from lumen.interpreters.gait.velocity import MOST_CHANGE, strides
+from lumen.motion.gait import FOUND, Gait, GaitParameters, Pose, Velocity, fastest, fastest_of, middle
+from lumen.motion.gait.legs import other, sign
+from lumen.motion.gait.velocity import MOST_CHANGE, strides
 from tests.gait.nao_legs import NAO_LEGS
 from tests.gait.test_gait import JOINTS, LIMIT, START
 from tests.simulation.bodies import shipped

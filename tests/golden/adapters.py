@@ -16,10 +16,12 @@ from lumen.buses.local import LocalBusServer
 from lumen.buses.local.address import LocalAddress
 from lumen.buses.local.client import LocalBusClient
 from lumen.cli.main import main
-from lumen.interpreters.replay.entries import entry_data
-from lumen.interpreters.replay.forking import fork
-from lumen.interpreters.replay.replaying import replay
+from lumen.insight.replay.entries import entry_data
+from lumen.insight.replay.forking import fork
+from lumen.insight.replay.replaying import replay
 from lumen.interpreters.routing import matches
+from lumen.journal.frames import FramePacker, unpack
+from lumen.journal.journal_file import line_of, read_journal, read_lines
 from lumen.language.body_parts import WHOLE_BODY
 from lumen.language.command_data import command_data
 from lumen.language.commands import Say
@@ -28,8 +30,6 @@ from lumen.ports import Live, Perform, Sense
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.recording import RecordingRobot
 from lumen.runtime.home import Home
-from lumen.runtime.inputs.frames import FramePacker, unpack
-from lumen.runtime.inputs.journal_file import line_of, read_journal, read_lines
 from lumen.runtime.resuming import FreshStart, Resumption, resume
 from lumen.statechart import deserialize, serialize
 from tests.golden.texts import in_one_line

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from lumen.errors import SnapshotError, UsageError
-from lumen.interpreters.exploration import explore
-from lumen.interpreters.migration import MigrationPlan, migrate
+from lumen.insight.exploration import explore
+from lumen.insight.migration import MigrationPlan, migrate
 from lumen.language.events import Event
 from lumen.runtime.resuming import resume
 from lumen.runtime.wall_clock_watch import WallClockWatch

@@ -17,8 +17,8 @@ from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import set_up_house
 from lumen.cli.main import main
 from lumen.errors import LumenError, RobotModelError, UsageError
+from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.runtime.home import home_of
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER
 from lumen.statechart import Step
 
 NAMES = ("ana", "ben")

@@ -9,7 +9,7 @@ import pytest
 import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.house import House
-from lumen.interpreters.migration import MigrationPlan, plan
+from lumen.insight.migration import MigrationPlan, plan
 from lumen.language.commands import Say, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project

@@ -9,16 +9,16 @@ from typing import Any
 
 import lumen
 from lumen.errors import LumenError
-from lumen.interpreters.migration import MigrationPlan
-from lumen.interpreters.replay.entries import RecordedEntry
-from lumen.interpreters.replay.replaying import ReplayedStep, replay
+from lumen.insight.migration import MigrationPlan
+from lumen.insight.replay.entries import RecordedEntry
+from lumen.insight.replay.replaying import ReplayedStep, replay
+from lumen.journal.journal_file import read_journal
+from lumen.journal.journal_folder import JournalFolder
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import to_the_nanosecond
 from lumen.language.projects import Project
-from lumen.runtime.inputs.journal_file import read_journal
-from lumen.runtime.inputs.journal_folder import JournalFolder
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.resuming import Resumption, resume
 from lumen.runtime.runtime import Runtime
 from lumen.statechart import Step, deserialize, due, serialize

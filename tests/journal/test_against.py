@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 
 from lumen.errors import LumenError
-from lumen.interpreters.replay.against import ENDS, MORE_STEPS, MOST_TIMES, SAME, SAYS, played_against
-from lumen.interpreters.replay.entries import JournalJump
-from lumen.interpreters.replay.visits import DROPPED, RecordedVisit, home_of, visits
+from lumen.insight.replay.against import ENDS, MORE_STEPS, MOST_TIMES, SAME, SAYS, played_against
+from lumen.insight.replay.entries import JournalJump
+from lumen.insight.replay.visits import DROPPED, RecordedVisit, home_of, visits
 from lumen.language.machines import MachineDefinition
 from lumen.statechart import Machine
 from tests.journal.making import Recorded, bundle

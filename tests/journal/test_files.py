@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import JournalError
-from lumen.interpreters.replay.entries import JournalInput, RecordedEntry
+from lumen.insight.replay.entries import JournalInput, RecordedEntry
+from lumen.journal.frames import FramePacker
+from lumen.journal.journal_file import JournalHeader, header_of, line_of, read_content, read_journal
+from lumen.journal.journal_folder import DAY, JournalFolder
+from lumen.journal.redaction import redact
 from lumen.language.events import Event
 from lumen.language.people import PersonName
-from lumen.runtime.inputs.frames import FramePacker
-from lumen.runtime.inputs.journal_file import JournalHeader, header_of, line_of, read_content, read_journal
-from lumen.runtime.inputs.journal_folder import DAY, JournalFolder
-from lumen.runtime.inputs.redaction import redact
 
 HEADER = JournalHeader(5, "run", "hash", 1.0)
 

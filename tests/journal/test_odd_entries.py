@@ -11,8 +11,8 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
-from lumen.runtime.inputs.frames import FramePacker
-from lumen.runtime.inputs.journal_file import encode, read_header, read_lines
+from lumen.journal.frames import FramePacker
+from lumen.journal.journal_file import encode, read_header, read_lines
 from tests import ROOT
 from tests.tables import for_each
 

@@ -9,14 +9,14 @@ import lumen
 from lumen.app.asking import operator_key
 from lumen.app.exhibition import Exhibition
 from lumen.app.journal_pages import MAX_PAGE_BYTES, journal_page
-from lumen.interpreters.replay.entries import entry_data
+from lumen.insight.replay.entries import entry_data
+from lumen.journal import journal_writer
+from lumen.journal.journal_file import read_journal
+from lumen.journal.journal_folder import JournalFolder
+from lumen.journal.journal_tail import JournalTail
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
 from lumen.language.people import PersonName
-from lumen.runtime.inputs import journal_writer
-from lumen.runtime.inputs.journal_file import read_journal
-from lumen.runtime.inputs.journal_folder import JournalFolder
-from lumen.runtime.inputs.journal_tail import JournalTail
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.statechart import Step, initial, step
 from tests.journal.test_writing import MACHINE, PROJECT, Disk, steps, tell
 from tests.tour.conftest import copy

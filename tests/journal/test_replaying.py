@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.replay.entries import JournalInput, entry_data, read_entry
+from lumen.insight.replay.entries import JournalInput, entry_data, read_entry
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.statechart import Machine, Step, microstep, stepping

@@ -7,13 +7,13 @@ from typing import Any, BinaryIO
 
 import pytest
 
-from lumen.interpreters.replay.entries import JournalJump
+from lumen.insight.replay.entries import JournalJump
+from lumen.journal import frames, journal_writer
+from lumen.journal.journal_file import JournalHeader, line_of, read_journal
+from lumen.journal.journal_folder import JournalFolder
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
 from lumen.language.people import PersonName
-from lumen.runtime.inputs import frames, journal_writer
-from lumen.runtime.inputs.journal_file import JournalHeader, line_of, read_journal
-from lumen.runtime.inputs.journal_folder import JournalFolder
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.statechart import Machine, Step, initial, step
 from tests.journal.making import Recorded, bundle
 from tests.waiting import HANG, until

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import lumen
-from lumen.interpreters.projection import Vector3, centring, seen
-from lumen.interpreters.tracking import Tracker
 from lumen.language.body_parts import HEAD, WHOLE_BODY
 from lumen.language.life import LifeStyle
 from lumen.language.stories import Visitor
+from lumen.motion.projection import Vector3, centring, seen
+from lumen.motion.tracking import Tracker
 from lumen.ports import Live
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.simulation import SimulatedRobot

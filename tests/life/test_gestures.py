@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import lumen
-from lumen.interpreters.gestures import GESTURE_SHARE, gesture_offsets, peak_speeds, plan_gestures
 from lumen.language.actions import SayText
 from lumen.language.body_parts import ARMS, HEAD
 from lumen.language.commands import Say, Start
 from lumen.language.gestures import WordTime, merged
+from lumen.motion.gestures import GESTURE_SHARE, gesture_offsets, peak_speeds, plan_gestures
 from lumen.ports import Joints, Live, Sense
 from lumen.robots.command_table import speech_duration
 from lumen.robots.gesture_player import GesturePlayer

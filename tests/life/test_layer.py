@@ -8,10 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import lumen
-from lumen.interpreters.life import SETTLE_SLOPE, SPEED_SHARE, settle, vigour
 from lumen.language.body_parts import ARMS, HEAD, LEGS, WHOLE_BODY
 from lumen.language.commands import Say
 from lumen.language.life import STILL_STYLE, Asides, Glances, LifeStyle, Nods, Settles, Sway
+from lumen.motion.life import SETTLE_SLOPE, SPEED_SHARE, settle
+from lumen.motion.life import vigours as vigour
 from lumen.robots.life_layer import LifeLayer
 from tests import ROOT
 

@@ -10,7 +10,7 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
-from lumen.interpreters.migration import MigrationPlan
+from lumen.insight.migration import MigrationPlan
 from lumen.language.stories import Visitor
 from lumen.ports import Live, RobotCommand
 from lumen.robots.recording import RecordingRobot

@@ -43,7 +43,7 @@ def failing(step: CodeType, work: Callable[[], T], above: Callable[..., object])
 
 
 def name(step: CodeType) -> str:
-    """`interpreters/migration/moving.py:exits`."""
+    """`insight/migration/moving.py:exits`."""
     return f"{step.co_filename.removeprefix(ROOT)[1:]}:{step.co_qualname}"
 
 

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from lumen.errors import BusError, LumenError
-from lumen.interpreters.migration import MigrationDelay, MigrationPlan
+from lumen.insight.migration import MigrationDelay, MigrationPlan
 from lumen.language.events import Event
 from lumen.runtime import runtime
 from tests.live.shows import Here, Live

@@ -21,8 +21,8 @@ from lumen.bus import Bus
 from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.cli.main import main
 from lumen.errors import BusError
-from lumen.runtime.inputs.frames import unpack
-from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX
+from lumen.journal.frames import unpack
+from lumen.journal.journal_file import JOURNAL_SUFFIX
 from lumen.runtime.journal import Journal
 from tests import ROOT
 from tests.alerts.halls import Hall

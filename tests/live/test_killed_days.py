@@ -12,8 +12,8 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.errors import JournalError
-from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
-from lumen.runtime.inputs.journal_file import read_journal
+from lumen.insight.replay.entries import JournalJump, RecordedEntry
+from lumen.journal.journal_file import read_journal
 from tests.guarded import run_guarded
 from tests.live.test_resuming import running, silent
 from tests.waiting import HANG, until

@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from lumen.app.recovery.recording import record_inputs
-from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
-from lumen.interpreters.replay.replaying import ReplayedStep, replay
+from lumen.insight.replay.entries import JournalJump, RecordedEntry
+from lumen.insight.replay.replaying import ReplayedStep, replay
+from lumen.journal.journal_file import read_journal
+from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
 from lumen.language.machines import MachineDefinition
 from lumen.loading.files import read_files
 from lumen.rules import check_files
-from lumen.runtime.inputs.journal_file import read_journal
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, JournalFolder
 from lumen.runtime.snapshot_store import SnapshotStore
 from tests.live.shows import Live
 

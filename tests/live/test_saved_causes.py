@@ -8,7 +8,7 @@ import pytest
 import lumen
 from lumen.app.replaying.journals import chosen
 from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.interpreters.replay.replaying import replay
+from lumen.insight.replay.replaying import replay
 from lumen.language.causes import VISITOR, Cause
 from tests import ROOT
 from tests.live.shows import Live

@@ -12,14 +12,14 @@ from lumen.app.reload import validation_worker, visits_check
 from lumen.app.reload.visits_check import VisitsCheck, check_visits
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.latest_visits import latest_first
-from lumen.interpreters.replay.entries import JournalInput, JournalJump
-from lumen.interpreters.replay.replaying import replay
+from lumen.insight.replay.entries import JournalInput, JournalJump
+from lumen.insight.replay.replaying import replay
+from lumen.journal.frames import FramePacker
+from lumen.journal.journal_file import line_of, read_journal
+from lumen.journal.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER
+from lumen.journal.redaction import redact
 from lumen.language.people import PersonName
 from lumen.runtime.home import home_of
-from lumen.runtime.inputs.frames import FramePacker
-from lumen.runtime.inputs.journal_file import line_of, read_journal
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER
-from lumen.runtime.inputs.redaction import redact
 from lumen.statechart import serialize
 from tests import ROOT
 from tests.live.shows import Live

@@ -3,7 +3,7 @@
 from datetime import date
 from pathlib import Path
 
-from lumen.interpreters.changes import changes
+from lumen.insight.changes import changes
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.loading.markdown import parse_markdown

@@ -11,7 +11,7 @@ import pytest
 import lumen
 from lumen.app.reload.delta import DeltaDecoder, DeltaEncoder
 from lumen.feature import resolve, table
-from lumen.interpreters.changes import changes, live
+from lumen.insight.changes import changes, live
 from lumen.language.alerts import DEFAULT_INTERVAL, Alerts, Program
 from lumen.language.projects import Project
 from tests import ROOT

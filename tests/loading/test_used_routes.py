@@ -9,7 +9,7 @@ import lumen
 from lumen.buses.aliases import aliases_of
 from lumen.buses.validated import by_key
 from lumen.formats.asyncapi import document
-from lumen.interpreters.changes.projects import changes
+from lumen.insight.changes.projects import changes
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot

@@ -11,8 +11,8 @@ from lumen.errors import ProjectError
 from lumen.formats.conversion_findings import dotted
 from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.xstate import read_xstate, write_xstate
-from lumen.interpreters.changes import changes
-from lumen.interpreters.changes.change import Risk
+from lumen.insight.changes import changes
+from lumen.insight.changes.change import Risk
 from lumen.language.diagnostics import has_errors
 from lumen.loading.files import read_files
 from lumen.loading.project import draft

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import ModuleError
-from lumen.interpreters.explaining.sayings import path_of
-from lumen.interpreters.explaining.sentences import explained, first_context
+from lumen.insight.explaining.sayings import path_of
+from lumen.insight.explaining.sentences import explained, first_context
 from lumen.language.projects import Project
 from lumen.modules.ears import Ears, Hypothesis
 from lumen.modules.ears.bigrams import arpa

@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.choreography import at_speed, joined, mirrored, trailing
-from lumen.interpreters.trajectory import Trajectory
 from lumen.language.mirrors import mirror_of
 from lumen.language.motions import Cue, Keyframe, MotionDefinition
+from lumen.motion.choreography import at_speed, joined, mirrored, trailing
+from lumen.motion.trajectories import Trajectory
 from tests.motions.making import made, motions, nao
 
 MIRROR = mirror_of(nao())

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.interpreters.limits import beyond_limits, overspeed
-from lumen.interpreters.trajectory import Trajectory, sample
 from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
+from lumen.motion.limits import beyond_limits, overspeed
+from lumen.motion.trajectories import Trajectory, sample
 from tests.motions.making import motions, nao
 
 BEZIER, LINEAR = Interpolation.BEZIER, Interpolation.LINEAR

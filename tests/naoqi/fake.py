@@ -5,9 +5,9 @@ from typing import Any
 
 import qi
 
-from lumen.interpreters.projection import seen
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
+from lumen.motion.projection import seen
 from lumen.robots.naoqi.naoqi_events import event_of
 from lumen.robots.recording import FACE_HEIGHT_FRACTION, PODIUM_HEIGHT, TORSO_HEIGHT
 from tests.naoqi.services import SERVICES, ALAudioDevice, ALMemory, ALSonar, ALVideoDevice

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from lumen.language.projects import Project
+from lumen.motion.trajectories import Trajectory
 from lumen.robots.naoqi.curves import MAX_CURVE_ERROR, curves
 from tests.naoqi.joints import bezier
 

@@ -5,11 +5,11 @@ from itertools import chain
 
 import pytest
 
-from lumen.interpreters.bounds import nearest_angles
 from lumen.language.commands import Leds, Look, Posture, Rest, Say
 from lumen.language.gestures import merged
 from lumen.language.life import STILL_STYLE
 from lumen.language.projects import Project
+from lumen.motion.bounds import nearest_angles
 from lumen.ports import Live, Perform
 from tests.naoqi.conftest import Live as LiveFor
 from tests.naoqi.lockstep import Lockstep

@@ -5,12 +5,12 @@ from math import hypot
 
 import pytest
 
-from lumen.interpreters.dead_reckoning import turned
 from lumen.language.commands import Posture
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.projects import Project
 from lumen.language.robots import Body as RobotBody
+from lumen.motion.dead_reckoning import turned
 from lumen.ports import Joints, Robot, Sense, Whereabouts
 from lumen.robots.simulation.odometry import DRIFT_AFTER_SITTING
 from lumen.runtime.navigator import Navigator

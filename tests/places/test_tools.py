@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
-from lumen.interpreters.changes.projects import changes
-from lumen.interpreters.exploration import explore
+from lumen.insight.changes.projects import changes
+from lumen.insight.exploration import explore
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.completion import complete
 from lumen.lsp.definitions import definitions

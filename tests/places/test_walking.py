@@ -7,7 +7,7 @@ import pytest
 
 from lumen.buses.memory import MemoryBus
 from lumen.clocks.virtual import VirtualClock
-from lumen.interpreters.migration import MigrationPlan
+from lumen.insight.migration import MigrationPlan
 from lumen.language.commands import Walk
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlace, HallPlaces

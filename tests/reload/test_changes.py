@@ -11,8 +11,8 @@ import pytest
 from lumen.app.versions import version
 from lumen.cli.main import main
 from lumen.errors import UsageError
-from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
-from lumen.interpreters.changes.machines import machine_changes
+from lumen.insight.changes import Change, Risk, changes, live, risk, summary
+from lumen.insight.changes.machines import machine_changes
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading import revisions

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal, migrate
+from lumen.insight.migration import MigrationDelay, MigrationPlan, Refusal, migrate
 from lumen.language.commands import Cancel, Log, Say, Start
 from lumen.language.events import Event
 from lumen.statechart import Machine, deserialize, initial, serialize, step

@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal, migrate
+from lumen.insight.migration import MigrationDelay, MigrationPlan, Refusal, migrate
 from lumen.language.commands import Log
 from lumen.language.machines import StateKind
 from lumen.statechart import Machine, Snapshot, deserialize, initial, serialize, step

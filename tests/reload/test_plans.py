@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from lumen.interpreters.migration import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal, migrate
+from lumen.insight.migration import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal, migrate
 from lumen.language.commands import Cancel, Log, Play, Say, Start
 from lumen.language.events import Event
 from lumen.statechart import Machine, Snapshot, deserialize, initial, serialize, step

@@ -8,7 +8,7 @@ import pytest
 from lumen.app.setup import Setup
 from lumen.buses.memory import MemoryBus
 from lumen.clocks.simulated import SimulatedClock
-from lumen.interpreters.migration import MigrationDelay, MigrationPlan
+from lumen.insight.migration import MigrationDelay, MigrationPlan
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
@@ -224,7 +224,7 @@ def test_a_fault_anywhere_in_a_plan_changes_nothing(point: str, monkeypatch: pyt
     )
     changed = replace(project, behaviors={"tour": more})
     with monkeypatch.context() as patched:
-        patched.setattr(f"lumen.interpreters.migration.{point}", fault)
+        patched.setattr(f"lumen.insight.migration.{point}", fault)
         with pytest.raises(ZeroDivisionError):
             exhibition.plan(changed)
     assert exhibition.project is project

@@ -16,11 +16,11 @@ from lumen.buses.intake import Intake
 from lumen.buses.properties import MessageProperties
 from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.buses.validated import validated
-from lumen.interpreters import bounds
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Say, Stop
 from lumen.language.motions import MotionDefinition
 from lumen.language.routes import USUAL_RATE, Carried, Direction, Route
+from lumen.motion import bounds
 from lumen.ports import Message, Perform, RobotCommand
 from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS, MAX_WAITING_OWN, RESTARTED, CommandListener
 from lumen.robots.deduplication_log import DeduplicationLog

@@ -14,9 +14,6 @@ from lumen.cli.main import main
 from lumen.formats.conversion_findings import LOST, ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.formats.robot_models import read_robot
-from lumen.interpreters import bounds
-from lumen.interpreters.bounds import within_limits
-from lumen.interpreters.limits import beyond_limits, overspeed
 from lumen.language.commands import Look, Wake
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event
@@ -31,6 +28,9 @@ from lumen.loading.motions import build_motion
 from lumen.loading.packaged import shipped_root
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from lumen.motion import bounds
+from lumen.motion.bounds import within_limits
+from lumen.motion.limits import beyond_limits, overspeed
 from lumen.ports import Aim, Perform, RobotCommand, Sense
 from lumen.rules import check_files
 from lumen.statechart import VirtualClock

@@ -14,14 +14,14 @@ import lumen
 from lumen import Exhibition
 from lumen.app.setup import set_up_with
 from lumen.buses.memory import MemoryBus
-from lumen.interpreters import bounds
-from lumen.interpreters.bounds import nearest_angles
-from lumen.interpreters.limits import COUPLED_TOLERANCE, beyond_limits, overspeed
-from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Language, Look, Posture
 from lumen.language.events import Event
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
+from lumen.motion import bounds
+from lumen.motion.bounds import nearest_angles
+from lumen.motion.limits import COUPLED_TOLERANCE, beyond_limits, overspeed
+from lumen.motion.trajectories import Trajectory
 from lumen.ports import Aim, Idles, Joints, Live, Perform, RobotCommand, Sense
 from lumen.robots.bounded_robot import BoundedRobot, ability
 from lumen.robots.command_codec import decode_command, encode_command

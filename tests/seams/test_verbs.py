@@ -10,7 +10,7 @@ import pytest
 from lumen.buses.memory import MemoryBus
 from lumen.feature import table
 from lumen.formats.behavior_data import plain_action
-from lumen.interpreters.changes.actions import described
+from lumen.insight.changes.actions import described
 from lumen.language.actions import Action, ComputedAction
 from lumen.language.body_parts import PARTS
 from lumen.language.commands import (

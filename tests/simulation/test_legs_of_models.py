@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import RobotModelError
-from lumen.interpreters.gait import FOUND, LegGeometry, paces_of
 from lumen.language.robots import Body
+from lumen.motion.gait import FOUND, LegGeometry, paces_of
 from lumen.robots.simulation.leg_geometry import read_legs
 from lumen.robots.simulation.mass_model import MassModel
 from tests.simulation.conftest import MODELS

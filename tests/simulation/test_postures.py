@@ -8,10 +8,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from lumen.interpreters.postures import RESTFUL, UPRIGHT, route
 from lumen.language.commands import Posture, Rest, Stop, Wake, Walk
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.robots import Body
+from lumen.motion.postures import RESTFUL, UPRIGHT, route
 from lumen.ports import Perform
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.balance import LEAN

@@ -6,12 +6,12 @@ from math import degrees, inf, nan, pi
 import numpy as np
 import pytest
 
-from lumen.interpreters.gait.footsteps import Footstep
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Walk
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
+from lumen.motion.gait.footsteps import Footstep
 from lumen.ports import Aim, Perform
 from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import MODELS, answer, until_answered

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from lumen.errors import RobotModelError
-from lumen.interpreters.gait import Pose
-from lumen.interpreters.gait.poses import wrap
 from lumen.language.commands import Look, Move, Posture, Rest, Stop, Wake, Walk
 from lumen.language.imperfections import PERFECT
 from lumen.language.projects import Stage
 from lumen.language.roles import Base, BaseKind
+from lumen.motion.gait import Pose
+from lumen.motion.gait.poses import wrap
 from lumen.ports import Joints, Sense
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.wheels import Wheels

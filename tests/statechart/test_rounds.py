@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from lumen.interpreters.migration import MigrationPlan, migrate
+from lumen.insight.migration import MigrationPlan, migrate
 from lumen.language.commands import Say, Start
 from lumen.statechart import Interpreter, Machine, Step, deserialize, serialize
 from tests.statechart.table import read

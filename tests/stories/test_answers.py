@@ -12,7 +12,7 @@ from lumen.app.replaying.other_files import with_machines
 from lumen.app.storytelling.story_text import story_text
 from lumen.app.storytelling.visit_story import visit_story
 from lumen.cli.main import main
-from lumen.interpreters.replay.visits import visits
+from lumen.insight.replay.visits import visits
 
 SETTINGS = """
 lumen: 1

@@ -8,8 +8,8 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.expressions import parse_expression
-from lumen.interpreters.exploration import Exploration, explore
-from lumen.interpreters.exploration.samples import phrases_at, samples
+from lumen.insight.exploration import Exploration, explore
+from lumen.insight.exploration.samples import phrases_at, samples
 from lumen.statechart import Machine
 from tests.tables import for_each
 

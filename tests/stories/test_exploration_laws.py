@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lumen.interpreters.exploration.liveness import Liveness
-from lumen.interpreters.exploration.search import StateSpaceSearch
+from lumen.insight.exploration.liveness import Liveness
+from lumen.insight.exploration.search import StateSpaceSearch
 from lumen.statechart import Machine
 
 NAMES = "pqrs"

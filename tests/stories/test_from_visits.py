@@ -19,14 +19,14 @@ from lumen.app.replaying.other_files import with_machines
 from lumen.app.storytelling.story_text import story_text
 from lumen.app.storytelling.visit_story import renaming, visit_story
 from lumen.cli.main import main
-from lumen.interpreters.replay.visits import RecordedVisit, visits
+from lumen.insight.replay.visits import RecordedVisit, visits
+from lumen.journal.redaction import redact
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Expect, Speak
 from lumen.loading.files import read_files
 from lumen.loading.project_folders import PROJECT_FOLDERS
 from lumen.rules import check_files
-from lumen.runtime.inputs.redaction import redact
 from tests import ROOT
 
 pytestmark = pytest.mark.rest  # dear

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from lumen.interpreters.exploration.liveness import Liveness
-from lumen.interpreters.exploration.search import StateSpaceSearch
+from lumen.insight.exploration.liveness import Liveness
+from lumen.insight.exploration.search import StateSpaceSearch
 from lumen.statechart import Machine
 
 EVENTS: dict[str, Any] = {name: {"const": None} for name in "abcd"} | {"x": {"enum": [0, 1]}}

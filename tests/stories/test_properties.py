@@ -10,7 +10,7 @@ import pytest
 from lumen.app.exploring import explored
 from lumen.app.rehearsal import rehearse
 from lumen.cli.main import main
-from lumen.interpreters.exploration import explore
+from lumen.insight.exploration import explore
 from lumen.project import load
 from lumen.statechart import Machine
 from tests.stories.test_exploration import GO

@@ -8,9 +8,9 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
-from lumen.interpreters.changes import changes
-from lumen.interpreters.changes.change import Risk
-from lumen.interpreters.explaining.sayings import tried
+from lumen.insight.changes import changes
+from lumen.insight.changes.change import Risk
+from lumen.insight.explaining.sayings import tried
 from lumen.language.sayings import Saying, SayingSet
 from tests.explaining.guide import guide, guide_in
 from tests.tables import for_each

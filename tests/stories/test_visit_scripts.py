@@ -3,8 +3,8 @@
 from typing import Any
 
 from lumen.app.storytelling.visit_script import broken
-from lumen.interpreters.replay.entries import JournalInput
-from lumen.interpreters.replay.visits import RecordedVisit
+from lumen.insight.replay.entries import JournalInput
+from lumen.insight.replay.visits import RecordedVisit
 from lumen.language.events import Event
 from tests.tables import for_each
 

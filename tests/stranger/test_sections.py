@@ -15,7 +15,7 @@ from lumen.app.reload.idle_process import end_idle
 from lumen.app.reload.validation_worker import ValidationWorker
 from lumen.cli.main import main
 from lumen.feature import resolve
-from lumen.interpreters.changes import changes, live
+from lumen.insight.changes import changes, live
 from lumen.language.projects import Project
 from lumen.loading import memoization
 from lumen.loading.files import read_files

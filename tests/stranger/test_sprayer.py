@@ -10,7 +10,7 @@ from scripts.rule_pages import said
 
 import lumen
 from lumen.feature import resolve
-from lumen.interpreters.changes import changes
+from lumen.insight.changes import changes
 from lumen.language.stories import Visitor
 from lumen.loading.files import read_files
 from lumen.rules import check_files

@@ -10,9 +10,9 @@ from written_distribution import on_path, write_distribution
 from lumen.cli.main import main
 from lumen.console.entry_words import told_of
 from lumen.formats.behavior_data import plain_action
+from lumen.insight.changes.actions import described
+from lumen.insight.explaining.words import of_deed
 from lumen.interpreters.added_verbs import time_taken
-from lumen.interpreters.changes.actions import described
-from lumen.interpreters.explaining.words import of_deed
 from lumen.language.actions import Action
 from lumen.language.command_data import command_data
 from lumen.language.commands import Do, Start

@@ -8,8 +8,8 @@ import yaml
 
 import lumen
 from lumen.expressions import Scope, compile_expression
-from lumen.interpreters.explaining.sayings import tried
-from lumen.interpreters.explaining.sentences import explained, first_context
+from lumen.insight.explaining.sayings import tried
+from lumen.insight.explaining.sentences import explained, first_context
 from lumen.language.actions import If, Parallel, PlacedAction, SayText
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.projects import Project

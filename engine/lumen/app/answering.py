@@ -10,11 +10,11 @@ from typing import Any
 
 from lumen.app.journal_pages import journal_page
 from lumen.errors import BusError, LumenError, UsageError
-from lumen.interpreters.explaining import RecordedStep
+from lumen.insight.explaining import RecordedStep
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.iso_time import time_of
 from lumen.language.operator_requests import JOURNAL, WHY
 from lumen.ports import Bus, Message
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
@@ -30,7 +30,7 @@ _log = logging.getLogger(__name__)
 
 def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | None = None) -> dict[str, Any]:
     """The answer as JSON data; `at` is an ISO 8601 time. Raises UsageError, saying what to do, where there is none."""
-    from lumen.interpreters.explaining.answers import why, why_not  # thirty modules that only a question needs
+    from lumen.insight.explaining.answers import why, why_not  # thirty modules that only a question needs
 
     until = _until(steps, at) if at else None
     if question == WHY.ask:

@@ -16,7 +16,7 @@ from lumen.app.plan import Plan
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.report import ReloadReport
 from lumen.errors import UsageError
-from lumen.interpreters.explaining import RecordedStep
+from lumen.insight.explaining import RecordedStep
 from lumen.language.causes import PROGRAM, MessageOrigin
 from lumen.language.commands import Say
 from lumen.language.operator_requests import WHY, WHY_NOT

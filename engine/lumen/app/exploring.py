@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from lumen.interpreters.exploration import Exploration, ExplorationFinding, PathStep, StimulusKind, explore
+from lumen.insight.exploration import Exploration, ExplorationFinding, PathStep, StimulusKind, explore
 from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import Place
 from lumen.language.events import robot_events

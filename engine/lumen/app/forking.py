@@ -10,17 +10,17 @@ from lumen.app.answering import moment_of
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import takes
 from lumen.errors import JournalError, LumenError, ProjectError, UsageError
-from lumen.interpreters.changes import live
-from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
-from lumen.interpreters.replay.forking import fork
-from lumen.interpreters.replay.journal_clock import JournalClock
+from lumen.insight.changes import live
+from lumen.insight.replay.entries import JournalJump, RecordedEntry
+from lumen.insight.replay.forking import fork
+from lumen.insight.replay.journal_clock import JournalClock
+from lumen.journal.journal_file import entry_of, read_journal
+from lumen.journal.journal_folder import headers
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.rules import check_files
-from lumen.runtime.inputs.journal_file import entry_of, read_journal
-from lumen.runtime.inputs.journal_folder import headers
-from lumen.runtime.inputs.journal_writer import JournalWriter
 
 PATIENCE = 3.0
 """How long an answer may take [s]."""

@@ -4,7 +4,7 @@ import json
 import re
 from typing import Any
 
-from lumen.interpreters.explaining.ignored_events import FalseGuard, IgnoredEvent, ignored
+from lumen.insight.explaining.ignored_events import FalseGuard, IgnoredEvent, ignored
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.runtime.visitor import SPEECH_ROUTE

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import JournalError
-from lumen.interpreters.replay.entries import entry_data
-from lumen.interpreters.replay.journal_clock import JournalClock
-from lumen.runtime.inputs.journal_file import entry_of, read_lines
-from lumen.runtime.inputs.journal_folder import headers
-from lumen.runtime.inputs.journal_tail import PositionedLine
-from lumen.runtime.inputs.journal_writer import JournalWriter
+from lumen.insight.replay.entries import entry_data
+from lumen.insight.replay.journal_clock import JournalClock
+from lumen.journal.journal_file import entry_of, read_lines
+from lumen.journal.journal_folder import headers
+from lumen.journal.journal_tail import PositionedLine
+from lumen.journal.journal_writer import JournalWriter
 
 MAX_ENTRIES = 500
 """On one page."""

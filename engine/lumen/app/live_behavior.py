@@ -6,8 +6,8 @@ from typing import Protocol
 
 from lumen.app.local_timezone import local_timezone
 from lumen.app.setup import Setup
-from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
-from lumen.interpreters.replay.entries import JumpKind
+from lumen.insight.migration import MigrationPlan, MigrationVerdict
+from lumen.insight.replay.entries import JumpKind
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from lumen.app.doings import Doings, Spoken, UnderWay
-from lumen.interpreters.explaining.names import machines_in
-from lumen.interpreters.explaining.outlook import GuardTruth, Running, WayOut, running, ways_out
-from lumen.interpreters.explaining.pressing import ShownButton, shown_buttons
+from lumen.insight.explaining.names import machines_in
+from lumen.insight.explaining.outlook import GuardTruth, Running, WayOut, running, ways_out
+from lumen.insight.explaining.pressing import ShownButton, shown_buttons
 from lumen.language.approvals import Autonomy
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import robot_events

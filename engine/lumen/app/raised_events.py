@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from lumen.app.event_data import EventData
-from lumen.interpreters.explaining.pressing import pressed, takes
+from lumen.insight.explaining.pressing import pressed, takes
 from lumen.language.causes import UNNAMED_PROGRAM, Cause
 from lumen.language.events import Event
 from lumen.language.operator_requests import MAX_NAME, PRESS

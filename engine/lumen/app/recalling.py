@@ -8,16 +8,16 @@ from lumen.app.answering import answer
 from lumen.app.one_robot import one_robot
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.errors import JournalError, UsageError
-from lumen.interpreters.explaining import RecordedStep
-from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
-from lumen.interpreters.replay.replaying import Replayer
+from lumen.insight.explaining import RecordedStep
+from lumen.insight.replay.entries import JournalJump, RecordedEntry
+from lumen.insight.replay.replaying import Replayer
+from lumen.journal.journal_file import read_journal
+from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.iso_time import time_of
 from lumen.language.operator_requests import WHY, WHY_NOT
 from lumen.language.projects import Project
 from lumen.loading.running_project import running_project
 from lumen.runtime.home import home_of
-from lumen.runtime.inputs.journal_file import read_journal
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
 from lumen.statechart import Snapshot, Step
 
 NOT_ASKED = "no running exhibition was asked"

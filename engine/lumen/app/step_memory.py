@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Callable
 from heapq import merge
 
-from lumen.interpreters.explaining import RecordedStep
+from lumen.insight.explaining import RecordedStep
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.loop import Observer

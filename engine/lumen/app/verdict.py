@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from lumen.app.exploring import Explored
 from lumen.app.rehearsal import Rehearsal
-from lumen.interpreters.explaining.sayings import TriedSaying
+from lumen.insight.explaining.sayings import TriedSaying
 from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import Place
 from lumen.runtime.coverage import Coverage

@@ -14,7 +14,7 @@ from lumen.app.versions import LIVE, Version, version
 from lumen.cli.progress import progress
 from lumen.cli.replay_text import replay_lines
 from lumen.cli.terminal import coloured, paint
-from lumen.interpreters.changes import Change, Risk, changes, live, risk, summary
+from lumen.insight.changes import Change, Risk, changes, live, risk, summary
 
 BOUND = 10_000
 COLOURS = {"refused": "red", "waits": "yellow", "moved": "blue", "kept": "green"}

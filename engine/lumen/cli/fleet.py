@@ -22,7 +22,7 @@ from lumen.bus import Bus, connect
 from lumen.cli.fleet_text import fleet_lines, log_lines
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import BusUnreachableError, ProjectError, UsageError
-from lumen.interpreters.changes import changes, risk, summary
+from lumen.insight.changes import changes, risk, summary
 from lumen.language.counts import counted
 from lumen.loading.project_folders import FLEET_FILE
 from lumen.loading.units import seconds

@@ -10,8 +10,8 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.cli.projects import shown_project
 from lumen.cli.tables import table
 from lumen.errors import UsageError
-from lumen.interpreters.explaining.sayings import caught_text, path_of
-from lumen.interpreters.explaining.sentences import (
+from lumen.insight.explaining.sayings import caught_text, path_of
+from lumen.insight.explaining.sentences import (
     ExplainedRow,
     ExplainedSentence,
     FoundPhrase,

@@ -21,7 +21,6 @@ from lumen.formats.gestures import choregraphe_list, read_gesture
 from lumen.formats.importers import FileReader, endings, importer, reader
 from lumen.formats.robot_models import begins_robot
 from lumen.formats.yaml_document import document_yaml
-from lumen.interpreters.limits import Excess, overspeed
 from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.robots import Body
 from lumen.language.text_lines import lines_of
@@ -36,6 +35,7 @@ from lumen.loading.packaged import find_project
 from lumen.loading.project import motion_parts
 from lumen.loading.schema import check_schema
 from lumen.loading.yaml_reader import parse
+from lumen.motion.limits import Excess, overspeed
 from lumen.rules.motions import TOO_FAST
 from lumen.upkeep.garbage import gc_paused
 

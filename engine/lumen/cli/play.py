@@ -17,7 +17,6 @@ from lumen.errors import ProjectError, UsageError
 from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.gestures import read_gesture
 from lumen.formats.importers import endings
-from lumen.interpreters.limits import overspeed
 from lumen.language.commands import Posture
 from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.motions import MotionDefinition
@@ -30,6 +29,7 @@ from lumen.loading.files import read_files
 from lumen.loading.motions import build_motion
 from lumen.loading.project import assemble, motion_parts
 from lumen.loading.schema import check_schema
+from lumen.motion.limits import overspeed
 from lumen.ports import Perform, RobotCommand
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.troubles import trouble_of_answer

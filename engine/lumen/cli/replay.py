@@ -22,7 +22,7 @@ from lumen.cli.reach import configure_robot_name
 from lumen.cli.replay_text import replay_lines
 from lumen.cli.transcript import Transcript
 from lumen.cli.workers_option import configure_workers
-from lumen.interpreters.replay.entries import RecordedEntry
+from lumen.insight.replay.entries import RecordedEntry
 from lumen.language.iso_time import local_time
 from lumen.loading.chosen_robot import as_robot
 

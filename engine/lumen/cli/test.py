@@ -18,8 +18,8 @@ from lumen.cli.terminal import coloured
 from lumen.cli.verdicts import render, text, verdict_formats
 from lumen.cli.writing import write_file
 from lumen.errors import UsageError
-from lumen.interpreters.explaining.sayings import tried as tried_sayings
-from lumen.interpreters.exploration import MAX_CONFIGURATIONS
+from lumen.insight.explaining.sayings import tried as tried_sayings
+from lumen.insight.exploration import MAX_CONFIGURATIONS
 from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project

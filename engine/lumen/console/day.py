@@ -9,10 +9,10 @@ from typing import Any, NamedTuple
 from lumen.app.recording.happenings import FALLEN
 from lumen.console.entry_words import ENDS, ENGLISH, MARK, OFTEN
 from lumen.console.heard_sentences import HeardSentence, heard_sentence
-from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
-from lumen.interpreters.replay.journal_clock import JournalClock
-from lumen.interpreters.replay.replaying import MachineSource, ReplayedStep, Replayer
-from lumen.interpreters.replay.visits import VisitWatch
+from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.insight.replay.journal_clock import JournalClock
+from lumen.insight.replay.replaying import MachineSource, ReplayedStep, Replayer
+from lumen.insight.replay.visits import VisitWatch
 from lumen.language.command_data import started
 from lumen.language.iso_time import iso_time
 from lumen.language.modules import VISITOR_KEY

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from lumen.interpreters.replay.entries import HOWS
+from lumen.insight.replay.entries import HOWS
 from lumen.language.command_data import started
 from lumen.language.events import CLOCK_SET, HELD
 

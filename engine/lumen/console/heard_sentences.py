@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from lumen.interpreters.explaining.outlook import Running, running
-from lumen.interpreters.explaining.sentences import explained, rows_around
-from lumen.interpreters.replay.replaying import ReplayedStep
+from lumen.insight.explaining.outlook import Running, running
+from lumen.insight.explaining.sentences import explained, rows_around
+from lumen.insight.replay.replaying import ReplayedStep
 from lumen.language.machines import MachineDefinition
 from lumen.statechart import Snapshot
 from lumen.statechart.asking import unnamed

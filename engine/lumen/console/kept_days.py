@@ -9,16 +9,16 @@ from lumen.app.one_robot import one_robot
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.console.day import Day, day_of
 from lumen.errors import JournalError
-from lumen.interpreters.replay.entries import RecordedEntry, read_entry
+from lumen.insight.replay.entries import RecordedEntry, read_entry
 from lumen.interpreters.retrieval.words import words
+from lumen.journal.journal_file import each_entry
+from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.loading.files import read_files
 from lumen.loading.project import knowledge_parts, sayings_parts
 from lumen.rules import check_files
 from lumen.runtime.home import home_of
-from lumen.runtime.inputs.journal_file import each_entry
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
 
 WINDOW = 86_400.0 * 1.5
 """How long before the end of a day a file may have begun that holds something of it [s]."""

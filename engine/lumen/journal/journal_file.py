@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import orjson
 
 from lumen.errors import JournalError
-from lumen.interpreters.replay.entries import RecordedEntry, entry_data, read_entry
+from lumen.insight.replay.entries import RecordedEntry, entry_data, read_entry
+from lumen.journal.frames import unpack
 from lumen.loading.regular_files import read_regular
-from lumen.runtime.inputs.frames import unpack
 from lumen.talk.hearing import MATCHER
 
 JOURNAL_VERSION = 1

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import BinaryIO
 
 from lumen.errors import JournalError
+from lumen.journal.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
 from lumen.language.iso_time import file_stamp
-from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
 from lumen.upkeep.private_folder import NO_LINK, private_folder
 
 JOURNAL_FOLDER = "journal"

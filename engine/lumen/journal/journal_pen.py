@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from lumen.errors import SnapshotError
-from lumen.interpreters.replay.digest import StepDigest
-from lumen.interpreters.replay.entries import How, JournalInput, JournalJump, JumpKind
-from lumen.interpreters.replay.visits import home_of
+from lumen.insight.replay.digest import StepDigest
+from lumen.insight.replay.entries import How, JournalInput, JournalJump, JumpKind
+from lumen.insight.replay.visits import home_of
+from lumen.journal.journal_file import line_of
 from lumen.language.command_data import command_data
 from lumen.language.commands import Command
 from lumen.language.projects import Project
-from lumen.runtime.inputs.journal_file import line_of
 from lumen.statechart import Snapshot, Step, serialize
 
 KEYFRAME_PERIOD = 60.0

@@ -5,9 +5,9 @@ from collections import deque
 from collections.abc import Sequence
 from itertools import islice
 
+from lumen.journal.journal_file import entry_of, line_of
+from lumen.journal.redaction import redacted
 from lumen.language.people import PersonName
-from lumen.runtime.inputs.journal_file import entry_of, line_of
-from lumen.runtime.inputs.redaction import redacted
 
 MAX_ENTRIES = 2_000
 MAX_BYTES = 4_000_000

@@ -10,16 +10,16 @@ from collections.abc import Sequence
 from typing import Any, BinaryIO
 
 from lumen.errors import ModuleError
-from lumen.interpreters.replay.entries import How, JumpKind
+from lumen.insight.replay.entries import How, JumpKind
+from lumen.journal.frames import FramePacker
+from lumen.journal.journal_file import JOURNAL_SUFFIX, JournalHeader
+from lumen.journal.journal_folder import JournalFolder
+from lumen.journal.journal_pen import JournalPen, Jumped, Stepped
+from lumen.journal.journal_tail import JournalTail
+from lumen.journal.redaction import redact
 from lumen.language.commands import Command
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
-from lumen.runtime.inputs.frames import FramePacker
-from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, JournalHeader
-from lumen.runtime.inputs.journal_folder import JournalFolder
-from lumen.runtime.inputs.journal_pen import JournalPen, Jumped, Stepped
-from lumen.runtime.inputs.journal_tail import JournalTail
-from lumen.runtime.inputs.redaction import redact
 from lumen.statechart import Snapshot, Step
 from lumen.talk.hearing import MATCHER
 from lumen.upkeep.threads import WatchedThread

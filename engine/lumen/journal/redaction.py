@@ -5,11 +5,11 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from lumen.errors import JournalError, ModuleError
-from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry, entry_data
+from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry, entry_data
+from lumen.journal.forgotten_snapshots import forgetful_data
+from lumen.journal.frames import FramePacker
+from lumen.journal.journal_file import JournalContent, line_of, read_journal
 from lumen.language.people import PersonName
-from lumen.runtime.forgetting import forgetful_data
-from lumen.runtime.inputs.frames import FramePacker
-from lumen.runtime.inputs.journal_file import JournalContent, line_of, read_journal
 
 LINES_PER_FRAME = 1000
 

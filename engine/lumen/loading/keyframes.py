@@ -4,12 +4,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.interpreters.choreography import at_speed, joined, mirrored, placed
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, has_errors
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.poses import PoseReader
 from lumen.loading.units import seconds
+from lumen.motion.choreography import at_speed, joined, mirrored, placed
 
 UNKNOWN_MOTION = Code("unknown-motion", "references", ERROR, "the named motion is not in motions/")
 HANDLES_WITHOUT_KEY = Code("handles-without-key", "motions", ERROR, "a joint has handles but no angle in this keyframe")

@@ -6,7 +6,6 @@ from functools import partial
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
-from lumen.interpreters.choreography import at_speed, mirrored, returning, trailing
 from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.motions import Interpolation, MotionDefinition
 from lumen.language.robots import Body
@@ -15,6 +14,7 @@ from lumen.loading.document_report import DocumentReport
 from lumen.loading.keyframes import MOTION_CYCLE, TOO_MANY_KEYS, ZERO_DURATION, KeyframeReader
 from lumen.loading.poses import PoseReader
 from lumen.loading.units import ANGLES, seconds
+from lumen.motion.choreography import at_speed, mirrored, returning, trailing
 
 DEFAULT_POSTURE = "Stand"
 """The posture that a motion begins in where its file does not say."""

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
-from lumen.interpreters.explaining.words import shown
+from lumen.insight.explaining.words import shown
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Hears, MachineDefinition
 from lumen.loading.draft import ProjectDraft

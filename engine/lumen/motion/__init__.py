@@ -8,13 +8,13 @@ from lumen.upkeep.lazy_names import lazy
 __all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]
 
 _HOMES = {
-    "lumen.motion": ("Motion",),
-    "lumen.interpreters.limits": (
+    "lumen.standalone.motion": ("Motion",),
+    "lumen.motion.limits": (
         "Excess",
         "beyond_limits",
         "overspeed",
     ),
-    "lumen.interpreters.trajectory": ("Trajectory",),
+    "lumen.motion.trajectories": ("Trajectory",),
 }
 
 __getattr__ = lazy(__name__, _HOMES)

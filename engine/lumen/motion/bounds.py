@@ -10,10 +10,10 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from lumen.errors import BadCommandError
-from lumen.interpreters.limits import LIMIT_SLACK, Excess, beyond_limits, coupled_range, overspeed
 from lumen.language.commands import Look
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.robots import Body
+from lumen.motion.limits import LIMIT_SLACK, Excess, beyond_limits, coupled_range, overspeed
 from lumen.ports import Aim, NativeCommand, Perform
 
 MAX_FITS = 50

@@ -5,9 +5,9 @@ from itertools import pairwise
 from math import inf
 from typing import NamedTuple
 
-from lumen.interpreters.trajectory import JointTrack, Trajectory
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.robots import Body, CoupledLimit
+from lumen.motion.trajectories import JointTrack, Trajectory
 
 LIMIT_SLACK = 1e-6
 """[rad] that an angle may lie beyond its limit, and the part by which a speed may: files round."""

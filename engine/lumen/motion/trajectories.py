@@ -9,8 +9,8 @@ from bisect import bisect_right
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from lumen.interpreters.segments import Bezier, Polynomial, Segment
 from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
+from lumen.motion.segments import Bezier, Polynomial, Segment
 
 _SMOOTH = (Interpolation.CUBIC, Interpolation.BEZIER)
 

@@ -14,11 +14,11 @@ step of a flat surface leaves over need not wait for the next image.
 from collections.abc import Mapping
 
 from lumen.fuzzy.magnification import Magnifier
-from lumen.interpreters.joint_history import JointAngles
-from lumen.interpreters.projection import after_turning
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_PITCH, HEAD_YAW, JointRole
+from lumen.motion.joint_history import JointAngles
+from lumen.motion.projection import after_turning
 
 
 class VisualServo:

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from math import atan2, ceil, cos, hypot, sin
 
-from lumen.interpreters.dead_reckoning import turned
 from lumen.language.commands import Walk
 from lumen.language.hall_places import HallPlace
+from lumen.motion.dead_reckoning import turned
 from lumen.ports import Whereabouts
 
 NEAR, FACING = 0.05, 0.1

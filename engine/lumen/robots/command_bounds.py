@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from typing import overload
 
 from lumen.errors import BadCommandError
-from lumen.interpreters.bounds import NOWHERE, aim_within, within_limits
 from lumen.language.commands import Do
 from lumen.language.robots import Body
+from lumen.motion.bounds import NOWHERE, aim_within, within_limits
 from lumen.ports import Aim, NativeCommand, RobotCommand
 from lumen.robots.command_table import check_command
 from lumen.upkeep.once_log import OnceLog

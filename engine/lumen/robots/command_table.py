@@ -13,7 +13,6 @@ from typing import Any, Generic, TypeVar, get_args
 from lumen.errors import BadCommandError
 from lumen.feature import VerbRow
 from lumen.interpreters.added_verbs import time_taken
-from lumen.interpreters.bounds import nearest_angles
 from lumen.language.added_verbs import added_verbs, argument_schema, arguments_of
 from lumen.language.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
 from lumen.language.commands import (
@@ -39,6 +38,7 @@ from lumen.language.robots import Body
 from lumen.language.skills import lack_of
 from lumen.loading.schema import faults
 from lumen.loading.sounds import MAX_SOUND_DURATION
+from lumen.motion.bounds import nearest_angles
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robots.command_parameters import CommandParameters, shown
 from lumen.robots.motion_codec import decode_motion, encode_motion

@@ -3,11 +3,11 @@
 from collections import deque
 from collections.abc import Collection, Sequence
 
-from lumen.interpreters.gestures import GESTURE_SHARE, PlannedGesture, gesture_offsets, plan_gestures
 from lumen.language.body_parts import part_of
 from lumen.language.commands import Say
 from lumen.language.gestures import NO_GESTURES, GestureLibrary, WordTime
 from lumen.language.robots import Body
+from lumen.motion.gestures import GESTURE_SHARE, PlannedGesture, gesture_offsets, plan_gestures
 from lumen.robots.joint_offsets import approach
 
 TEXTS_APART = 2

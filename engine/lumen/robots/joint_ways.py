@@ -4,12 +4,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from lumen.errors import BadCommandError
-from lumen.interpreters.choreography import joined
-from lumen.interpreters.limits import LIMIT_SLACK
-from lumen.interpreters.trajectory import track
 from lumen.language.body_parts import LEGS, part_of
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
+from lumen.motion.choreography import joined
+from lumen.motion.limits import LIMIT_SLACK
+from lumen.motion.trajectories import track
 
 APPROACH_TIME, RECOVERY_TIME = 1.2, 0.8
 """The time [s] to the posture that a motion begins in, and of the way back to it from a cancelled motion."""

@@ -6,7 +6,13 @@ A command never notices it: it is added to where joints are wanted, and taken ba
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from math import inf
 
-from lumen.interpreters.life import (
+from lumen.language.body_parts import ARMS, HEAD, LEGS, part_of
+from lumen.language.commands import Say
+from lumen.language.gestures import WordTime
+from lumen.language.life import STILL_STYLE, LifeStyle
+from lumen.language.robots import Body
+from lumen.language.roles import HEAD_ROLES
+from lumen.motion.life import (
     SPEED_SHARE,
     Attention,
     aside,
@@ -17,13 +23,7 @@ from lumen.interpreters.life import (
     settle,
     sway,
 )
-from lumen.interpreters.life.looking import TOUCHED
-from lumen.language.body_parts import ARMS, HEAD, LEGS, part_of
-from lumen.language.commands import Say
-from lumen.language.gestures import WordTime
-from lumen.language.life import STILL_STYLE, LifeStyle
-from lumen.language.robots import Body
-from lumen.language.roles import HEAD_ROLES
+from lumen.motion.life.looking import TOUCHED
 from lumen.ports import Live
 from lumen.robots.gesture_player import GesturePlayer
 from lumen.robots.joint_offsets import approach

@@ -6,8 +6,6 @@ from math import hypot, inf
 from typing import Any
 
 from lumen.errors import RobotFailedError, UsageError
-from lumen.interpreters.dead_reckoning import DeadReckoning, beyond
-from lumen.interpreters.projection import Vector3, centring, seen
 from lumen.language.added_verbs import whole_result
 from lumen.language.body_parts import LEGS, WHOLE_BODY, part_of
 from lumen.language.causes import VISITOR, Cause
@@ -17,6 +15,8 @@ from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.routes import BATTERY, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
+from lumen.motion.dead_reckoning import DeadReckoning, beyond
+from lumen.motion.projection import Vector3, centring, seen
 from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_table import added_verb, parts_of, row_of

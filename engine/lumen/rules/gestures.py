@@ -1,12 +1,12 @@
 """Gestures that accompany speech: joints that can't follow, and tags that no text has."""
 
-from lumen.interpreters.gestures import BEAT, GESTURE_SHARE, peak_speeds
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.gestures import GestureLibrary, merged
 from lumen.language.robots import Body
 from lumen.loading.document_report import DocumentReport
 from lumen.loading.draft import ProjectDraft
 from lumen.loading.project_folders import GESTURES_FOLDER
+from lumen.motion.gestures import BEAT, GESTURE_SHARE, peak_speeds
 from lumen.rules.effects import NO_EFFECT
 from lumen.rules.lookups import first
 from lumen.rules.motions import TOO_FAST, more_time

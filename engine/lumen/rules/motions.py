@@ -5,8 +5,6 @@ from dataclasses import replace
 from functools import partial
 from math import ceil
 
-from lumen.interpreters.limits import Excess, beyond_limits, overspeed
-from lumen.interpreters.trajectory import Trajectory
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
@@ -16,6 +14,8 @@ from lumen.loading.memoization import memoize
 from lumen.loading.poses import ANGLE_OUT_OF_RANGE
 from lumen.loading.project_folders import PASSAGES
 from lumen.loading.units import ANGLES
+from lumen.motion.limits import Excess, beyond_limits, overspeed
+from lumen.motion.trajectories import Trajectory
 
 TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
 

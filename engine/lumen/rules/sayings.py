@@ -1,8 +1,8 @@
 """Sayings as tests: the behaviour, state, row and slots that they name."""
 
 from lumen.expressions.expression_findings import UNKNOWN_STATE
-from lumen.interpreters.explaining.sayings import path_of
-from lumen.interpreters.explaining.sentences import hearing_states, rows_around
+from lumen.insight.explaining.sayings import path_of
+from lumen.insight.explaining.sentences import hearing_states, rows_around
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.machines import Hears, MachineDefinition

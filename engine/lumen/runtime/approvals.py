@@ -10,7 +10,7 @@ from math import inf
 from typing import NamedTuple, Protocol
 
 from lumen.errors import LumenError
-from lumen.interpreters.explaining.names import machines_in
+from lumen.insight.explaining.names import machines_in
 from lumen.language.approvals import Autonomy
 from lumen.language.causes import Cause
 from lumen.language.events import Event

@@ -1,9 +1,9 @@
 """Tells the robot in which style it is alive, and with which gestures it speaks, as the active states say."""
 
-from lumen.interpreters.life import gestures_wanted, style_name
 from lumen.language.gestures import NO_GESTURES, merged
 from lumen.language.life import STILL_STYLE
 from lumen.language.projects import Project
+from lumen.motion.life import gestures_wanted, style_name
 from lumen.ports import Live, Robot
 from lumen.statechart import Snapshot
 

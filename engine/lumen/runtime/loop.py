@@ -6,9 +6,9 @@ from math import inf
 from typing import Any, Protocol
 
 from lumen.expressions.wall_clock import local_time, moment
-from lumen.interpreters.explaining.pressing import pressed
-from lumen.interpreters.migration import MigrationPlan, MigrationVerdict
-from lumen.interpreters.replay.entries import JumpKind
+from lumen.insight.explaining.pressing import pressed
+from lumen.insight.migration import MigrationPlan, MigrationVerdict
+from lumen.insight.replay.entries import JumpKind
 from lumen.language.approvals import Autonomy
 from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event

@@ -4,11 +4,11 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
-from lumen.interpreters.wayfinding import distance_to, most_legs, next_leg, place_at
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import ARRIVED, DOUBTFUL, LEFT, Event
 from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.projects import Project
+from lumen.motion.wayfinding import distance_to, most_legs, next_leg, place_at
 from lumen.ports import Joints, Robot, RobotCommand, Sense, Whereabouts
 
 POSITION_PATIENCE = 2.0

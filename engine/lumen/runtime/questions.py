@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import BusError
 from lumen.expressions.json_schema import JsonSchema
-from lumen.interpreters.replay.visits import home_of
+from lumen.insight.replay.visits import home_of
 from lumen.interpreters.retrieval.ranking import Weights
 from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.commands import Ask

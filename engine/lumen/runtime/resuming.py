@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from lumen.interpreters.migration import MigrationPlan, Refusal, plan
+from lumen.insight.migration import MigrationPlan, Refusal, plan
 from lumen.language.commands import Cancel, Command
 from lumen.language.events import Event
 from lumen.language.projects import Project

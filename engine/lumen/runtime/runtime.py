@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from lumen.errors import LumenError
-from lumen.interpreters.migration import MigrationVerdict, plan
-from lumen.interpreters.replay.entries import How, JumpKind
+from lumen.insight.migration import MigrationVerdict, plan
+from lumen.insight.replay.entries import How, JumpKind
+from lumen.journal.forgotten_snapshots import forgetful
 from lumen.language.causes import Cause
 from lumen.language.commands import Command
 from lumen.language.events import Event
@@ -14,7 +15,6 @@ from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.approvals import Approvals
 from lumen.runtime.best_alternative import best_alternative
-from lumen.runtime.forgetting import forgetful
 from lumen.statechart import Snapshot, Step, elapse, initial, step
 
 _log = logging.getLogger(__name__)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from lumen.errors import BusError
-from lumen.interpreters.migration import MigrationPlan
+from lumen.insight.migration import MigrationPlan
 from lumen.language.causes import Cause
 from lumen.language.command_data import trace_verb, traced
 from lumen.language.commands import Command, Start

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from lumen.interpreters.tracking import Tracker
 from lumen.language.commands import Track
 from lumen.language.numbers import is_number
 from lumen.language.projects import Project
+from lumen.motion.tracking import Tracker
 from lumen.ports import Aim, Bus, Robot
 from lumen.runtime.route_inbox import RouteInbox
 

@@ -6,8 +6,6 @@ from pathlib import Path
 from typing import Any, Self
 
 from lumen.errors import ProjectError
-from lumen.interpreters.limits import Excess, beyond_limits, overspeed
-from lumen.interpreters.trajectory import Trajectory
 from lumen.language import motions
 from lumen.language.diagnostics import has_errors
 from lumen.loading.derived import derived
@@ -21,6 +19,8 @@ from lumen.loading.project import motion_parts
 from lumen.loading.project_folders import MAIN_FILE
 from lumen.loading.schema import check_schema
 from lumen.loading.single_file import read_document
+from lumen.motion.limits import Excess, beyond_limits, overspeed
+from lumen.motion.trajectories import Trajectory
 from lumen.upkeep.arguments import need_map, need_number, need_numbers, need_path, need_text
 
 __all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]

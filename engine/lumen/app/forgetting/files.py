@@ -13,17 +13,17 @@ from lumen.app.recording.recordings_folder import RecordingsFolder
 from lumen.app.recording.redaction import redacted
 from lumen.errors import JournalError, LumenError, ModuleError
 from lumen.formats.recordings.rewriting import rewrite
+from lumen.journal.forgotten_snapshots import forgetful_data
+from lumen.journal.journal_file import JOURNAL_SUFFIX, read_journal
+from lumen.journal.journal_folder import JOURNAL_FOLDER, newest
+from lumen.journal.redaction import names, redact
 from lumen.language.counts import counted
 from lumen.language.people import PersonName, name_key
 from lumen.loading.json_lines import forget_lines, line_names
 from lumen.modules.eyes.eyes import FACES_FILE
 from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
-from lumen.runtime.forgetting import forgetful_data
 from lumen.runtime.home import Home
-from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, read_journal
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, newest
-from lumen.runtime.inputs.redaction import names, redact
 from lumen.runtime.snapshot_store import DAMAGED_BUNDLE, SNAPSHOT_FILE
 
 DRAFT_AGE = 5.0

@@ -11,8 +11,8 @@ from lumen.app.parts.visitor import RemoteVisitorPart
 from lumen.app.processes.bundles import BundleFollower
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.services import Services
-from lumen.interpreters.bounds import analyse
 from lumen.language.projects import Project
+from lumen.motion.bounds import analyse
 from lumen.robots.person_hold import StoppedBy
 from lumen.runtime.presence import Presence
 from lumen.runtime.story import staged

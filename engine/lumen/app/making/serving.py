@@ -15,10 +15,10 @@ from lumen.app.reload.reloader import Reloader, ReloadOptions
 from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.services import Services
 from lumen.app.status import LastReload
-from lumen.interpreters.bounds import analyse
+from lumen.journal.journal_writer import JournalWriter
 from lumen.loading.project_folders import FLEET_FILE
+from lumen.motion.bounds import analyse
 from lumen.robots.person_hold import StoppedBy
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.resuming import FreshStart, Resumption
 
 

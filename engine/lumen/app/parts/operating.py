@@ -22,6 +22,7 @@ from lumen.app.request_checks import RequestChecks
 from lumen.app.status import LastReload, status_of
 from lumen.app.step_memory import StepMemory
 from lumen.errors import BusError, LumenError
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.modules import EARS
@@ -44,7 +45,6 @@ from lumen.language.operator_requests import (
 from lumen.ports import Message, Sense
 from lumen.robots.person_hold import StoppedBy
 from lumen.robots.robot_routes import TEXT_ROUTE
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.loop import Observer
 from lumen.statechart import Step
 from lumen.statechart.direct_entry import entered_directly

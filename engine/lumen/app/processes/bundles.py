@@ -7,11 +7,11 @@ from pathlib import Path
 
 from lumen.app.parts.part import Part
 from lumen.app.reload.requests import status_key
-from lumen.interpreters.bounds import analyse
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import fingerprint, read_files
+from lumen.motion.bounds import analyse
 from lumen.ports import Bus, Message
 from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore

@@ -11,12 +11,12 @@ from pathlib import Path
 from lumen.errors import LumenError
 from lumen.formats.recordings.foxglove import NANO
 from lumen.formats.recordings.recorded import RecordedFile, RecordedNotes
+from lumen.journal.journal_file import JOURNAL_SUFFIX
+from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.iso_time import iso_time
 from lumen.language.projects import Project
 from lumen.loading.files import fingerprint, read_files
 from lumen.runtime.home import Home, home_of
-from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
 from lumen.runtime.snapshot_store import SnapshotStore
 
 NOTES = "lumen"

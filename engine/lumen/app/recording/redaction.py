@@ -12,9 +12,9 @@ from lumen.formats.recordings.foxglove import NANO
 from lumen.formats.recordings.reading import read_recording
 from lumen.formats.recordings.recorded import Recorded, RecordedFile, RecordedMessage
 from lumen.formats.recordings.rewriting import Changed
+from lumen.journal.journal_file import JOURNAL_SUFFIX
+from lumen.journal.redaction import redact
 from lumen.language.people import PersonName
-from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX
-from lumen.runtime.inputs.redaction import redact
 
 AROUND = 600.0
 """How long before and after their name was said pictures and sounds may be of them [s]."""

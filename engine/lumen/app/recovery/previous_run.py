@@ -9,8 +9,8 @@ from lumen.app.reload.records import RunRecords
 from lumen.app.reload.report import START, ReloadReport
 from lumen.app.reload.validation_worker import load_apart
 from lumen.errors import LumenError, ProjectError
-from lumen.interpreters.changes import changes
-from lumen.interpreters.migration import Refusal
+from lumen.insight.changes import changes
+from lumen.insight.migration import Refusal
 from lumen.language.projects import Project
 from lumen.loading.chosen_robot import as_robot
 from lumen.runtime.crash_counter import MAX_CRASHES

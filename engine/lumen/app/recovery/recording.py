@@ -5,13 +5,13 @@ from pathlib import Path
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.reload.records import RunRecords
 from lumen.errors import LumenError
+from lumen.journal.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER, JournalFolder
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.projects import Project
 from lumen.language.retention import JournalRetention
 from lumen.language.stories import Story
 from lumen.loading.files import fingerprint, read_files
 from lumen.runtime.home import Home, home_of
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER, JournalFolder
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.snapshot_store import SnapshotStore
 from lumen.upkeep.private_folder import private_folder
 

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterator
 
 from lumen.app.reload.migration_preview import MigrationPreview, preview
-from lumen.interpreters.changes import live
-from lumen.interpreters.migration import Refusal
-from lumen.interpreters.migration.identity import Identity
+from lumen.insight.changes import live
+from lumen.insight.migration import Refusal
+from lumen.insight.migration.identity import Identity
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project

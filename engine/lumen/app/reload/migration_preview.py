@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from lumen.app.exploring import outside
-from lumen.interpreters.exploration.search import StateSpaceSearch, leaves
-from lumen.interpreters.migration import MigrationDelay, MigrationPlan, MigrationVerdict, plan
+from lumen.insight.exploration.search import StateSpaceSearch, leaves
+from lumen.insight.migration import MigrationDelay, MigrationPlan, MigrationVerdict, plan
 from lumen.language.projects import Project
 from lumen.runtime.story_time import story_epoch
 from lumen.statechart import Snapshot

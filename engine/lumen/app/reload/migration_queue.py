@@ -14,9 +14,9 @@ from lumen.app.reload.rollback_guard import RollbackGuard
 from lumen.app.reload.trial import Trial
 from lumen.app.reload.validator import Validation, fault_of
 from lumen.errors import BusError
-from lumen.interpreters.changes import Change, changes, live
-from lumen.interpreters.migration import MigrationDelay, MigrationPlan, Refusal
-from lumen.interpreters.replay.visits import home_of
+from lumen.insight.changes import Change, changes, live
+from lumen.insight.migration import MigrationDelay, MigrationPlan, Refusal
+from lumen.insight.replay.visits import home_of
 from lumen.language.projects import Project
 
 OTHER_VISITS = "recorded visits would go differently with these files"

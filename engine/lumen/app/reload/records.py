@@ -8,11 +8,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from typing import Any
 
+from lumen.journal.journal_writer import JournalWriter
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.runtime.crash_counter import CrashCounter
 from lumen.runtime.home import Home
-from lumen.runtime.inputs.journal_writer import JournalWriter
 from lumen.runtime.journal import Journal
 from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.snapshot_store import SnapshotStore

@@ -21,14 +21,14 @@ from lumen.app.reload.validator import BUDGET, BundleValidator, Validation, faul
 from lumen.app.status import LastReload
 from lumen.buses.validated import by_key
 from lumen.errors import BusError, UsageError
-from lumen.interpreters.bounds import analyse
-from lumen.interpreters.changes import changes, live
+from lumen.insight.changes import changes, live
 from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.replay_check import ReplayCheck
 from lumen.loading.chosen_robot import as_robot
 from lumen.loading.files import read_files
+from lumen.motion.bounds import analyse
 from lumen.ports import Message
 from lumen.runtime.watcher import QUIET_PERIOD, FileWatcher, SavedFiles
 

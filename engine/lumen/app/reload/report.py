@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from lumen.app.reload.validator import Validation, told
-from lumen.interpreters.changes import Change, Risk, risk, summary
-from lumen.interpreters.migration import MigrationDelay, Refusal
+from lumen.insight.changes import Change, Risk, risk, summary
+from lumen.insight.migration import MigrationDelay, Refusal
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.language.projects import Project
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from lumen.app.live_behavior import LiveBehavior
-from lumen.interpreters.changes import live
-from lumen.interpreters.migration import MigrationPlan
+from lumen.insight.changes import live
+from lumen.insight.migration import MigrationPlan
 from lumen.language.commands import Command
 from lumen.language.projects import Project
 from lumen.runtime.resuming import anew

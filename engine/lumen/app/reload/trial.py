@@ -1,6 +1,6 @@
 """Saved files that are tried for one visitor."""
 
-from lumen.interpreters.replay.visits import home_of
+from lumen.insight.replay.visits import home_of
 from lumen.language.projects import Project
 from lumen.statechart import Snapshot
 

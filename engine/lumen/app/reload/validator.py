@@ -12,7 +12,7 @@ from lumen.app.reload.requests import ReloadRequest
 from lumen.app.reload.validation_worker import FileJudge
 from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
-from lumen.interpreters.changes import Change, Risk, changes
+from lumen.insight.changes import Change, Risk, changes
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.language.replay_check import ReplayCheck

@@ -82,8 +82,8 @@ def check_visits(root: Path, new: Project, running: str, budget: float) -> Visit
     from lumen.app.replaying.kept_bundles import KeptBundles  # only where visits are played
     from lumen.app.replaying.latest_visits import latest_first
     from lumen.app.replaying.other_files import VisitPlayer
+    from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
     from lumen.runtime.home import home_of
-    from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, JournalFolder
 
     until = time.monotonic() + budget
 

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lumen.errors import UsageError
-from lumen.interpreters.replay.entries import RecordedEntry
-from lumen.interpreters.replay.journal_clock import JournalClock
+from lumen.insight.replay.entries import RecordedEntry
+from lumen.insight.replay.journal_clock import JournalClock
+from lumen.journal.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
+from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.iso_time import time_of_day
 from lumen.runtime.home import home_of
-from lumen.runtime.inputs.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
-from lumen.runtime.inputs.journal_folder import JOURNAL_FOLDER, headers
 
 DAYS = {"today": 0, "yesterday": 1}
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import with_machines
 from lumen.errors import JournalError
-from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
-from lumen.interpreters.replay.visits import RecordedVisit, visits
-from lumen.runtime.inputs.journal_file import read_journal
+from lumen.insight.replay.entries import JournalJump, RecordedEntry
+from lumen.insight.replay.visits import RecordedVisit, visits
+from lumen.journal.journal_file import read_journal
 
 
 def latest_first(files: Sequence[Path], bundles: KeptBundles) -> Iterator[RecordedVisit]:

@@ -7,10 +7,10 @@ from time import monotonic
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.replay_report import ReplayReport
 from lumen.errors import BadCommandError
-from lumen.interpreters.changes import live
-from lumen.interpreters.replay.against import SAME, VisitVerdict, played_against
-from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
-from lumen.interpreters.replay.visits import RecordedVisit, visits
+from lumen.insight.changes import live
+from lumen.insight.replay.against import SAME, VisitVerdict, played_against
+from lumen.insight.replay.entries import JournalJump, RecordedEntry
+from lumen.insight.replay.visits import RecordedVisit, visits
 from lumen.language.commands import BodyCommand, Play
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project

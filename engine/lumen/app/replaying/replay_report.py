@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from lumen.interpreters.replay.against import SAME, VisitVerdict
-from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
-from lumen.interpreters.replay.replaying import MachineSource, ReplayedStep, replay
-from lumen.interpreters.replay.visits import RecordedVisit, VisitWatch
+from lumen.insight.replay.against import SAME, VisitVerdict
+from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.insight.replay.replaying import MachineSource, ReplayedStep, replay
+from lumen.insight.replay.visits import RecordedVisit, VisitWatch
 from lumen.language.iso_time import iso_time
 from lumen.language.machines import MachineDefinition
 

@@ -10,12 +10,12 @@ from lumen.app.replaying.other_files import VisitPlayer, with_machines
 from lumen.app.replaying.replay_report import ReplayCount, ReplayReport, TakenAgain
 from lumen.app.workers.work_kit import UnpackedKit, WorkKit, models_in
 from lumen.app.workers.workers import Workers
-from lumen.interpreters.replay.entries import JournalJump, RecordedEntry
-from lumen.interpreters.replay.replaying import replay
-from lumen.interpreters.replay.visits import RecordedVisit, visits
+from lumen.insight.replay.entries import JournalJump, RecordedEntry
+from lumen.insight.replay.replaying import replay
+from lumen.insight.replay.visits import RecordedVisit, visits
+from lumen.journal.journal_file import header_of
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.runtime.inputs.journal_file import header_of
 
 VISITS = 20
 """How many visits are a task."""

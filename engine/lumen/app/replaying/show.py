@@ -6,8 +6,8 @@ from lumen.app.narrator import Narrator
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.setup import Setup
 from lumen.buses.memory import MemoryBus
-from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
-from lumen.interpreters.replay.replaying import Replayer
+from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.insight.replay.replaying import Replayer
 from lumen.language.projects import Project
 from lumen.runtime.performer import Performer
 

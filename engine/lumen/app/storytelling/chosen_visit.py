@@ -8,8 +8,8 @@ from lumen.app.replaying.journals import ChosenJournal, requested_time
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import with_machines
 from lumen.errors import UsageError
-from lumen.interpreters.replay.journal_clock import JournalClock
-from lumen.interpreters.replay.visits import RecordedVisit, visits
+from lumen.insight.replay.journal_clock import JournalClock
+from lumen.insight.replay.visits import RecordedVisit, visits
 
 
 class ChosenVisit(NamedTuple):

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumen.app.rehearsal import Rehearsal, rehearse
-from lumen.interpreters.replay.against import noticed
+from lumen.insight.replay.against import noticed
 from lumen.language.command_data import command_data
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.events import Event

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
+from lumen.insight.replay.entries import JournalInput
+from lumen.insight.replay.visits import RecordedVisit
 from lumen.interpreters.added_verbs import usable_verbs
-from lumen.interpreters.replay.entries import JournalInput
-from lumen.interpreters.replay.visits import RecordedVisit
 from lumen.language.command_data import started
 from lumen.language.controller_events import controller_events
 from lumen.language.events import CLOCK_SET, Event

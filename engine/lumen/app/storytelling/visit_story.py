@@ -12,7 +12,7 @@ from lumen.app.storytelling.rendition import Rendition, TickNotes, played, told
 from lumen.app.storytelling.visit_script import TimedAction, broken, results, script
 from lumen.errors import LumenError, UsageError
 from lumen.expressions.wall_clock import zone
-from lumen.interpreters.replay.visits import RecordedVisit
+from lumen.insight.replay.visits import RecordedVisit
 from lumen.language.hours import WEEKDAYS, Schedule
 from lumen.language.projects import Project
 from lumen.language.stories import Expect, SetAutonomy, Story, StoryPause, StoryStep, VisitorAction

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 from typing import TypeVar
 
-from lumen.interpreters.changes.change import Change, Risk
-from lumen.interpreters.changes.formatting import code, names, quoted, seconds
+from lumen.insight.changes.change import Change, Risk
+from lumen.insight.changes.formatting import code, names, quoted, seconds
 from lumen.language.actions import (
     Action,
     AskQuestion,

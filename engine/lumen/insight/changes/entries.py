@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping
 from typing import TypeVar
 
-from lumen.interpreters.changes.change import Change, Risk
+from lumen.insight.changes.change import Change, Risk
 
 T = TypeVar("T")
 

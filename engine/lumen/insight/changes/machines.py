@@ -4,11 +4,11 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
-from lumen.interpreters.changes.actions import block_changes
-from lumen.interpreters.changes.change import Change, Risk
-from lumen.interpreters.changes.formatting import code, how_many, names, quoted
-from lumen.interpreters.changes.transitions import transition_changes
-from lumen.interpreters.migration.identity import Identity
+from lumen.insight.changes.actions import block_changes
+from lumen.insight.changes.change import Change, Risk
+from lumen.insight.changes.formatting import code, how_many, names, quoted
+from lumen.insight.changes.transitions import transition_changes
+from lumen.insight.migration.identity import Identity
 from lumen.language.machines import MachineDefinition, State
 
 

@@ -4,13 +4,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from itertools import groupby
 
-from lumen.interpreters.changes.change import Change, Risk
-from lumen.interpreters.changes.entries import entry_changes
-from lumen.interpreters.changes.formatting import code, how_many
-from lumen.interpreters.changes.machines import machine_changes
-from lumen.interpreters.changes.parts import controller_changes, motion_changes, route_changes
-from lumen.interpreters.changes.restart_fields import RESTART_FIELDS
-from lumen.interpreters.changes.sections import AT_NEXT_START, section_changes
+from lumen.insight.changes.change import Change, Risk
+from lumen.insight.changes.entries import entry_changes
+from lumen.insight.changes.formatting import code, how_many
+from lumen.insight.changes.machines import machine_changes
+from lumen.insight.changes.parts import controller_changes, motion_changes, route_changes
+from lumen.insight.changes.restart_fields import RESTART_FIELDS
+from lumen.insight.changes.sections import AT_NEXT_START, section_changes
 from lumen.language.projects import Project
 
 MAX_SUMMARY_CHANGES = 4

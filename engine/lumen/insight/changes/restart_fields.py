@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from lumen.interpreters.changes.sections import live_sections
+from lumen.insight.changes.sections import live_sections
 from lumen.language.projects import Project
 
 RESTART_FIELDS: Mapping[str, str] = {

@@ -5,9 +5,9 @@ from dataclasses import replace
 from typing import Any
 
 from lumen.feature import Section, table
-from lumen.interpreters.changes.change import Change, Risk
-from lumen.interpreters.changes.entries import entry_changes
-from lumen.interpreters.changes.formatting import code
+from lumen.insight.changes.change import Change, Risk
+from lumen.insight.changes.entries import entry_changes
+from lumen.insight.changes.formatting import code
 from lumen.language.projects import Project
 
 AT_NEXT_START = "it takes effect at the next start"

@@ -5,9 +5,9 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 from lumen.expressions.readings import as_written
-from lumen.interpreters.changes.actions import block_changes, paired
-from lumen.interpreters.changes.change import Change, Risk
-from lumen.interpreters.changes.formatting import code, names, seconds
+from lumen.insight.changes.actions import block_changes, paired
+from lumen.insight.changes.change import Change, Risk
+from lumen.insight.changes.formatting import code, names, seconds
 from lumen.language.actions import Expression, Template
 from lumen.language.machines import State, Transition
 

@@ -4,6 +4,6 @@ Nothing here runs while an exhibition does; a step taken again is the same step,
 The questions are in `answers`, which is loaded when somebody asks one.
 """
 
-from lumen.interpreters.explaining.history import RecordedStep, StepHistory
+from lumen.insight.explaining.history import RecordedStep, StepHistory
 
 __all__ = ["RecordedStep", "StepHistory"]

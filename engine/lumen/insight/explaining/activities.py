@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 from lumen.expressions import Scope
 from lumen.expressions.scope import no_draw
-from lumen.interpreters.explaining.conditions import first_false
-from lumen.interpreters.explaining.history import StepHistory
-from lumen.interpreters.explaining.insides import within
-from lumen.interpreters.explaining.names import PlacedDeed
-from lumen.interpreters.explaining.refusals import Reason
-from lumen.interpreters.explaining.words import prefix_of
+from lumen.insight.explaining.conditions import first_false
+from lumen.insight.explaining.history import StepHistory
+from lumen.insight.explaining.insides import within
+from lumen.insight.explaining.names import PlacedDeed
+from lumen.insight.explaining.refusals import Reason
+from lumen.insight.explaining.words import prefix_of
 from lumen.language.actions import AskQuestion, If, Parallel, PlacedAction
 from lumen.language.diagnostics import NodePath
 from lumen.statechart.compiled_machine import compiled

@@ -5,16 +5,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.errors import UsageError
-from lumen.interpreters.explaining.activities import unreached
-from lumen.interpreters.explaining.chains import chain
-from lumen.interpreters.explaining.dependence import directly_needed
-from lumen.interpreters.explaining.effects import effect
-from lumen.interpreters.explaining.history import RecordedStep, StepHistory
-from lumen.interpreters.explaining.links import Link
-from lumen.interpreters.explaining.names import KnownNames, state_named
-from lumen.interpreters.explaining.refusals import ORDER, Reason, TransitionRefusals
-from lumen.interpreters.explaining.ways import deeds, ways
-from lumen.interpreters.explaining.words import of_event
+from lumen.insight.explaining.activities import unreached
+from lumen.insight.explaining.chains import chain
+from lumen.insight.explaining.dependence import directly_needed
+from lumen.insight.explaining.effects import effect
+from lumen.insight.explaining.history import RecordedStep, StepHistory
+from lumen.insight.explaining.links import Link
+from lumen.insight.explaining.names import KnownNames, state_named
+from lumen.insight.explaining.refusals import ORDER, Reason, TransitionRefusals
+from lumen.insight.explaining.ways import deeds, ways
+from lumen.insight.explaining.words import of_event
 from lumen.language.iso_time import iso_time
 from lumen.statechart.nesting import active_names
 

@@ -14,7 +14,7 @@ from lumen.expressions.tree import (
     path_of,
     walk,
 )
-from lumen.interpreters.exploration.samples import SAMPLE_TEXT, phrases_at, texts_for
+from lumen.insight.exploration.samples import SAMPLE_TEXT, phrases_at, texts_for
 from lumen.language.machines import MachineDefinition
 
 ValuePath = tuple[str, ...]

@@ -5,15 +5,15 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, TypeAlias
 
-from lumen.interpreters.explaining.conditions import values
-from lumen.interpreters.explaining.effects import Effect
-from lumen.interpreters.explaining.hearing import heard_row
-from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
-from lumen.interpreters.explaining.insides import ended_timer, machine_within, sets_timer
-from lumen.interpreters.explaining.links import Link, LinkKind
-from lumen.interpreters.explaining.origins import origin
-from lumen.interpreters.explaining.tracing import Deed, TracedMicrostep
-from lumen.interpreters.explaining.words import (
+from lumen.insight.explaining.conditions import values
+from lumen.insight.explaining.effects import Effect
+from lumen.insight.explaining.hearing import heard_row
+from lumen.insight.explaining.history import OPERATOR_GOTO, StepHistory
+from lumen.insight.explaining.insides import ended_timer, machine_within, sets_timer
+from lumen.insight.explaining.links import Link, LinkKind
+from lumen.insight.explaining.origins import origin
+from lumen.insight.explaining.tracing import Deed, TracedMicrostep
+from lumen.insight.explaining.words import (
     awaited,
     brought,
     of_command,

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.explaining.words import prefix_of
+from lumen.insight.explaining.words import prefix_of
 from lumen.language.events import Event
 from lumen.language.json_paths import with_value
 from lumen.statechart.values import Invoked, Snapshot

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from lumen.expressions import names
-from lumen.interpreters.explaining.history import RecordedStep, StepHistory
-from lumen.interpreters.exploration.expression_uses import of_block, of_transition
+from lumen.insight.explaining.history import RecordedStep, StepHistory
+from lumen.insight.exploration.expression_uses import of_block, of_transition
 from lumen.language.machines import MachineDefinition
 from lumen.statechart.command_ids import answer_of, inner_id
 from lumen.statechart.values import Snapshot

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from lumen.errors import UsageError
-from lumen.interpreters.explaining.history import StepHistory
-from lumen.interpreters.explaining.names import KnownNames, same_text, state_named
-from lumen.interpreters.explaining.words import of_command
+from lumen.insight.explaining.history import StepHistory
+from lumen.insight.explaining.names import KnownNames, same_text, state_named
+from lumen.insight.explaining.words import of_command
 from lumen.language.commands import Command, Publish, Say, Start, Tell
 from lumen.statechart.nesting import entered_names
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple
 
 from lumen.expressions import Scope
-from lumen.interpreters.explaining.conditions import holds
+from lumen.insight.explaining.conditions import holds
 from lumen.language.machines import Hears, MachineDefinition, Transition
 from lumen.talk.finder import Find
 from lumen.talk.hearing import Dropped, hearing_of, said_in

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from lumen.interpreters.explaining.tracing import Deed, Trace, retaken
+from lumen.insight.explaining.tracing import Deed, Trace, retaken
 from lumen.language.commands import Start
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import MachineDefinition

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from lumen.expressions import Scope
 from lumen.expressions.readings import readings
 from lumen.expressions.scope import no_draw
-from lumen.interpreters.explaining.hearing import heard_row, heard_rows
+from lumen.insight.explaining.hearing import heard_row, heard_rows
 from lumen.language.actions import Expression
 from lumen.language.controllers import CONTROLLER_EVENT
 from lumen.language.events import Event

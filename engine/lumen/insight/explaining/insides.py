@@ -1,6 +1,6 @@
 """What runs within a behaviour, by the ids of its invokes: `hint@quiz`; its snapshot, its machine, its timers."""
 
-from lumen.interpreters.explaining.history import RecordedStep
+from lumen.insight.explaining.history import RecordedStep
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.statechart.command_ids import inner_id

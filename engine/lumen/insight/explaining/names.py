@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from lumen.errors import UsageError
-from lumen.interpreters.explaining.history import RecordedStep
-from lumen.interpreters.explaining.words import prefix_of
+from lumen.insight.explaining.history import RecordedStep
+from lumen.insight.explaining.words import prefix_of
 from lumen.language.actions import Action, AskQuestion, If, Parallel, PlacedAction, SayText
 from lumen.language.commands import Play
 from lumen.language.diagnostics import NodePath, did_you_mean

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.explaining.history import RecordedStep
-from lumen.interpreters.explaining.links import LinkKind
+from lumen.insight.explaining.history import RecordedStep
+from lumen.insight.explaining.links import LinkKind
 from lumen.language.causes import Cause
 from lumen.language.events import Event, robot_events
 

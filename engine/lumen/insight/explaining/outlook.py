@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 from lumen.expressions import Scope
 from lumen.expressions.scope import no_draw
-from lumen.interpreters.explaining.conditions import awaits_event, parts, values
-from lumen.interpreters.explaining.hearing import heard_row
-from lumen.interpreters.explaining.words import of_transition, prefix_of, shown
+from lumen.insight.explaining.conditions import awaits_event, parts, values
+from lumen.insight.explaining.hearing import heard_row
+from lumen.insight.explaining.words import of_transition, prefix_of, shown
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.statechart.chart import CompiledTransition

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from lumen.errors import LumenError
-from lumen.interpreters.explaining.names import machines_in
-from lumen.interpreters.explaining.outlook import Running, running, ways_out
-from lumen.interpreters.explaining.words import prefix_of
+from lumen.insight.explaining.names import machines_in
+from lumen.insight.explaining.outlook import Running, running, ways_out
+from lumen.insight.explaining.words import prefix_of
 from lumen.language.buttons import Button
 from lumen.language.causes import Cause
 from lumen.language.diagnostics import did_you_mean

@@ -6,15 +6,15 @@ from typing import Any, Literal
 
 from lumen.errors import LumenError
 from lumen.expressions import Scope, parse_expression
-from lumen.interpreters.explaining.changes import ProposedChange, StepSituation
-from lumen.interpreters.explaining.conditions import GuardPart, first_false
-from lumen.interpreters.explaining.hearing import HeardRow, heard_row
-from lumen.interpreters.explaining.history import OPERATOR_GOTO, StepHistory
-from lumen.interpreters.explaining.insides import within
-from lumen.interpreters.explaining.searching import Happens, literals_in, smallest_change, taken
-from lumen.interpreters.explaining.tracing import Moment
-from lumen.interpreters.explaining.words import awaited, of_transition, prefix_of
-from lumen.interpreters.exploration.samples import samples
+from lumen.insight.explaining.changes import ProposedChange, StepSituation
+from lumen.insight.explaining.conditions import GuardPart, first_false
+from lumen.insight.explaining.hearing import HeardRow, heard_row
+from lumen.insight.explaining.history import OPERATOR_GOTO, StepHistory
+from lumen.insight.explaining.insides import within
+from lumen.insight.explaining.searching import Happens, literals_in, smallest_change, taken
+from lumen.insight.explaining.tracing import Moment
+from lumen.insight.explaining.words import awaited, of_transition, prefix_of
+from lumen.insight.exploration.samples import samples
 from lumen.language.diagnostics import Place
 from lumen.language.events import Event, robot_events
 from lumen.language.machines import MachineDefinition, Transition

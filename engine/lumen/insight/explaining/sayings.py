@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.interpreters.explaining.sentences import ExplainedRow, ExplainedSentence, explained, first_context
+from lumen.insight.explaining.sentences import ExplainedRow, ExplainedSentence, explained, first_context
 from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.sayings import Saying, SayingSet

@@ -7,11 +7,11 @@ from typing import Any
 from lumen.errors import LumenError
 from lumen.expressions import Scope, parse_expression
 from lumen.expressions.tree import Literal, walk
-from lumen.interpreters.explaining.boundaries import boundaries
-from lumen.interpreters.explaining.changes import ProposedChange, StepSituation
-from lumen.interpreters.explaining.conditions import holds
-from lumen.interpreters.explaining.tracing import Moment, retaken
-from lumen.interpreters.explaining.words import prefix_of
+from lumen.insight.explaining.boundaries import boundaries
+from lumen.insight.explaining.changes import ProposedChange, StepSituation
+from lumen.insight.explaining.conditions import holds
+from lumen.insight.explaining.tracing import Moment, retaken
+from lumen.insight.explaining.words import prefix_of
 from lumen.language.actions import Expression
 from lumen.language.json_paths import with_value
 from lumen.language.machines import MachineDefinition, Transition

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple, Self
 
 from lumen.expressions import Scope
 from lumen.expressions.scope import no_draw
-from lumen.interpreters.explaining.traced_machine import traced
+from lumen.insight.explaining.traced_machine import traced
 from lumen.language.commands import BodyCommand, Command
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from lumen.interpreters.explaining.names import PlacedDeed, deeds_in, machines_in, same_text, state_named
-from lumen.interpreters.explaining.words import prefix_of
+from lumen.insight.explaining.names import PlacedDeed, deeds_in, machines_in, same_text, state_named
+from lumen.insight.explaining.words import prefix_of
 from lumen.language.actions import SayText
 from lumen.language.machines import MachineDefinition, StateKind, Transition
 from lumen.statechart.compiled_machine import compiled

@@ -7,10 +7,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.interpreters.exploration.findings import ExplorationFinding, PathStep, findings
-from lumen.interpreters.exploration.properties import property_findings
-from lumen.interpreters.exploration.search import StateSpaceSearch
-from lumen.interpreters.exploration.stimuli import Stimulus, StimulusKind
+from lumen.insight.exploration.findings import ExplorationFinding, PathStep, findings
+from lumen.insight.exploration.properties import property_findings
+from lumen.insight.exploration.search import StateSpaceSearch
+from lumen.insight.exploration.stimuli import Stimulus, StimulusKind
 from lumen.language import machines
 from lumen.language.machines import MachineDefinition, Transition
 

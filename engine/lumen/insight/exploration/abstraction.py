@@ -7,9 +7,9 @@ from typing import Any
 
 from lumen.expressions import names
 from lumen.expressions.tree import FunctionCall, Literal, path_of, walk
-from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_state, property_trees
-from lumen.interpreters.exploration.history_uses import history_uses
-from lumen.interpreters.exploration.liveness import Liveness
+from lumen.insight.exploration.expression_uses import ExpressionUse, of_state, property_trees
+from lumen.insight.exploration.history_uses import history_uses
+from lumen.insight.exploration.liveness import Liveness
 from lumen.language.machines import MachineDefinition
 from lumen.language.numbers import is_number
 from lumen.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within

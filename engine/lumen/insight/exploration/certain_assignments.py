@@ -6,7 +6,7 @@ from lumen.expressions import ExpressionNode, names, unparse
 from lumen.expressions.function_table import clock_functions
 from lumen.expressions.functions import CAUGHT
 from lumen.expressions.tree import Binary, FieldAccess, FunctionCall, Literal, Logic, Unary, children
-from lumen.interpreters.exploration.expression_uses import tree_of
+from lumen.insight.exploration.expression_uses import tree_of
 from lumen.language.actions import Assign, ComputedValue, Expression, PlacedAction, context_key
 from lumen.language.machines import Transition
 

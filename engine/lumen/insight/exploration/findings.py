@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from lumen.interpreters.exploration.search import SearchNode, StateSpaceSearch, leaves, reaching
-from lumen.interpreters.exploration.stimuli import Stimulus
+from lumen.insight.exploration.search import SearchNode, StateSpaceSearch, leaves, reaching
+from lumen.insight.exploration.stimuli import Stimulus
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition, StateKind
 from lumen.statechart.nesting import ID_SEPARATOR, innermost_names

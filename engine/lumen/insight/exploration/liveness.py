@@ -8,9 +8,9 @@ from collections.abc import Iterator, Mapping
 from itertools import islice, pairwise
 
 from lumen.expressions import names
-from lumen.interpreters.exploration.certain_assignments import assigned_by, assigned_on_entry
-from lumen.interpreters.exploration.expression_uses import of_state, relevant
-from lumen.interpreters.exploration.history_uses import history_uses
+from lumen.insight.exploration.certain_assignments import assigned_by, assigned_on_entry
+from lumen.insight.exploration.expression_uses import of_state, relevant
+from lumen.insight.exploration.history_uses import history_uses
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.talk.hearing import always_caught
 

@@ -9,9 +9,9 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from lumen.errors import LumenError
-from lumen.interpreters.exploration.findings import ExplorationFinding, PathStep
-from lumen.interpreters.exploration.search import SearchNode, StateSpaceSearch, leaves, still
-from lumen.interpreters.exploration.stimuli import Stimulus, StimulusKind
+from lumen.insight.exploration.findings import ExplorationFinding, PathStep
+from lumen.insight.exploration.search import SearchNode, StateSpaceSearch, leaves, still
+from lumen.insight.exploration.stimuli import Stimulus, StimulusKind
 from lumen.language.commands import BodyCommand
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import nanoseconds

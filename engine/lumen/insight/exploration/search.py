@@ -5,8 +5,8 @@ from heapq import heappop, heappush
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
-from lumen.interpreters.exploration.abstraction import Abstraction, ConfigurationKey
-from lumen.interpreters.exploration.stimuli import Stimulus, StimulusFinder
+from lumen.insight.exploration.abstraction import Abstraction, ConfigurationKey
+from lumen.insight.exploration.stimuli import Stimulus, StimulusFinder
 from lumen.language.commands import BodyCommand, Command, Start
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition

@@ -9,8 +9,8 @@ from lumen.errors import ExpressionError
 from lumen.expressions import ExpressionNode, Scope, compile_expression, names, unparse
 from lumen.expressions.function_table import clock_functions
 from lumen.expressions.tree import Binary, FunctionCall, children
-from lumen.interpreters.exploration.expression_uses import ExpressionUse, of_block, of_transition
-from lumen.interpreters.exploration.samples import FieldPath, samples
+from lumen.insight.exploration.expression_uses import ExpressionUse, of_block, of_transition
+from lumen.insight.exploration.samples import FieldPath, samples
 from lumen.language.added_verbs import usual_result
 from lumen.language.commands import BodyCommand, GoTo
 from lumen.language.controllers import CONTROLLER_EVENT

@@ -4,9 +4,9 @@ The answers are in `verdicts`; which state is which, in `identity`; what stays a
 whether a `do` under way can go on, in `activity_compatibility`; context, timers and history, in `carried_state`.
 """
 
-from lumen.interpreters.migration.migrating import migrated
-from lumen.interpreters.migration.situation import MigrationOptions
-from lumen.interpreters.migration.verdicts import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal
+from lumen.insight.migration.migrating import migrated
+from lumen.insight.migration.situation import MigrationOptions
+from lumen.insight.migration.verdicts import MigrationDelay, MigrationPlan, MigrationVerdict, Refusal
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.statechart import Snapshot

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from itertools import combinations
 from typing import Any, NamedTuple
 
-from lumen.interpreters.migration.identity import Identity
-from lumen.interpreters.migration.rounds import carried_round
+from lumen.insight.migration.identity import Identity
+from lumen.insight.migration.rounds import carried_round
 from lumen.language.actions import Template
 from lumen.language.machines import StateKind
 from lumen.language.nanoseconds import nanoseconds

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 from lumen.errors import LumenError, SnapshotError
-from lumen.interpreters.migration import carried_state
-from lumen.interpreters.migration.placing import Placement, Unplaced, is_legal
-from lumen.interpreters.migration.situation import MigrationOptions, Situation
-from lumen.interpreters.migration.verdicts import MigrationPlan, MigrationVerdict, Refusal
+from lumen.insight.migration import carried_state
+from lumen.insight.migration.placing import Placement, Unplaced, is_legal
+from lumen.insight.migration.situation import MigrationOptions, Situation
+from lumen.insight.migration.verdicts import MigrationPlan, MigrationVerdict, Refusal
 from lumen.language.machines import MachineDefinition
 from lumen.statechart.chart import StateNode
 from lumen.statechart.command_ids import outer_command

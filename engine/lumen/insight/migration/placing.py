@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from lumen.interpreters.migration.identity import Identity
+from lumen.insight.migration.identity import Identity
 from lumen.language.machines import StateKind, Transition
 from lumen.statechart.chart import Chart, CompiledTransition, StateNode
 from lumen.statechart.history import History

@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from lumen.interpreters.migration import carried_state
-from lumen.interpreters.migration.activity_compatibility import can_continue
-from lumen.interpreters.migration.identity import Identity
-from lumen.interpreters.migration.placing import Placement, Unplaced, place
-from lumen.interpreters.migration.verdicts import MigrationDelay, Refusal
+from lumen.insight.migration import carried_state
+from lumen.insight.migration.activity_compatibility import can_continue
+from lumen.insight.migration.identity import Identity
+from lumen.insight.migration.placing import Placement, Unplaced, place
+from lumen.insight.migration.verdicts import MigrationDelay, Refusal
 from lumen.language.machines import MachineDefinition, StateKind
 from lumen.statechart.chart import StateNode
 from lumen.statechart.compiled_machine import compiled

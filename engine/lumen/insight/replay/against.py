@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.errors import JournalError, LumenError
-from lumen.interpreters.explaining.history import RecordedStep
-from lumen.interpreters.explaining.tracing import retaken
-from lumen.interpreters.migration import MigrationPlan, plan
-from lumen.interpreters.replay.entries import JournalInput, JournalJump
-from lumen.interpreters.replay.visits import RecordedVisit, home_of
+from lumen.insight.explaining.history import RecordedStep
+from lumen.insight.explaining.tracing import retaken
+from lumen.insight.migration import MigrationPlan, plan
+from lumen.insight.replay.entries import JournalInput, JournalJump
+from lumen.insight.replay.visits import RecordedVisit, home_of
 from lumen.language.added_verbs import usual_result
 from lumen.language.command_data import command_data, started
 from lumen.language.commands import BodyCommand, Command, Start

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError
-from lumen.interpreters.migration import MigrationPlan, plan
-from lumen.interpreters.replay.against import Duration, OtherPlay
-from lumen.interpreters.replay.entries import HOWS, JournalInput, JournalJump, RecordedEntry, entry_data
-from lumen.interpreters.replay.replaying import Replayer
+from lumen.insight.migration import MigrationPlan, plan
+from lumen.insight.replay.against import Duration, OtherPlay
+from lumen.insight.replay.entries import HOWS, JournalInput, JournalJump, RecordedEntry, entry_data
+from lumen.insight.replay.replaying import Replayer
 from lumen.language.command_data import command_data
 from lumen.language.events import Event
 from lumen.language.projects import Project

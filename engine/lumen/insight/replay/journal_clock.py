@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from datetime import datetime, time, timedelta
 
 from lumen.expressions.wall_clock import zone
-from lumen.interpreters.replay.entries import LATEST, JournalJump, RecordedEntry
+from lumen.insight.replay.entries import LATEST, JournalJump, RecordedEntry
 from lumen.language.events import CLOCK_SET
 
 

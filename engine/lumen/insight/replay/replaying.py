@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
 from lumen.errors import LumenError, SnapshotError
-from lumen.interpreters.replay.digest import StepDigest
-from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.insight.replay.digest import StepDigest
+from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.language.causes import Cause
 from lumen.language.command_data import command_data
 from lumen.language.machines import MachineDefinition

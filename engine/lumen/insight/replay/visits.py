@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from lumen.errors import LumenError
-from lumen.interpreters.replay.entries import JournalInput, JournalJump, RecordedEntry
-from lumen.interpreters.replay.journal_clock import JournalClock
+from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
+from lumen.insight.replay.journal_clock import JournalClock
 from lumen.language.machines import MachineDefinition, StateKind
 from lumen.statechart import initial
 

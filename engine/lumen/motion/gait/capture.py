@@ -11,8 +11,8 @@ from math import asin, atan2, copysign, cos, exp, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait.legs import LegAngles, LegGeometry, Side, heading_rotation, sign
-from lumen.interpreters.gait.parameters import GaitParameters, scale_of
+from lumen.motion.gait.legs import LegAngles, LegGeometry, Side, heading_rotation, sign
+from lumen.motion.gait.parameters import GaitParameters, scale_of
 
 FARTHEST, WIDEST_CATCH = 0.2, 0.2
 """How far ahead or behind, and aside, a foot can be put down [m], by legs as long as those it was found with."""

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from math import ceil, hypot
 from typing import NamedTuple
 
-from lumen.interpreters.gait.legs import Side, SoleSize, other, sign
-from lumen.interpreters.gait.parameters import GaitParameters
-from lumen.interpreters.gait.poses import Pose
+from lumen.motion.gait.legs import Side, SoleSize, other, sign
+from lumen.motion.gait.parameters import GaitParameters
+from lumen.motion.gait.poses import Pose
 
 Feet = Mapping[Side, Pose]
 """Both soles, below the ankles."""

@@ -7,15 +7,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait.footsteps import Feet, Footstep, first_side, footsteps, middle
-from lumen.interpreters.gait.legs import LegGeometry, Placed, Side, other, sign, torso_rotation
-from lumen.interpreters.gait.parameters import GaitParameters
-from lumen.interpreters.gait.pendulum import Pendulum
-from lumen.interpreters.gait.planning import GaitPhase, StepPlanner, between
-from lumen.interpreters.gait.poses import Pose
-from lumen.interpreters.gait.stance import Stance, stand
-from lumen.interpreters.gait.tracking import StepTracker
-from lumen.interpreters.gait.velocity import Velocity, strides
+from lumen.motion.gait.footsteps import Feet, Footstep, first_side, footsteps, middle
+from lumen.motion.gait.legs import LegGeometry, Placed, Side, other, sign, torso_rotation
+from lumen.motion.gait.parameters import GaitParameters
+from lumen.motion.gait.pendulum import Pendulum
+from lumen.motion.gait.planning import GaitPhase, StepPlanner, between
+from lumen.motion.gait.poses import Pose
+from lumen.motion.gait.stance import Stance, stand
+from lumen.motion.gait.tracking import StepTracker
+from lumen.motion.gait.velocity import Velocity, strides
 
 CentreOfMass = Callable[[Mapping[str, float]], NDArray[np.float64]]
 """The centre of mass (3,) [m] in the torso's frame, of the robot with its legs bent like this [rad]."""

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait.poses import Pose
+from lumen.motion.gait.poses import Pose
 
 Side = Literal["L", "R"]
 SIDES: tuple[Side, Side] = ("L", "R")

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields, replace
 from math import sqrt
 from typing import NamedTuple
 
-from lumen.interpreters.gait.legs import LegGeometry
+from lumen.motion.gait.legs import LegGeometry
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from lumen.interpreters.gait.footsteps import Feet, Footstep
-from lumen.interpreters.gait.legs import Side, other, sign
-from lumen.interpreters.gait.parameters import GaitParameters
-from lumen.interpreters.gait.pendulum import Pendulum
-from lumen.interpreters.gait.poses import Pose
-from lumen.interpreters.gait.swing import Swing
+from lumen.motion.gait.footsteps import Feet, Footstep
+from lumen.motion.gait.legs import Side, other, sign
+from lumen.motion.gait.parameters import GaitParameters
+from lumen.motion.gait.pendulum import Pendulum
+from lumen.motion.gait.poses import Pose
+from lumen.motion.gait.swing import Swing
 
 
 @dataclass(slots=True)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lumen.interpreters.gait.legs import (
+from lumen.motion.gait.legs import (
     SIDES,
     LegAngles,
     LegGeometry,

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from math import cos, pi
 
-from lumen.interpreters.gait.legs import Placed, Side
-from lumen.interpreters.gait.poses import Pose
+from lumen.motion.gait.legs import Placed, Side
+from lumen.motion.gait.poses import Pose
 
 _LEAVES, _ARRIVES = 0.05, 0.95
 

@@ -5,9 +5,9 @@ from math import atan2
 
 import numpy as np
 
-from lumen.interpreters.gait.footsteps import Feet
-from lumen.interpreters.gait.legs import SIDES, LegGeometry, Side, other
-from lumen.interpreters.gait.poses import Pose, wrap
+from lumen.motion.gait.footsteps import Feet
+from lumen.motion.gait.legs import SIDES, LegGeometry, Side, other
+from lumen.motion.gait.poses import Pose, wrap
 
 
 class StepTracker:

@@ -3,12 +3,12 @@
 from math import hypot
 from typing import Literal, NamedTuple
 
-from lumen.interpreters.gait.footsteps import Feet, Footstep, beside, clear
-from lumen.interpreters.gait.legs import Side, other, sign
-from lumen.interpreters.gait.parameters import GaitParameters, paces_without_legs
-from lumen.interpreters.gait.poses import Pose
 from lumen.language.robots import Body
 from lumen.language.roles import BaseKind
+from lumen.motion.gait.footsteps import Feet, Footstep, beside, clear
+from lumen.motion.gait.legs import Side, other, sign
+from lumen.motion.gait.parameters import GaitParameters, paces_without_legs
+from lumen.motion.gait.poses import Pose
 
 MOST_CHANGE = 0.3
 """From step to step a speed changes by that part of the pace's greatest at most: who turns round at once stumbles."""

@@ -1,6 +1,6 @@
 """Which gestures accompany a text, when, and where the joints are meanwhile: pure functions."""
 
-from lumen.interpreters.gestures.planning import PlannedGesture, plan_gestures
-from lumen.interpreters.gestures.posing import BEAT, GESTURE_SHARE, gesture_offsets, peak_speeds
+from lumen.motion.gestures.planning import PlannedGesture, plan_gestures
+from lumen.motion.gestures.posing import BEAT, GESTURE_SHARE, gesture_offsets, peak_speeds
 
 __all__ = ["BEAT", "GESTURE_SHARE", "PlannedGesture", "gesture_offsets", "peak_speeds", "plan_gestures"]

@@ -10,9 +10,9 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from lumen.interpreters.gestures.posing import BEAT
-from lumen.interpreters.life.chance import chance
 from lumen.language.gestures import Gesture, GestureLibrary, WordTime
+from lumen.motion.gestures.posing import BEAT
+from lumen.motion.life.chance import chance
 
 LONG_PART = 18
 """Characters from which on a part of a text without a tag gets a beat."""

@@ -1,11 +1,11 @@
 """What a robot does of its own accord: pure functions of a style, a seed and the time."""
 
-from lumen.interpreters.life.blinking import eyes_closed
-from lumen.interpreters.life.looking import Attention, aside, glance, look_towards, nod
-from lumen.interpreters.life.mood import gestures_wanted, style_name
-from lumen.interpreters.life.settling import SETTLE_SLOPE, settle
-from lumen.interpreters.life.swaying import PEAK_SLOPE, SPEED_SHARE, sway
-from lumen.interpreters.life.vigour import vigour
+from lumen.motion.life.blinking import eyes_closed
+from lumen.motion.life.looking import Attention, aside, glance, look_towards, nod
+from lumen.motion.life.mood import gestures_wanted, style_name
+from lumen.motion.life.settling import SETTLE_SLOPE, settle
+from lumen.motion.life.swaying import PEAK_SLOPE, SPEED_SHARE, sway
+from lumen.motion.life.vigours import vigour
 
 __all__ = [
     "PEAK_SLOPE", "SETTLE_SLOPE", "SPEED_SHARE", "Attention", "aside",

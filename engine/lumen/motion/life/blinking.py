@@ -1,7 +1,7 @@
 """When the eyes are closed."""
 
-from lumen.interpreters.life.chance import moments
 from lumen.language.life import Blinks
+from lumen.motion.life.chance import moments
 
 
 def eyes_closed(blinks: Blinks, seed: int, t: float) -> bool:

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from lumen.interpreters.life.chance import chance, moments
 from lumen.language.life import Asides, Glances, Nods
+from lumen.motion.life.chance import chance, moments
 
 TURN_TIME = 0.5
 """How long the head takes to where it glances, and back [s]."""

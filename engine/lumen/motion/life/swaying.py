@@ -3,8 +3,8 @@
 from functools import cache
 from math import pi, sin
 
-from lumen.interpreters.life.chance import chance
 from lumen.language.life import LifeStyle
+from lumen.motion.life.chance import chance
 
 _WANDERING = ((0.5, 1.0), (0.3, 0.618), (0.2, 1.732))
 """Parts of a sway that wanders: how much of it, and how fast; no two of these ever come together again."""

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator
 from math import ceil
 from typing import Any, NamedTuple
 
-from lumen.interpreters.segments import Bezier, Polynomial, Segment
-from lumen.interpreters.trajectory import JointTrack
+from lumen.motion.segments import Bezier, Polynomial, Segment
+from lumen.motion.trajectories import JointTrack
 
 MOTION_CYCLE = 0.02
 """ALMotion's period [s]."""

@@ -4,13 +4,13 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 from lumen.errors import RobotError
-from lumen.interpreters.bounds import nearest_angles
-from lumen.interpreters.life import vigour
 from lumen.language.body_parts import ARMS, HEAD, LEGS, VOICE, WHOLE_BODY
 from lumen.language.commands import Posture, Rest, Say, Wake
 from lumen.language.gestures import NO_GESTURES
 from lumen.language.life import NAOQI_BLINKING, NAOQI_BREATHING, NAOQI_SPEECH, OWN_LEGS, STILL_STYLE
 from lumen.language.robots import Body
+from lumen.motion.bounds import nearest_angles
+from lumen.motion.life import vigours as vigour
 from lumen.ports import Live, RobotCommand
 from lumen.robots.command_table import speech_duration
 from lumen.robots.life_layer import LifeLayer

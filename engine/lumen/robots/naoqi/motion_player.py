@@ -3,10 +3,10 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from lumen.errors import RobotRefusedError
-from lumen.interpreters.postures import UPRIGHT
-from lumen.interpreters.trajectory import JointTrack, Trajectory
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
+from lumen.motion.postures import UPRIGHT
+from lumen.motion.trajectories import JointTrack, Trajectory
 from lumen.robots.cues import EventSink
 from lumen.robots.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from, home_angles, way_duration
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting

@@ -3,11 +3,11 @@
 from collections.abc import Callable, Sequence
 
 from lumen.errors import RobotLostError
-from lumen.interpreters.bounds import nearest_angles
 from lumen.language.body_parts import part_of
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
+from lumen.motion.bounds import nearest_angles
 from lumen.ports import Aim, Battery, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.command_table import parts_of

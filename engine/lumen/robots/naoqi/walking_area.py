@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from math import cos, hypot, sin
 
 from lumen.errors import RobotRefusedError
-from lumen.interpreters.dead_reckoning import DeadReckoning, turned
 from lumen.language.projects import Stage
+from lumen.motion.dead_reckoning import DeadReckoning, turned
 from lumen.ports import Sonar, Whereabouts
 from lumen.robots.hazards import danger
 from lumen.robots.naoqi.hardware import Hardware

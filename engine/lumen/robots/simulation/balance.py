@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from lumen.interpreters.gait import SIDES, LegGeometry, Side
-from lumen.interpreters.gait.legs import SIDE_ROLES
-from lumen.interpreters.gait.legs import sign as outward
-from lumen.interpreters.gait.parameters import scale_of
 from lumen.language.roles import Roles
+from lumen.motion.gait import SIDES, LegGeometry, Side
+from lumen.motion.gait.legs import SIDE_ROLES
+from lumen.motion.gait.legs import sign as outward
+from lumen.motion.gait.parameters import scale_of
 from lumen.robots.simulation.falling_sense import FallingSense
 from lumen.robots.simulation.joint_envelope import JointVector
 from lumen.robots.simulation.motors import Motors

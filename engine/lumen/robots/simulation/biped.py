@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 
-from lumen.interpreters.gait import paces_of
 from lumen.language.commands import Move, Walk
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
+from lumen.motion.gait import paces_of
 from lumen.ports import Whereabouts
 from lumen.robots.executor import Activity
 from lumen.robots.simulation.balance import BalanceController

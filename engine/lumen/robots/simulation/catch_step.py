@@ -5,11 +5,11 @@ from math import atan2, pi, sin
 
 import numpy as np
 
-from lumen.interpreters.gait import SIDES, GaitParameters, LegGeometry, Side
-from lumen.interpreters.gait.capture import CapturePoint, hold_level, landing
-from lumen.interpreters.gait.legs import other
-from lumen.interpreters.gait.parameters import scale_of, time_scale_of
-from lumen.interpreters.gait.swing import smooth
+from lumen.motion.gait import SIDES, GaitParameters, LegGeometry, Side
+from lumen.motion.gait.capture import CapturePoint, hold_level, landing
+from lumen.motion.gait.legs import other
+from lumen.motion.gait.parameters import scale_of, time_scale_of
+from lumen.motion.gait.swing import smooth
 from lumen.robots.simulation.falling_sense import FallingSense
 
 STEP_TIME, STEP_BACK_TIME = 0.17, 0.2

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Mapping
 
-from lumen.interpreters.gait import SIDES, CentreOfMass, Gait, LegGeometry, Paces, Side, Velocity, middle
-from lumen.interpreters.gait.parameters import scale_of, time_scale_of
-from lumen.interpreters.gait.swing import smooth
+from lumen.motion.gait import SIDES, CentreOfMass, Gait, LegGeometry, Paces, Side, Velocity, middle
+from lumen.motion.gait.parameters import scale_of, time_scale_of
+from lumen.motion.gait.swing import smooth
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.catch_step import CatchStep
 from lumen.robots.simulation.falling_sense import FallingSense

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
-from lumen.interpreters.gait.pendulum import GRAVITY
+from lumen.motion.gait.pendulum import GRAVITY
 from lumen.robots.simulation.world import World
 
 TIPPING_SHARE = 0.25

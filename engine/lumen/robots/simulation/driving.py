@@ -6,7 +6,7 @@ from math import atan2, copysign, hypot, sqrt
 import numpy as np
 
 from lumen.errors import RobotError, RobotFailedError
-from lumen.interpreters.gait import Pose, Velocity
+from lumen.motion.gait import Pose, Velocity
 from lumen.robots.simulation.drive_geometry import DriveGeometry
 from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.walking import ARRIVAL_TOLERANCE, HAZARD_CHECK_PERIOD, HEADING_TOLERANCE

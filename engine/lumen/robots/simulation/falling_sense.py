@@ -5,9 +5,9 @@ from math import hypot, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.gait import LegGeometry
-from lumen.interpreters.gait.parameters import scale_of
-from lumen.interpreters.gait.pendulum import GRAVITY
+from lumen.motion.gait import LegGeometry
+from lumen.motion.gait.parameters import scale_of
+from lumen.motion.gait.pendulum import GRAVITY
 from lumen.robots.simulation.mass_model import MassModel
 from lumen.robots.simulation.sensors import BodySensors
 from lumen.robots.simulation.world import CONTROL_PERIOD

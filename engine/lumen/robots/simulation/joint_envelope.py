@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.limits import coupled_range
 from lumen.language.robots import Body
+from lumen.motion.limits import coupled_range
 
 JointVector = NDArray[np.float64]
 """[rad; hands 0..1], Shape (joints,), in the order of `body.joints`."""

@@ -12,9 +12,9 @@ import mujoco
 import numpy as np
 
 from lumen.errors import RobotModelError
-from lumen.interpreters.gait.legs import SIDE_ROLES, SIDES, LegGeometry, LegVector, Side, SoleSize, sign
 from lumen.language.robots import Body
 from lumen.language.roles import LEG_ROLES
+from lumen.motion.gait.legs import SIDE_ROLES, SIDES, LegGeometry, LegVector, Side, SoleSize, sign
 
 MEETING_TOLERANCE = 1e-3
 """Axes that pass each other nearer than this meet, and legs that differ by less are alike [m]."""

@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping
 
 from lumen.errors import RobotRefusedError
-from lumen.interpreters.dead_reckoning import DeadReckoning
-from lumen.interpreters.gait import Feet, Footstep, LegGeometry, Pose, corners, middle
-from lumen.interpreters.gait.poses import wrap
-from lumen.interpreters.postures import lies
 from lumen.language.projects import Stage
+from lumen.motion.dead_reckoning import DeadReckoning
+from lumen.motion.gait import Feet, Footstep, LegGeometry, Pose, corners, middle
+from lumen.motion.gait.poses import wrap
+from lumen.motion.postures import lies
 from lumen.ports import Whereabouts
 
 _FEET = {"L": "left", "R": "right"}

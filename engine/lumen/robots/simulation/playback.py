@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from lumen.interpreters.trajectory import Trajectory
 from lumen.language.commands import Say
 from lumen.language.motions import Cue, MotionDefinition
+from lumen.motion.trajectories import Trajectory
 from lumen.robots.cues import CueNotifier, EventSink
 from lumen.robots.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from
 from lumen.robots.simulation.joint_transition import JointTransition

@@ -6,10 +6,10 @@ from math import cos, pi
 from typing import Protocol
 
 from lumen.errors import RobotFailedError, RobotRefusedError
-from lumen.interpreters.postures import lies, passage, route
-from lumen.interpreters.trajectory import Trajectory
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
+from lumen.motion.postures import lies, passage, route
+from lumen.motion.trajectories import Trajectory
 from lumen.robots.simulation.joint_transition import JointTransition, duration
 from lumen.robots.simulation.motors import Motors
 

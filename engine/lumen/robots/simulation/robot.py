@@ -9,8 +9,6 @@ from typing import assert_never
 import numpy as np
 
 from lumen.errors import RobotRefusedError, UsageError
-from lumen.interpreters.life import vigour
-from lumen.interpreters.projection import centring
 from lumen.language.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest, Say
@@ -22,6 +20,8 @@ from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES, BaseKind
 from lumen.language.routes import BATTERY, IMAGE, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
+from lumen.motion.life import vigours as vigour
+from lumen.motion.projection import centring
 from lumen.ports import Aim, Battery, Image, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.command_bounds import CommandBounds
 from lumen.robots.executor import Activity, ExecutingRobot, Executor

@@ -5,8 +5,8 @@ from math import atan2, hypot
 import mujoco
 import numpy as np
 
-from lumen.interpreters.gait.poses import wrap
 from lumen.language.imperfections import Imperfections
+from lumen.motion.gait.poses import wrap
 from lumen.robots.simulation.gyrometer import Gyrometer
 from lumen.robots.simulation.imperfections import ENCODER_NOISE, ENCODER_STEP
 from lumen.robots.simulation.mean_rates import MeanRates

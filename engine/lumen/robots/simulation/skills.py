@@ -5,10 +5,10 @@ from math import inf, pi
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotRefusedError
-from lumen.interpreters.postures import RESTFUL, standing
 from lumen.language.body_parts import part_of
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.roles import BaseKind
+from lumen.motion.postures import RESTFUL, standing
 from lumen.ports import Aim, Live, NativeCommand, Perform, Record, RobotCommand
 from lumen.robots.command_table import parts_of, row_of
 from lumen.robots.cues import EventSink

@@ -6,9 +6,9 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from lumen.interpreters.gait.legs import SIDE_ROLES
 from lumen.language.imperfections import Imperfections
 from lumen.language.robots import Body
+from lumen.motion.gait.legs import SIDE_ROLES
 from lumen.ports import Sole, Strain
 from lumen.robots.simulation.model_terms import ROBOT_PREFIX, Variation
 from lumen.robots.simulation.robot import SimulatedRobot

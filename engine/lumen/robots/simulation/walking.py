@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import BadCommandError, RobotError, RobotFailedError, RobotRefusedError
-from lumen.interpreters.gait import (
+from lumen.language.commands import Move, Walk
+from lumen.language.roles import Roles
+from lumen.motion.gait import (
     SIDES,
     Gait,
     GaitParameters,
@@ -17,10 +19,8 @@ from lumen.interpreters.gait import (
     Velocity,
     middle,
 )
-from lumen.interpreters.gait.legs import SIDE_ROLES, sign
-from lumen.interpreters.gait.parameters import scale_of
-from lumen.language.commands import Move, Walk
-from lumen.language.roles import Roles
+from lumen.motion.gait.legs import SIDE_ROLES, sign
+from lumen.motion.gait.parameters import scale_of
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.hazards import Hazards
 from lumen.robots.simulation.joint_transition import JointTransition

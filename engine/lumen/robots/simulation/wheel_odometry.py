@@ -4,11 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotRefusedError
-from lumen.interpreters.dead_reckoning import DeadReckoning
-from lumen.interpreters.gait import Pose
-from lumen.interpreters.gait.poses import wrap
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
+from lumen.motion.dead_reckoning import DeadReckoning
+from lumen.motion.gait import Pose
+from lumen.motion.gait.poses import wrap
 from lumen.ports import Whereabouts
 from lumen.robots.simulation.drive_geometry import DriveGeometry
 from lumen.robots.simulation.imperfections import ENCODER_STEP

@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 
 from lumen.errors import RobotRefusedError
-from lumen.interpreters.gait import Velocity
 from lumen.language.commands import Move, Walk
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
+from lumen.motion.gait import Velocity
 from lumen.ports import Whereabouts
 from lumen.robots.executor import Activity
 from lumen.robots.simulation.contact_shadows import NO_SOLES, Soles

@@ -4,13 +4,13 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from lumen.interpreters.postures import standing
 from lumen.language.actions import If, Parallel, PlacedAction
 from lumen.language.commands import Play, Posture, Wake, Walk
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.loading.project_folders import LIFE_FOLDER, MOTIONS, PASSAGES, is_robots_own
+from lumen.motion.postures import standing
 from lumen.ports import Live, Perform, RobotCommand
 
 FIRST_POSTURE = "Stand"
