@@ -19,13 +19,13 @@ import subprocess
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
 from typing import Any, Self
 
-from references import PACKAGE, Edit, Moved, code_edits, page_edits, rewritten, spelled_edits
+from references import PACKAGE, Edit, Moved, code_edits, module_of, page_edits, rewritten, spelled_edits
 
 ROOT = Path(__file__).parents[1]
 GOES = "-"
@@ -178,7 +178,7 @@ class Mover:
             for row, target in self.plan.stages[stage].items()
             if row.endswith("/")
         }
-        moved = Moved({**old, **new}, folders, before)
+        moved = Moved({**old, **new}, folders, before, self._offered(before))
         goals = {f"{PACKAGE}/{path}": target for path, target in new.items()}
         origins = {target: path for path, target in new.items()}
         changed = [name for name in self.tracked() if self._rewrite(name, goals.get(name), moved)]
@@ -196,6 +196,14 @@ class Mover:
             added = self._git("diff", "HEAD", "-M", "--diff-filter=A", "--name-only", "--", PACKAGE).splitlines()
             for target in sorted(set(new.values()) & {name.removeprefix(f"{PACKAGE}/") for name in added}):
                 print(f"{target} differs so much that git does not follow it to {origins[target]}")
+
+    def _offered(self, files: Iterable[str]) -> Iterator[str]:
+        """Return the names in `__all__` of each package with the package before them, as it is called before a stage."""
+        for path in files:
+            if PurePosixPath(path).name == "__init__.py":
+                origin = self._origins.get(f"{PACKAGE}/{path}", f"{PACKAGE}/{path}").removeprefix(f"{PACKAGE}/")
+                for name in _listed_names(ast.parse((self.root / PACKAGE / path).read_text("utf-8"))):
+                    yield from (f"{module_of(each)}.{name}" for each in (path, origin))
 
     def _rewrite(self, name: str, goal: str | None, moved: Moved) -> bool:
         """Rewrite the references in a file; `goal` is the new path of one that moves. Return whether there were any."""

@@ -32,13 +32,17 @@ class Moved:
     """The new paths of moved files, and of folders that move as a whole, by their old paths below the package.
 
     `known` are the paths of all files before the move. If another module gets the name of one that moves, that name
-    stays as it is everywhere: the new module offers what the old one did.
+    stays as it is everywhere: the new module offers what the old one did. `offered` are names like `lumen.life.vigour`
+    that packages define themselves, and that are therefore no modules although there may be a file of that name.
     """
 
-    def __init__(self, files: Mapping[str, str], folders: Mapping[str, str], known: Iterable[str]) -> None:
+    def __init__(
+        self, files: Mapping[str, str], folders: Mapping[str, str], known: Iterable[str], offered: Iterable[str] = ()
+    ) -> None:
         self.paths = {**folders, **files}
         self.known = {*known, *self.paths}
         self.known_modules = {module for path in self.known if (module := module_of(path))}
+        self.offered = {*offered}
         named = {module_of(old): module_of(new) for old, new in files.items()}
         named_modules = {old: new for old, new in named.items() if old and new}
         self._reused = {old: new for old, new in named_modules.items() if old in named_modules.values()}
@@ -180,7 +184,7 @@ def _import_from(node: ast.ImportFrom, places: _Places, moved: Moved) -> Iterato
     source = node.module or ""
     for alias in node.names:
         module = f"{source}.{alias.name}"
-        if module not in moved.known_modules:
+        if module not in moved.known_modules or module in moved.offered:
             home, name = moved.module(source), alias.name
         else:
             home, _, name = moved.module(module).rpartition(".")

@@ -9,14 +9,16 @@ MOVED = Moved(
     {
         "attic/oven.py": "kitchen/oven.py",
         "attic/pan/__init__.py": "kitchen/pans/__init__.py",
+        "attic/pan/handle.py": "kitchen/pans/handles.py",
         "attic/pan/lid.py": "kitchen/pans/lids.py",
         "table.py": "parlour/table_top.py",
         "attic/table/__init__.py": "table/__init__.py",
     },
     {"attic/pan": "kitchen/pans", "attic/table": "table"},
     ["__init__.py", "attic/__init__.py", "attic/attic_words.py", "state.py"],
+    ["lumen.attic.pan.handle"],
 )
-"""`lumen.table` moves, and another module gets its name."""
+"""`lumen.table` moves, and another module gets its name. `lumen.attic.pan` offers a name like a file in it."""
 
 
 def followed(text: str, edits: Callable[[str, Moved], list[Edit]], moved: Moved = MOVED) -> str:
@@ -28,6 +30,8 @@ def followed(text: str, edits: Callable[[str, Moved], list[Edit]], moved: Moved 
     [
         ("from lumen.attic.oven import bake", "from lumen.kitchen.oven import bake"),
         ("from lumen.attic.pan import Pan, lid", "from lumen.kitchen.pans import Pan, lids as lid"),
+        ("from lumen.attic.pan import handle", "from lumen.kitchen.pans import handle"),
+        ("from lumen.attic.pan.handle import handle", "from lumen.kitchen.pans.handles import handle"),
         ("from lumen.attic.pan import lid as top", "from lumen.kitchen.pans import lids as top"),
         ("from lumen.attic import oven", "from lumen.kitchen import oven"),
         (

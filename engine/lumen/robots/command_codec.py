@@ -102,7 +102,7 @@ def _hand(p: CommandParameters, opening: float) -> Aim:
 
 def _move_toward(p: CommandParameters) -> Move:
     """NAOqi has the speeds as fractions of the greatest: of the brisk pace."""
-    from lumen.motion.gait import fastest_of  # with numpy: only where somebody walks like this
+    from lumen.motion.gait import fastest_of  # imports numpy, which only this command needs
 
     given = p.number("x", 0.0), p.number("y", 0.0), p.turn()
     most = fastest_of(p.project.body, "brisk")

@@ -119,7 +119,7 @@ def _turned(report: DocumentReport, path: NodePath, theta: float, unit: str) -> 
 
 
 def _move(report: DocumentReport, path: NodePath, move: Move, angle: str, length: str, body: Body | None) -> None:
-    from lumen.motion.gait import fastest_of  # takes 0.1 s, with numpy: only where somebody walks on
+    from lumen.motion.gait import fastest_of  # imports numpy, which takes 0.1 s
 
     if body is None:
         return

@@ -20,7 +20,7 @@ from lumen.rules.physics import Case, Outcome
 from lumen.runtime.home import home_of
 from lumen.upkeep.private_folder import private_folder
 
-CODE = ("lumen.interpreters", "lumen.language", "lumen.robots", "lumen.rules.physics")
+CODE = ("lumen.fuzzy", "lumen.interpreters", "lumen.language", "lumen.motion", "lumen.robots", "lumen.rules.physics")
 """The packages whose code decides what comes of a motion in simulation."""
 
 

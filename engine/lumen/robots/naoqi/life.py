@@ -10,7 +10,7 @@ from lumen.language.gestures import NO_GESTURES
 from lumen.language.life import NAOQI_BLINKING, NAOQI_BREATHING, NAOQI_SPEECH, OWN_LEGS, STILL_STYLE
 from lumen.language.robots import Body
 from lumen.motion.bounds import nearest_angles
-from lumen.motion.life import vigours as vigour
+from lumen.motion.life import vigour
 from lumen.ports import Live, RobotCommand
 from lumen.robots.command_table import speech_duration
 from lumen.robots.life_layer import LifeLayer

@@ -20,7 +20,7 @@ from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES, BaseKind
 from lumen.language.routes import BATTERY, IMAGE, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
-from lumen.motion.life import vigours as vigour
+from lumen.motion.life import vigour
 from lumen.motion.projection import centring
 from lumen.ports import Aim, Battery, Image, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.robots.command_bounds import CommandBounds
