@@ -198,7 +198,7 @@ class Mover:
                 print(f"{target} differs so much that git does not follow it to {origins[target]}")
 
     def _offered(self, files: Iterable[str]) -> Iterator[str]:
-        """Return the names in `__all__` of each package with the package before them, as it is called before a stage."""
+        """Return the names in `__all__` of each package, below the package as it is called before a stage."""
         for path in files:
             if PurePosixPath(path).name == "__init__.py":
                 origin = self._origins.get(f"{PACKAGE}/{path}", f"{PACKAGE}/{path}").removeprefix(f"{PACKAGE}/")
