@@ -1,0 +1,91 @@
+"""From a project's files to everything that is wrong with them."""
+
+from collections.abc import Callable, Iterator, Mapping
+from datetime import date
+from itertools import chain
+from pathlib import Path
+
+from lumen.feature import Feature, distribution_of, resolve, rows
+from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
+from lumen.language.projects import Project
+from lumen.loading.broken_features import broken, faults_reported, shown
+from lumen.loading.chosen_robot import as_robot, chosen_robot
+from lumen.loading.draft import ProjectDraft
+from lumen.loading.files import read_files
+from lumen.loading.looks import Looks
+from lumen.loading.packaged import find_project
+from lumen.loading.project import assemble, draft
+from lumen.rules.codes import codes
+from lumen.rules.ignores import obey
+from lumen.rules.several_robots import together
+
+
+def check(path: str | Path | None = None) -> list[Diagnostic]:
+    """Everything wrong with the project in that folder, by file and line; never raises for what its files say.
+
+    Raises UsageError where there is no folder.
+    """
+    root = find_project(path)
+    return list(check_files(root, read_files(root))[1])
+
+
+def check_files(
+    root: Path,
+    files: Mapping[str, bytes],
+    between: Callable[[], None] = lambda: None,
+    looks: Looks | None = None,
+) -> tuple[Project | None, tuple[Diagnostic, ...]]:
+    """The project that these files make, None where they have errors, and everything wrong with them.
+
+    Of several robots it is that of the one that is chosen among the files; without a choice all are looked at, and it
+    is that of the first. `between` is called between one rule and the next: whoever does not want to know any more
+    raises what they catch. `looks` is told what was looked at beside the files.
+    """
+    looks = looks or Looks()
+    found, diagnostics = _checked(root, files, between, looks)
+    if found.settings and not chosen_robot(files):
+        others = list(found.settings.robots)[1:]
+        views = [_checked(root, as_robot(files, robot), between, looks)[1] for robot in others]
+        diagnostics = together((diagnostics, *views))
+    project = None if has_errors(diagnostics) else assemble(found, str(root.absolute()))
+    return project, diagnostics
+
+
+def _checked(
+    root: Path, files: Mapping[str, bytes], between: Callable[[], None], looks: Looks
+) -> tuple[ProjectDraft, tuple[Diagnostic, ...]]:
+    """What these files make, and everything wrong with them, as one robot reads them."""
+    found = draft(files)
+    found.root, found.today, found.looks = root, date.today(), looks
+    for feature, rule in chain(rows("rules"), rows("last_rules")):
+        between()
+        _apply(feature, rule, found)
+    documents = {file: report.document for file, report in found.reports.items()}
+    return found, obey(found.diagnostics, documents, codes())
+
+
+def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
+    """Report what a rule finds; a faulty rule that was installed beside Lumen is a finding itself."""
+    returned: object = None
+    with faults_reported(feature, f"its rule `{rule}`", found.loose):
+        returned = resolve(rule)(found)
+    if distribution := distribution_of(feature):
+        faults = [f"reported {shown(each)}, which is no finding" for each in _remove_unsound(found)]
+        if returned is not None:
+            faults.append(f"returned {shown(returned)}: a rule reports its findings, and returns None")
+        found.loose += (broken(distribution, f"its rule `{rule}` {fault}") for fault in faults[:1])
+
+
+def _remove_unsound(found: ProjectDraft) -> Iterator[object]:
+    """Remove what is no finding from those of a draft, and iterate over it."""
+    for findings in (found.loose, *(report.diagnostics for report in found.reports.values())):
+        unsound = [each for each in findings if not _is_sound(each)]
+        findings[:] = (each for each in findings if each not in unsound)
+        yield from unsound
+
+
+def _is_sound(finding: object) -> bool:
+    match finding:
+        case Diagnostic(str(), str(), Place(str(), int(), int(), int(), int()), str(), Severity(), tuple()):
+            return True
+    return False

@@ -1,0 +1,15 @@
+"""A project from its folder: text to values that keep their file and line.
+
+Each name is imported when it is first used. `__init__.pyi` has the same names for type checkers.
+"""
+
+from lumen.upkeep.lazy_names import lazy
+
+__all__ = ["Project", "load"]
+
+_HOMES = {
+    "lumen.project": ("load",),
+    "lumen.language.projects": ("Project",),
+}
+
+__getattr__ = lazy(__name__, _HOMES)
