@@ -26,8 +26,8 @@ from lumen.language.events import Event
 from lumen.language.gestures import merged
 from lumen.language.imperfections import PERFECT
 from lumen.language.projects import Project
-from lumen.loading.lending import model_files
 from lumen.ports import Message
+from lumen.project.lending import model_files
 from lumen.robots.command_table import speech_duration
 from lumen.robots.gesture_player import GesturePlayer
 from lumen.robots.life_layer import LifeLayer

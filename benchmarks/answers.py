@@ -36,12 +36,12 @@ from lumen.interpreters.retrieval.scorers import bm25, ngrams
 from lumen.interpreters.retrieval.trials import samples_of
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.projects import Project
-from lumen.loading.files import read_files
+from lumen.lint import check_files
 from lumen.modules.answers.folder_vectors import FolderVectors
 from lumen.modules.answers.meaning import Embed, by_meaning
 from lumen.modules.answers.packaged_vectors import PackagedVectors
 from lumen.modules.answers.vectors import KnownText, TextVector, VectorSource
-from lumen.rules import check_files
+from lumen.project.files import read_files
 
 METHODS: dict[str, Method] = {"ngrams": by_wordings(ngrams), "bm25": by_wordings(bm25), "words": words}
 """The methods that are compared; `words` is the one that is used."""

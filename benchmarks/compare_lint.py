@@ -31,9 +31,9 @@ sys.path[:0] = [str(ROOT), str(ROOT / "engine")]
 from tests.guarded import CompletedProcess, run_guarded  # noqa: E402
 from tests.lsp.client import Client  # noqa: E402
 
-from lumen.loading.files import read_files  # noqa: E402
-from lumen.loading.project_folders import PROJECT_FOLDERS  # noqa: E402
-from lumen.rules import check_files  # noqa: E402
+from lumen.lint import check_files  # noqa: E402
+from lumen.project.files import read_files  # noqa: E402
+from lumen.project.project_folders import PROJECT_FOLDERS  # noqa: E402
 
 TOUR, GOODBYE, MAIN = "behaviors/tour.yaml", "motions/goodbye.yaml", "lumen.yaml"
 KINDS = {TOUR: "behavior", GOODBYE: "motion", MAIN: "lumen"}

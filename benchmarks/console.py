@@ -35,7 +35,7 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
-from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
+from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 from lumen.runtime.loop import TICK_PERIOD
 
 ROOT = Path(__file__).parents[1]

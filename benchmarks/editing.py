@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.guarded import PIPE, Guarded, run_guarded
 
-from lumen.loading.files import fingerprint, read_files
+from lumen.project.files import fingerprint, read_files
 
 ROOT = Path(__file__).parents[1]
 STORIES = ("known_visitor", "refuses", "unknown_visitor")

@@ -22,7 +22,7 @@ from lumen.interpreters.fleet.presence import RobotPresence
 from lumen.interpreters.fleet.rollout import begin
 from lumen.interpreters.fleet.state import CentreState
 from lumen.language.fleet import Fleet, FleetHouse, FleetMeasure, RolloutPlan, StepTarget
-from lumen.runtime.home import Home
+from lumen.project.home import Home
 
 HOUSE = 10
 PERIOD = 10.0

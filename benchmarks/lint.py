@@ -28,10 +28,10 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.guarded import DEVNULL, PIPE, Guarded, run_guarded
 
-from lumen.loading.files import read_files
-from lumen.loading.kept_contents import SETTLED_NS
-from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from lumen.project.kept_contents import SETTLED_NS
+from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 
 ROOT = Path(__file__).parents[1]
 RUNS = 9

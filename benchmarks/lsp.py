@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from tests.lsp.client import Client
 
-from lumen.loading.files import read_files
+from lumen.project.files import read_files
 
 ROOT = Path(__file__).parents[1]
 TOUR = "behaviors/tour.yaml"

@@ -39,8 +39,8 @@ from lumen.bus import connect
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.events import Event
 from lumen.language.stories import Visitor
+from lumen.project.home import Home
 from lumen.robots.recording import RecordingRobot
-from lumen.runtime.home import Home
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.watcher import SHORT_QUIET_FRACTION
 from lumen.upkeep.garbage import GcScheduler

@@ -24,10 +24,10 @@ from patterns import importable, imports, measured
 
 from lumen.buses.checking import SchemaCheck
 from lumen.expressions.json_schema import JsonSchema
-from lumen.loading.files import read_files
-from lumen.loading.project_folders import FILE_KINDS, kind_of
-from lumen.loading.schema import load_schema
-from lumen.loading.yaml_reader import parse
+from lumen.project.files import read_files
+from lumen.project.project_folders import FILE_KINDS, kind_of
+from lumen.project.schema import load_schema
+from lumen.project.yaml_reader import parse
 
 Schema = Mapping[str, Any]
 Fits = Callable[[Any], object]

@@ -25,7 +25,7 @@ from lumen.app.lint.physics import play_case
 from lumen.app.workers.work_kit import WorkKit, models_in
 from lumen.app.workers.workers import Workers, cores, workers_of
 from lumen.language.imperfections import Imperfections
-from lumen.loading.files import read_files
+from lumen.project.files import read_files
 from lumen.rules.physics.cases import cases
 
 ROOT = Path(__file__).parents[1]

@@ -16,7 +16,7 @@ import yaml
 from documented import NOT_RUN, all_pages, blocks
 
 from lumen.expressions.function_table import functions
-from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
+from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"

@@ -2,7 +2,7 @@
 
     python scripts/prose.py                      # hits per 1,000 words; exit code 1 if a limit is exceeded
     python scripts/prose.py --list               # and each hit of the groups that exceed their limit
-    python scripts/prose.py docs/lint.md engine/lumen/rules      # each hit in these files
+    python scripts/prose.py docs/lint.md engine/lumen/lint      # each hit in these files
     python scripts/prose.py --draw 60 --seed 1   # 60 messages and 60 sentences, for a reader who did not write them
 
 Messages are the string literals of the engine that hold a sentence; the values in an f-string print as `…`. A hit is a

@@ -16,10 +16,10 @@ from lumen.app.lint.findings import Findings
 from lumen.app.lint.physics import played
 from lumen.app.reload.against import against
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.files import Unreadable, read_files
-from lumen.rules import check_files
-from lumen.rules.codes import codes, families
-from lumen.rules.pages import Example, Page, page
+from lumen.lint import check_files
+from lumen.lint.codes import codes, families
+from lumen.lint.pages import Example, Page, page
+from lumen.project.files import Unreadable, read_files
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs/rules"

@@ -31,9 +31,9 @@ from lumen.app.workers.work_kit import UnpackedKit, WorkKit, name_of  # noqa: E4
 from lumen.app.workers.workers import Workers, workers_of  # noqa: E402
 from lumen.errors import LumenError, UsageError  # noqa: E402
 from lumen.language.commands import Move  # noqa: E402
-from lumen.loading.bodies import GAIT_ANGLES, GAIT_LENGTHS  # noqa: E402
-from lumen.loading.units import ANGLES, LENGTHS  # noqa: E402
 from lumen.motion.gait import GaitParameters, paces_of  # noqa: E402
+from lumen.project.bodies import GAIT_ANGLES, GAIT_LENGTHS  # noqa: E402
+from lumen.project.units import ANGLES, LENGTHS  # noqa: E402
 from lumen.robots.simulation.leg_geometry import read_legs  # noqa: E402
 from lumen.robots.simulation.mass_model import MassModel  # noqa: E402
 

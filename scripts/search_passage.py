@@ -29,11 +29,11 @@ from lumen.app.workers.workers import Workers, workers_of
 from lumen.errors import LumenError
 from lumen.language.commands import Posture
 from lumen.language.robots import Body
-from lumen.loading.files import read_files
-from lumen.loading.lending import MODELS
 from lumen.motion import Motion
 from lumen.motion.limits import beyond_limits, overspeed
 from lumen.motion.trajectories import Trajectory
+from lumen.project.files import read_files
+from lumen.project.lending import MODELS
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.model_terms import Variation
 from lumen.robots.simulation.world import CONTROL_PERIOD

@@ -15,9 +15,9 @@ from PIL import Image
 
 import lumen
 from lumen.language.projects import Project
-from lumen.loading.chosen_model import choose
-from lumen.loading.lending import model_files
 from lumen.ports import Perform
+from lumen.project.chosen_model import choose
+from lumen.project.lending import model_files
 from lumen.robots.simulation import SimulatedRobot, available
 from lumen.robots.simulation.rendering import RenderQuality, RenderState, SceneRenderer
 

@@ -34,10 +34,10 @@ from lumen.fuzzy import Controller
 from lumen.language.commands import Posture, Walk
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
-from lumen.loading.lending import model_files
 from lumen.motion.trajectories import Trajectory
 from lumen.ports import Image as Frame
 from lumen.ports import Perform, Sense
+from lumen.project.lending import model_files
 from lumen.robots.simulation import SimulatedRobot, available
 from lumen.robots.simulation.rendering import RenderQuality, RenderState, SceneRenderer
 

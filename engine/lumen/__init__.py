@@ -43,8 +43,8 @@ if TYPE_CHECKING:
     from lumen.language.diagnostics import Diagnostic
     from lumen.language.events import Event
     from lumen.language.projects import Project
+    from lumen.lint import check
     from lumen.project import load
-    from lumen.rules import check
 
 __version__ = "0.1.0"
 
@@ -125,7 +125,7 @@ _HOMES = {
     "lumen.language.events": ("Event",),
     "lumen.language.projects": ("Project",),
     "lumen.project": ("load",),
-    "lumen.rules": ("check",),
+    "lumen.lint": ("check",),
 }
 
 __getattr__ = lazy(__name__, _HOMES)

@@ -323,9 +323,9 @@ class Feature(NamedTuple):
     codes: tuple[str, ...] = ()
     """Other modules that declare codes, such as those that read files."""
     pages: tuple[str, ...] = ()
-    """Packages with a `CODE.md` for codes, in the form that `lumen.rules.pages` describes."""
+    """Packages with a `CODE.md` for codes, in the form that `lumen.lint.pages` describes."""
     fixes: Mapping[str, str] = {}
-    """For a code, the function that proposes how to repair a finding, as `lumen.rules.fixes` describes."""
+    """For a code, the function that proposes how to repair a finding, as `lumen.lint.fixes` describes."""
     subcommands: Mapping[str, Subcommand] = {}
     finding_formats: Mapping[str, str] = {}
     """For `--format NAME` of findings, the `Renderer` of `lumen.cli.render`."""

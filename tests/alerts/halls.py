@@ -21,8 +21,8 @@ from lumen.clocks.simulated import SimulatedClock
 from lumen.language.alerts import Alerts
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.loading.files import read_files
 from lumen.ports import Clock
+from lumen.project.files import read_files
 from lumen.robots.recording import RecordingRobot
 from tests import ROOT
 from tests.alerts.servers import Web

@@ -16,8 +16,8 @@ from lumen.cli.main import main
 from lumen.errors import BusUnreachableError
 from lumen.language.alerts import KINDS, Alerts
 from lumen.language.events import Event
+from lumen.project.home import Home
 from lumen.runtime import presence
-from lumen.runtime.home import Home
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web
 from tests.waiting import until

@@ -15,8 +15,8 @@ from lumen.app.reload.records import RunRecords
 from lumen.bus import Bus, connect
 from lumen.buses.checking import SchemaCheck
 from lumen.language.events import Event
+from lumen.project.home import Home
 from lumen.runtime.approvals import Approvals
-from lumen.runtime.home import Home
 from tests import ROOT
 from tests.app.test_now import Asker, asker
 

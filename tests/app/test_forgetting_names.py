@@ -11,7 +11,7 @@ from lumen.app.forgetting.report import Forgetting, ForgottenPlace
 from lumen.app.parts.forgetting import FORGETTING_SPACING, MAX_PENDING_NAMES, ForgettingPart
 from lumen.bus import connect
 from lumen.language.people import PersonName
-from lumen.runtime.home import Home
+from lumen.project.home import Home
 from lumen.runtime.snapshot_store import SNAPSHOT_FILE
 from tests.exhibits import project
 

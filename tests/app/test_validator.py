@@ -21,8 +21,8 @@ from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.language.projects import Project
 from lumen.language.stories import Expect, Story, StoryPause, StoryStep
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from lumen.runtime.watcher import SavedFiles
 from tests import ROOT
 from tests.waiting import until

@@ -3,7 +3,7 @@
     project_file(random, files)   a path in a project, and its new content: one of `files`, damaged, or another
     foreign_file(random)          a name, and the content of a statechart, motion or controller of another tool
 
-`files` are those of a sound project, by path (`lumen.loading.files.read_files`). What comes is a file with one to three
+`files` are those of a sound project, by path (`lumen.project.files.read_files`). What comes is a file with one to three
 damages, each a small function of a text (`DAMAGES`), or a file that means nothing but harm (`MONSTERS`). It depends on
 nothing but the seed, and is never much larger than `LARGEST`.
 """

@@ -7,7 +7,7 @@ from lumen.app.reload.requests import COMMAND
 from lumen.buses.local import LocalAddress
 from lumen.buses.local.frames import CLIENT, frame, nonce, proof, unframed
 from lumen.errors import BusError
-from lumen.runtime.home import ADDRESS_FILE, Home
+from lumen.project.home import ADDRESS_FILE, Home
 from tests.attack import files, messages
 from tests.attack.attacks import Attack, Kind
 from tests.attack.sound import sound

@@ -5,8 +5,8 @@ from typing import Any
 from lumen.app.reload.requests import COMMAND, STATUS
 from lumen.buses.local.server import FLUSH_MARK
 from lumen.language.projects import Project
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.attack.targets import SPOKEN
 

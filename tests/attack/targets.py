@@ -12,8 +12,8 @@ from lumen.app.asking import ask
 from lumen.app.reaching import Reached, reach_exhibition
 from lumen.app.reload.requests import COMMAND
 from lumen.errors import BusError
-from lumen.loading.files import read_files
-from lumen.runtime.home import ADDRESS_FILE, Home
+from lumen.project.files import read_files
+from lumen.project.home import ADDRESS_FILE, Home
 from lumen.runtime.journal import Journal
 from tests import ROOT
 from tests.guarded import DEVNULL, STDOUT, Guarded, TimeoutExpired, temporary_folder

@@ -6,8 +6,8 @@ from random import Random
 import pytest
 
 from lumen.cli.main import main
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.attack.files import FOREIGN, LARGEST, damaged, foreign_file, project_file
 from tests.tables import for_each

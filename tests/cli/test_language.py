@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 from lumen.cli.main import main
-from lumen.loading.files import read_files
-from lumen.loading.project import draft
-from lumen.rules import check_files
-from lumen.rules.new_language import with_language
-from lumen.rules.translation import TO_DO, language_entries, untranslated
+from lumen.lint import check_files
+from lumen.lint.new_language import with_language
+from lumen.lint.translation import TO_DO, language_entries, untranslated
+from lumen.project.building import draft
+from lumen.project.files import read_files
 from tests import ROOT
 
 BEHAVIOR = """\

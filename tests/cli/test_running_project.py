@@ -9,10 +9,10 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.errors import LumenError, UsageError
-from lumen.loading import running_project as module
-from lumen.loading.packaged import PACKAGE, shipped_root
-from lumen.loading.running_project import copy_of_shipped, project_to_run, running_project
-from lumen.runtime.home import STATE_FOLDER, home_of
+from lumen.project import running_project as module
+from lumen.project.home import STATE_FOLDER, home_of
+from lumen.project.packaged import PACKAGE, shipped_root
+from lumen.project.running_project import copy_of_shipped, project_to_run, running_project
 from tests.tables import for_each
 
 

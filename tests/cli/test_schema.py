@@ -13,8 +13,8 @@ from jsonschema import Draft202012Validator
 from lumen.cli.jsonc import added, plain
 from lumen.cli.main import main
 from lumen.cli.schema import FILES, settings
-from lumen.loading.project_folders import FILE_KINDS
-from lumen.loading.schema import load_schema
+from lumen.project.project_folders import FILE_KINDS
+from lumen.project.schema import load_schema
 from tests import ROOT
 from tests.tables import for_each
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.scxml import read_scxml
 from lumen.language.diagnostics import Diagnostic, Severity
-from lumen.loading.yaml_reader import parse
+from lumen.project.yaml_reader import parse
 from lumen.statechart import Event, Machine, Snapshot, Step, due, initial, step
 from tests.fetched import fetched
 from tests.scanning import matching

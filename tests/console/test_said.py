@@ -18,7 +18,7 @@ from lumen.console.kept_days import KeptDays
 from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry, entry_data
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
-from lumen.loading.standalone import machine_from_dict
+from lumen.project.standalone import machine_from_dict
 from lumen.statechart import initial, serialize
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Served

@@ -15,8 +15,8 @@ from lumen.insight.replay.entries import JournalInput
 from lumen.language.command_data import command_data
 from lumen.language.commands import Ask, Start
 from lumen.language.events import Event
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from tests.tables import for_each
 
 

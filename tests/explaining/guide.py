@@ -6,7 +6,7 @@ from typing import Any
 import yaml
 
 from lumen.language.machines import MachineDefinition
-from lumen.loading.standalone import machine_from_dict
+from lumen.project.standalone import machine_from_dict
 
 GUIDE = """\
 words: common

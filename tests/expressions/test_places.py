@@ -4,9 +4,9 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.loading.document import Document
-from lumen.loading.expressions import place_within
-from lumen.loading.yaml_reader import parse
+from lumen.project.document import Document
+from lumen.project.expressions import place_within
+from lumen.project.yaml_reader import parse
 from tests.tables import for_each
 
 WRITTEN = {

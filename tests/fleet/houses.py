@@ -12,7 +12,7 @@ from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.memory import AgentMemory
 from lumen.app.fleet.signing import ORDER, Signer
 from lumen.interpreters.fleet.orders import DesiredState
-from lumen.loading.files import fingerprint, read_files
+from lumen.project.files import fingerprint, read_files
 from tests import ROOT
 
 EXAMPLE = ROOT / "examples/fleet"

@@ -14,7 +14,7 @@ from lumen.app.fleet.memory import AgentMemory
 from lumen.app.fleet.serving import ServedCentre
 from lumen.app.fleet.signing import Signer, generate
 from lumen.bus import connect
-from lumen.loading.files import read_files
+from lumen.project.files import read_files
 from tests.fleet.brokers import HOUSES, FleetBrokers
 from tests.fleet.houses import Taker, project
 from tests.waiting import until

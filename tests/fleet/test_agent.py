@@ -17,8 +17,8 @@ from lumen.app.fleet.memory import AgentMemory, keep, remember
 from lumen.app.fleet.signing import BUNDLE, ORDER, Signer, generate, verified
 from lumen.errors import UsageError
 from lumen.interpreters.fleet.presence import presence_from
-from lumen.loading.files import FLEET_FILE, fingerprint, read_files
-from lumen.runtime.home import Home, home_of
+from lumen.project.files import FLEET_FILE, fingerprint, read_files
+from lumen.project.home import Home, home_of
 from tests.fleet.houses import House, changed, ordered, project
 
 

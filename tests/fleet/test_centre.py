@@ -19,7 +19,7 @@ from lumen.app.fleet.signing import Signer, generate
 from lumen.buses.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.errors import UsageError
-from lumen.loading.files import fingerprint, read_files
+from lumen.project.files import fingerprint, read_files
 from tests.fleet.houses import Taker, changed, project
 
 PLAN = {"steps": ["demo-1", "50%", "all"], "pause": 2.0, "abort-if": "falls > 0"}

@@ -8,7 +8,7 @@ import pytest
 from lumen.app.fleet.fleet_log import FleetLog
 from lumen.buses.stream_reader import StreamEntry
 from lumen.language.fleet import FleetMeasure
-from lumen.runtime.home import Home
+from lumen.project.home import Home
 
 NOW = 1_800_000_000.0
 MEASURES = {"falls": FleetMeasure(event="fallen")}

@@ -13,9 +13,9 @@ from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
 from lumen.buses.memory import MemoryBus
-from lumen.loading.files import fingerprint, read_files
 from lumen.project import load
-from lumen.runtime.home import home_of
+from lumen.project.files import fingerprint, read_files
+from lumen.project.home import home_of
 from tests.fleet.houses import ROBOT, changed, ordered, project
 from tests.waiting import Collector, until
 

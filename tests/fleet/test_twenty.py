@@ -22,7 +22,7 @@ from lumen.app.recovery.startup import startup_project
 from lumen.app.setup import set_up
 from lumen.bus import connect
 from lumen.interpreters.fleet.rollout import allowed
-from lumen.loading.files import fingerprint, read_files
+from lumen.project.files import fingerprint, read_files
 from tests.fleet.brokers import HOUSES, FleetBrokers
 from tests.fleet.houses import changed, project
 

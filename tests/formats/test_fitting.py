@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from lumen.cli.main import main
 from lumen.formats.conversion_findings import ForeignFileError
 from lumen.formats.gestures import read_gesture
-from lumen.loading.packaged import shipped_root
 from lumen.motion.limits import beyond_limits, overspeed
+from lumen.project.packaged import shipped_root
 from tests.formats.test_gestures import BODY, EXPORT, WAVE, XAR, built, read, said
 from tests.tables import for_each
 

@@ -15,12 +15,12 @@ from lumen.formats.gestures import read_gesture
 from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.motions import MotionDefinition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.motions import build_motion
-from lumen.loading.packaged import shipped_root
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
 from lumen.motion.trajectories import Trajectory
+from lumen.project.document_report import DocumentReport
+from lumen.project.motions import build_motion
+from lumen.project.packaged import shipped_root
+from lumen.project.schema import check_schema
+from lumen.project.yaml_reader import parse
 from tests.tables import for_each
 
 BODY = lumen.load(shipped_root()).body

@@ -11,7 +11,7 @@ from lumen.formats.xstate import read_xstate, write_xstate
 from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import has_errors
 from lumen.language.events import Event
-from lumen.loading.yaml_reader import parse
+from lumen.project.yaml_reader import parse
 from lumen.statechart import Machine, initial, step
 from tests.tables import for_each
 

@@ -11,7 +11,7 @@ from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.xstate import read_xstate, write_xstate
 from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import has_errors
-from lumen.loading.yaml_reader import parse
+from lumen.project.yaml_reader import parse
 from lumen.statechart import Machine
 from tests.formats.making import HAPPENINGS, charts, run
 

@@ -9,8 +9,8 @@ from random import Random
 import pytest
 
 from lumen.cli.main import main
-from lumen.loading.yaml_reader import parse
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.yaml_reader import parse
 from tests.attack.files import foreign_file, project_file
 from tests.attack.test_files import BASE, NUMBERED, blanks
 from tests.formats import test_hostile

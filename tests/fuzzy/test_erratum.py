@@ -7,9 +7,9 @@ import pytest
 import lumen
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import has_errors
-from lumen.loading.files import read_files
+from lumen.lint import check_files
 from lumen.motion.tracking import Tracker
-from lumen.rules import check_files
+from lumen.project.files import read_files
 from tests.fuzzy.nao import HEAD
 from tests.tables import for_each
 

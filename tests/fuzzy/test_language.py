@@ -12,10 +12,10 @@ from lumen.errors import LumenError, ProjectError
 from lumen.fuzzy import Controller
 from lumen.fuzzy.arithmetic import NUMBERS, arrays
 from lumen.fuzzy.formulas import FORMULA_FUNCTIONS, formula
-from lumen.loading.controllers import build_controller
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.schema import check_schema, load_schema
-from lumen.loading.yaml_reader import parse
+from lumen.project.controllers import build_controller
+from lumen.project.document_report import DocumentReport
+from lumen.project.schema import check_schema, load_schema
+from lumen.project.yaml_reader import parse
 from tests.tables import for_each
 
 TABLE = """inputs:

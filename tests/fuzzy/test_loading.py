@@ -10,10 +10,10 @@ from lumen.errors import ProjectError
 from lumen.fuzzy import Controller
 from lumen.language.controllers import ACTIVATIONS, COMPARISONS, DEFUZZIFIERS, S_NORMS, T_NORMS, TERM_PARAMETERS
 from lumen.language.diagnostics import Diagnostic, Severity
-from lumen.loading.controllers import build_controller
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.schema import check_schema, load_schema
-from lumen.loading.yaml_reader import parse
+from lumen.project.controllers import build_controller
+from lumen.project.document_report import DocumentReport
+from lumen.project.schema import check_schema, load_schema
+from lumen.project.yaml_reader import parse
 from tests.tables import for_each
 
 HEAD = Path("tests/fuzzy/at_length.yaml").read_text()

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.language.controllers import Conjunction, Disjunction, Negation, Proposition
-from lumen.loading.rule_parser import RuleSyntaxError, parse_rule
+from lumen.project.rule_parser import RuleSyntaxError, parse_rule
 from tests.tables import for_each
 
 A, B, C = Proposition("a", "x"), Proposition("b", "y"), Proposition("c", "z")

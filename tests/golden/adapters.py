@@ -27,9 +27,9 @@ from lumen.language.command_data import command_data
 from lumen.language.commands import Say
 from lumen.language.gestures import merged
 from lumen.ports import Live, Perform, Sense
+from lumen.project.home import Home
 from lumen.robots.life_layer import LifeLayer
 from lumen.robots.recording import RecordingRobot
-from lumen.runtime.home import Home
 from lumen.runtime.resuming import FreshStart, Resumption, resume
 from lumen.statechart import deserialize, serialize
 from tests.golden.texts import in_one_line

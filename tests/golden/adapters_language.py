@@ -7,9 +7,9 @@ from typing import Any
 
 import lumen.cli.main as command_line
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.files import read_files
-from lumen.loading.yaml_reader import parse
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from lumen.project.yaml_reader import parse
 
 __all__ = ["Diagnostic", "findings", "lumen_main", "options", "project_files", "table", "verbs"]
 

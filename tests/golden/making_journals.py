@@ -25,8 +25,8 @@ from lumen.app.plan import Plan
 from lumen.app.services import Services
 from lumen.cli.main import main
 from lumen.language.machines import MachineDefinition
-from lumen.loading.files import read_files
-from lumen.runtime.home import Home
+from lumen.project.files import read_files
+from lumen.project.home import Home
 from lumen.runtime.loop import Observer
 from lumen.runtime.snapshot_store import SnapshotStore
 from lumen.statechart import Step, deserialize, serialize

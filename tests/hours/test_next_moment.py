@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lumen.expressions.wall_clock import MICROSECONDS, local_time, next_moment
 from lumen.language.hours import WEEKDAYS, Schedule
-from lumen.loading.schedules import MisreadTimeError, read_schedule
+from lumen.project.schedules import MisreadTimeError, read_schedule
 from tests.tables import for_each
 
 ZONES = (

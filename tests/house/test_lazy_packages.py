@@ -8,8 +8,8 @@ import pytest
 
 import lumen.buses as bus
 import lumen.fuzzy as fuzzy
-import lumen.loading as project
 import lumen.motion as motion
+import lumen.project as project
 import lumen.statechart as statechart
 
 PACKAGES = [bus, fuzzy, motion, project, statechart]

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from lumen.loading.project_folders import PROJECT_FOLDERS
+from lumen.project.project_folders import PROJECT_FOLDERS
 from tests import ROOT
 from tests.fetched import fetched
 from tests.guarded import run_guarded

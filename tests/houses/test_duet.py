@@ -12,8 +12,8 @@ from lumen.app.house import House
 from lumen.app.plan import Plan
 from lumen.app.setup import set_up_house
 from lumen.cli.main import main
+from lumen.lint import check
 from lumen.ports import Bus, Message
-from lumen.rules import check
 from tests import ROOT
 from tests.waiting import Collector
 

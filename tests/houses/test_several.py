@@ -18,7 +18,7 @@ from lumen.app.setup import set_up_house
 from lumen.cli.main import main
 from lumen.errors import LumenError, RobotModelError, UsageError
 from lumen.journal.journal_folder import JOURNAL_FOLDER
-from lumen.runtime.home import home_of
+from lumen.project.home import home_of
 from lumen.statechart import Step
 
 NAMES = ("ana", "ben")

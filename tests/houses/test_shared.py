@@ -13,8 +13,8 @@ from lumen.insight.migration import MigrationPlan, plan
 from lumen.language.commands import Say, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.lint import check
 from lumen.ports import Bus
-from lumen.rules import check
 from lumen.runtime.shared_board import RETELL_PERIOD
 from tests.houses.test_several import opened
 from tests.waiting import Collector

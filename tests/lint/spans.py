@@ -3,7 +3,7 @@
 import re
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.yaml_reader import parse
+from lumen.project.yaml_reader import parse
 
 QUOTED = re.compile(r"`([^`]+)`")
 

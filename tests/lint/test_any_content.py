@@ -8,9 +8,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from lumen.loading.files import read_files
-from lumen.loading.yaml_reader import parse
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from lumen.project.yaml_reader import parse
 from tests.tables import for_each
 
 BASE = read_files(Path(__file__).parent / "base")

@@ -14,9 +14,9 @@ from typing import Any
 import pytest
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.files import read_files
-from lumen.loading.yaml_reader import parse
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from lumen.project.yaml_reader import parse
 from tests.lint.spans import assert_marks_what_is_spoken_of
 from tests.scanning import matching
 from tests.tables import check, for_each

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import lumen
 from lumen.language.diagnostics import Severity, did_you_mean
-from lumen.rules.codes import codes, families
-from lumen.rules.pages import page
+from lumen.lint.codes import codes, families
+from lumen.lint.pages import page
 from tests.scanning import matching
 from tests.tables import for_each
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
-from lumen.rules.codes import codes, families
+from lumen.lint.codes import codes, families
 from tests import ROOT
 from tests.guarded import CompletedProcess, run_guarded
 from tests.tour.conftest import copy
@@ -278,7 +278,7 @@ def test_lint_imports_nothing_heavy(project: Path) -> None:
     code = (
         "import sys; from lumen.cli.main import main; main(['lint', sys.argv[1]]);"
         "heavy = {'mujoco', 'dm_control', 'pika', 'numpy', 'PIL', 'nicegui', 'matplotlib'} & set(sys.modules);"
-        "heavy |= {'lumen.rules.pages', 'lumen.rules.fixes', 'watchfiles', 'pygls'} & set(sys.modules);"
+        "heavy |= {'lumen.lint.pages', 'lumen.lint.fixes', 'watchfiles', 'pygls'} & set(sys.modules);"
         "heavy |= {'lumen.statechart.stepping', 'jsonschema', 'shutil'} & set(sys.modules);"
         "sys.exit(f'imported {heavy}' if heavy else 0)"
     )

@@ -3,16 +3,16 @@
 from pathlib import Path
 
 from lumen.app.lint.targets import LintTarget
-from lumen.loading.common_words import COMMON_FILE, common_words
-from lumen.loading.files import read_files
-from lumen.loading.project import draft
-from lumen.rules import check_files
-from lumen.rules.new_language import with_language
-from lumen.rules.patterns import BAD_PATTERN, DEAD_SLOT, FOREIGN_PATTERN
-from lumen.rules.speech import UNKNOWN_LANGUAGE
-from lumen.rules.torn_texts import TORN_TEXT
-from lumen.rules.translation import language_entries
-from lumen.rules.unused import UNUSED_PHRASES
+from lumen.lint import check_files
+from lumen.lint.new_language import with_language
+from lumen.lint.patterns import BAD_PATTERN, DEAD_SLOT, FOREIGN_PATTERN
+from lumen.lint.speech import UNKNOWN_LANGUAGE
+from lumen.lint.torn_texts import TORN_TEXT
+from lumen.lint.translation import language_entries
+from lumen.lint.unused import UNUSED_PHRASES
+from lumen.project.building import draft
+from lumen.project.common_words import COMMON_FILE, common_words
+from lumen.project.files import read_files
 
 ROOT = Path(__file__).parent / "hearing"
 

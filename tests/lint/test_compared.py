@@ -4,8 +4,8 @@ import re
 
 from benchmarks.compare_lint import PROJECT, Mistake, cell, mistakes
 
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.tables import for_each
 

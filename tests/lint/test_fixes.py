@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from lumen.cli.main import main
 from lumen.language.diagnostics import Diagnostic, Place, has_errors
-from lumen.loading.files import read_files
-from lumen.rules import check_files
-from lumen.rules.fixes import edited, fixes
-from lumen.rules.fixes.misspellings import near
-from lumen.rules.repairs import repaired
+from lumen.lint import check_files
+from lumen.lint.fixes import edited, fixes
+from lumen.lint.fixes.misspellings import near
+from lumen.lint.repairs import repaired
+from lumen.project.files import read_files
 from tests.tables import for_each
 
 HERE = Path(__file__).parent

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from lumen.loading.files import read_files
-from lumen.rules import check_files
-from lumen.rules.codes import families
+from lumen.lint import check_files
+from lumen.lint.codes import families
+from lumen.project.files import read_files
 from tests.tables import for_each
 
 BASE = read_files(Path(__file__).parent / "pages/base")

@@ -12,8 +12,8 @@ import pytest
 
 from lumen.app.lint import kept_findings
 from lumen.cli.main import main
-from lumen.loading import engine_files, looks
-from lumen.rules import traps
+from lumen.lint import traps
+from lumen.project import engine_files, looks
 from tests import ROOT
 from tests.guarded import PIPE, run_guarded
 
@@ -185,8 +185,8 @@ def test_what_is_kept_badly_is_judged(content: bytes, lint: Run, judged: list[in
 
 def test_what_is_known_needs_neither_rules_nor_the_language(project: Path) -> None:
     told = (
-        "import sys; from lumen.loading import looks; looks.SETTLED_NS = -10**18; from lumen.cli.main import main\n"
-        "main(['lint', sys.argv[1]]); print(sorted({'yaml', 'lumen.interpreters', 'lumen.rules'} & set(sys.modules)))"
+        "import sys; from lumen.project import looks; looks.SETTLED_NS = -10**18; from lumen.cli.main import main\n"
+        "main(['lint', sys.argv[1]]); print(sorted({'yaml', 'lumen.interpreters', 'lumen.lint'} & set(sys.modules)))"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
 
@@ -194,4 +194,4 @@ def test_what_is_known_needs_neither_rules_nor_the_language(project: Path) -> No
         done = run_guarded([sys.executable, "-c", told, str(project)], stdout=PIPE, text=True, env=environment)
         return str(done.stdout.splitlines()[-1])
 
-    assert [imported(), imported()] == ["['lumen.interpreters', 'lumen.rules', 'yaml']", "[]"]
+    assert [imported(), imported()] == ["['lumen.interpreters', 'lumen.lint', 'yaml']", "[]"]

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from lumen.app.lint.kept_memory import MUCH, keep_memory, recall_memory
-from lumen.loading import looks, memoization
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project import looks, memoization
+from lumen.project.files import read_files
 
 BASE = Path(__file__).parent / "base"
 TOUR = "behaviors/tour.yaml"

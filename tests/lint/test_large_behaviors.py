@@ -6,8 +6,8 @@ from types import ModuleType
 
 import pytest
 
-from lumen.loading.project import draft
-from lumen.rules import edges, endless_chains, events, falling, guards, regions
+from lumen.lint import edges, endless_chains, events, falling, guards, regions
+from lumen.project.building import draft
 from tests.formats.test_large import calls
 
 SMALL, TIMES, SLACK = 100, 5, 2.0

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 import yaml
 
-from lumen.loading.files import read_files
-from lumen.loading.project_folders import FLEET_FILE, FOLDERS
+from lumen.project.files import read_files
+from lumen.project.project_folders import FLEET_FILE, FOLDERS
 from tests import ROOT
 from tests.guarded import CompletedProcess, run_guarded
 from tests.provided import program

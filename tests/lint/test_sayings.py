@@ -1,7 +1,7 @@
 """Lint of files of sayings: names that are not there, at their places."""
 
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from tests.lint.spans import assert_marks_what_is_spoken_of
 from tests.lint.test_cases import HERE, changed, said
 from tests.tables import for_each

@@ -18,9 +18,9 @@ from lumen.app.setup import Setup
 from lumen.clocks.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
+from lumen.lint import check_files
+from lumen.project.home import Home
 from lumen.robots.recording import RecordingRobot
-from lumen.rules import check_files
-from lumen.runtime.home import Home
 from tests.nodes import Printed, whole
 from tests.waiting import HANG, Collector, until
 

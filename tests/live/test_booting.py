@@ -12,9 +12,9 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.recovery.startup import startup_project
 from lumen.cli.main import main
 from lumen.errors import BusError
-from lumen.loading.files import read_files
-from lumen.runtime.crash_counter import MAX_CRASHES, MAX_KNOWN_BUNDLES, CrashCounter
-from lumen.runtime.home import Home, home_of
+from lumen.project.crash_counter import MAX_CRASHES, MAX_KNOWN_BUNDLES, CrashCounter
+from lumen.project.files import read_files
+from lumen.project.home import Home, home_of
 from lumen.runtime.journal import Journal
 from tests.live.shows import Live
 

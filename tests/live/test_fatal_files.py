@@ -14,8 +14,8 @@ from lumen.app.recovery.startup import startup_project
 from lumen.app.reload import validation_worker
 from lumen.app.reload.validation_worker import ValidationWorker, load_apart
 from lumen.errors import FatalFilesError
-from lumen.loading import kept_contents
-from lumen.loading.files import fingerprint, read_files
+from lumen.project import kept_contents
+from lumen.project.files import fingerprint, read_files
 from tests.live.shows import Live
 
 pytestmark = pytest.mark.rest  # dear

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import UsageError
+from lumen.project.crash_counter import CrashCounter
+from lumen.project.home import Home, home_of
 from lumen.runtime import snapshot_store
-from lumen.runtime.crash_counter import CrashCounter
-from lumen.runtime.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 
 

@@ -8,8 +8,8 @@ import lumen
 from lumen.app.reload.delta import LATE, DeltaDecoder, DeltaEncoder
 from lumen.app.reload.validation_process import failure
 from lumen.app.reload.validation_worker import ValidationWorker
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 
 TOUR = "behaviors/tour.yaml"
 SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'

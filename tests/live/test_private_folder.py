@@ -7,8 +7,8 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.modules.memory import Store
+from lumen.project.home import Home
 from lumen.robots.deduplication_log import DeduplicationLog
-from lumen.runtime.home import Home
 from lumen.upkeep.private_folder import private_folder
 from tests import ROOT
 from tests.guarded import run_guarded
@@ -25,7 +25,7 @@ MAKERS = {
     "upkeep/cache_folder.py": "in the user's own cache, not in a project",
     "app/workers/work_kit.py": "a temporary folder",
     "app/starting.py": "a project, which is to be committed",
-    "loading/running_project.py": "the shipped exhibition, in the state folder",
+    "project/running_project.py": "the shipped exhibition, in the state folder",
     "cli/writing.py": "where the user says",
     "robots/simulation/shells.py": "the robot's shape",
 }

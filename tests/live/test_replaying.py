@@ -10,8 +10,8 @@ from lumen.insight.replay.replaying import ReplayedStep, replay
 from lumen.journal.journal_file import read_journal
 from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
 from lumen.language.machines import MachineDefinition
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from lumen.runtime.snapshot_store import SnapshotStore
 from tests.live.shows import Live
 

@@ -16,8 +16,8 @@ from lumen.app.recovery.previous_run import LATELY
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.cli.main import main
 from lumen.language.commands import Track
-from lumen.loading.files import read_files
-from lumen.runtime.home import ADDRESS_FILE, Home, home_of
+from lumen.project.files import read_files
+from lumen.project.home import ADDRESS_FILE, Home, home_of
 from lumen.runtime.journal import MAX_JOURNAL_BYTES, Journal
 from lumen.runtime.resuming import LOST_COMMAND_REASON, FreshStart, Resumption, resume
 from lumen.runtime.snapshot_store import ALIVE_FILE, SNAPSHOT_FILE, SnapshotStore

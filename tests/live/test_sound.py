@@ -14,9 +14,9 @@ import pytest
 
 from lumen.app.loudspeaker import PLAYERS, Loudspeaker
 from lumen.language.commands import PlaySound
-from lumen.loading.sounds import sound_duration
 from lumen.modules.audio_track import RATE, AudioTrack
 from lumen.modules.sound import Sound, save
+from lumen.project.sounds import sound_duration
 from tests.guarded import run_guarded
 from tests.tables import for_each
 from tests.waiting import until

@@ -14,8 +14,8 @@ import pytest
 
 from lumen.app.reload.reloader import Reloader
 from lumen.app.reload.validator import Validation
-from lumen.loading.common_words import COMMON_FILE
-from lumen.loading.files import read_files
+from lumen.project.common_words import COMMON_FILE
+from lumen.project.files import read_files
 from lumen.runtime.watcher import SavedFiles
 from tests.live.faults import failing, name, steps
 from tests.live.shows import Live

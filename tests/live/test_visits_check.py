@@ -19,7 +19,7 @@ from lumen.journal.journal_file import line_of, read_journal
 from lumen.journal.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER
 from lumen.journal.redaction import redact
 from lumen.language.people import PersonName
-from lumen.runtime.home import home_of
+from lumen.project.home import home_of
 from lumen.statechart import serialize
 from tests import ROOT
 from tests.live.shows import Live

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from lumen.loading.files import Unreadable, fingerprint, read_files
-from lumen.loading.project_folders import FOLDERS, ProjectFolder
+from lumen.project.files import Unreadable, fingerprint, read_files
+from lumen.project.project_folders import FOLDERS, ProjectFolder
 from lumen.runtime.watcher import FileWatcher, SavedFiles, WatchedFiles, watched_folders
 from tests.waiting import until
 

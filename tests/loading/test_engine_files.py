@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from lumen.app.lint import outcome_cache
-from lumen.loading import engine_files
+from lumen.project import engine_files
 
 DECIDE = ("lumen.motion.gait", "lumen.motion.life", "lumen.robots.executor", "lumen.rules.physics.trial")
 """Modules that decide whether a motion falls, at different depths."""

@@ -13,12 +13,12 @@ import lumen.motion as lumen_motion
 from lumen import statechart
 from lumen.cli.main import main
 from lumen.errors import ProjectError, UsageError
-from lumen.loading import files as project_files
-from lumen.loading.files import Unreadable, fingerprint, read_files
-from lumen.loading.packaged import find_project, shipped_root
-from lumen.loading.regular_files import read_regular
-from lumen.loading.yaml_reader import parse
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project import files as project_files
+from lumen.project.files import Unreadable, fingerprint, read_files
+from lumen.project.packaged import find_project, shipped_root
+from lumen.project.yaml_reader import parse
+from lumen.upkeep.regular_files import read_regular
 from tests import ROOT
 
 BASE = ROOT / "tests/lint/base"

@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from lumen.expressions.json_schema import MAX_DATA_DEPTH, JsonSchema
-from lumen.loading.document import MAX_NODE_DEPTH, Document
-from lumen.loading.files import read_files
-from lumen.loading.messages import build_message
-from lumen.loading.project_folders import FILE_KINDS, kind_of
-from lumen.loading.schema import load_schema
-from lumen.loading.yaml_reader import parse
+from lumen.project.document import MAX_NODE_DEPTH, Document
+from lumen.project.files import read_files
+from lumen.project.messages import build_message
+from lumen.project.project_folders import FILE_KINDS, kind_of
+from lumen.project.schema import load_schema
+from lumen.project.yaml_reader import parse
 from tests import ROOT
 from tests.tables import for_each
 

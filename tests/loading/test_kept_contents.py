@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from lumen.loading import kept_contents
-from lumen.loading.files import read_files
-from lumen.loading.kept_contents import SETTLED_NS, KeptContents
+from lumen.project import kept_contents
+from lumen.project.files import read_files
+from lumen.project.kept_contents import SETTLED_NS, KeptContents
 
 OLD = time.time_ns() - 10 * SETTLED_NS
 

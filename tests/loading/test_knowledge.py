@@ -5,9 +5,9 @@ from pathlib import Path
 
 from lumen.insight.changes import changes
 from lumen.language.projects import Project
-from lumen.loading.files import fingerprint, read_files
+from lumen.lint import check_files
 from lumen.loading.markdown import parse_markdown
-from lumen.rules import check_files
+from lumen.project.files import fingerprint, read_files
 from tests import ROOT
 from tests.tables import for_each
 

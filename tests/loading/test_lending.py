@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.loading.lending import model_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.lending import model_files
 from tests import ROOT
 
 SHIPPED = ROOT

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from lumen.loading.looks import Looks
-from lumen.loading.misnamed import Misnamed, misnamed_in
+from lumen.project.looks import Looks
+from lumen.project.misnamed import Misnamed, misnamed_in
 from tests.tables import for_each
 
 

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from lumen.loading import built_file as reading
-from lumen.loading import memoization as recollection
-from lumen.loading import motions
-from lumen.loading.files import read_files
-from lumen.loading.memoization import memoize
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project import built_file as reading
+from lumen.project import memoization as recollection
+from lumen.project import motions
+from lumen.project.files import read_files
+from lumen.project.memoization import memoize
 from tests import ROOT
 
 BASE = read_files(ROOT / "tests/lint/base")

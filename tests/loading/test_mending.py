@@ -2,10 +2,10 @@
 
 from random import Random
 
-from lumen.loading.bracketed_texts import bracketed
-from lumen.loading.document import MAX_NODE_DEPTH
-from lumen.loading.line_marks import marks_of
-from lumen.loading.mending import failure, mistake
+from lumen.project.bracketed_texts import bracketed
+from lumen.project.document import MAX_NODE_DEPTH
+from lumen.project.line_marks import marks_of
+from lumen.project.mending import failure, mistake
 from tests import ROOT
 from tests.tables import for_each
 

@@ -8,8 +8,8 @@ from subprocess import CompletedProcess
 import pytest
 
 import lumen
-from lumen.loading.chosen_model import MODEL_VARIABLE
-from lumen.loading.files import belongs, fingerprint, read_files
+from lumen.project.chosen_model import MODEL_VARIABLE
+from lumen.project.files import belongs, fingerprint, read_files
 from tests.guarded import run_guarded
 from tests.waiting import HANG
 

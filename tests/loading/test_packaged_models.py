@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lumen.loading.packaged_models import in_package, mjcf_path, package_file
+from lumen.project.packaged_models import in_package, mjcf_path, package_file
 from tests.tables import for_each
 
 MODELS = Path("models")

@@ -3,7 +3,7 @@
 import pytest
 
 from lumen.language.json_paths import schema_at, value_at, values_in, with_value
-from lumen.loading.document import Document
+from lumen.project.document import Document
 
 DATA = {"states": {"idle": {"do": [{"say": "Hello"}]}}}
 

@@ -8,13 +8,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lumen.loading import memoization as recollection
-from lumen.loading import yaml_reader
-from lumen.loading.document import Document
-from lumen.loading.files import read_files
-from lumen.loading.rereading import reread
-from lumen.loading.yaml_reader import parse
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project import memoization as recollection
+from lumen.project import yaml_reader
+from lumen.project.document import Document
+from lumen.project.files import read_files
+from lumen.project.rereading import reread
+from lumen.project.yaml_reader import parse
 from tests import ROOT
 from tests.tables import for_each
 

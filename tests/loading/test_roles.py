@@ -6,10 +6,10 @@ import lumen
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.robots import Body
 from lumen.language.roles import JOINT_PATHS, Base, BaseKind, JointRole
-from lumen.loading.bodies import build_body, build_likes
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
+from lumen.project.bodies import build_body, build_likes
+from lumen.project.document_report import DocumentReport
+from lumen.project.schema import check_schema
+from lumen.project.yaml_reader import parse
 from tests import ROOT
 from tests.tables import for_each
 

@@ -8,15 +8,15 @@ import jsonschema
 import pytest
 
 from lumen.expressions.expression_findings import UNKNOWN_STATE
-from lumen.loading import misindented, schema
-from lumen.loading.complaints import Complaint
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.packaged import schema_folder
-from lumen.loading.project_folders import FILE_KINDS
-from lumen.loading.schema import check_schema, faults, load_schema
-from lumen.loading.yaml_nodes import read_text
-from lumen.loading.yaml_reader import parse
+from lumen.project import misindented, schema
+from lumen.project.complaints import Complaint
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.packaged import schema_folder
+from lumen.project.project_folders import FILE_KINDS
+from lumen.project.schema import check_schema, faults, load_schema
+from lumen.project.yaml_nodes import read_text
+from lumen.project.yaml_reader import parse
 from tests.scanning import matching
 from tests.tables import for_each
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from lumen.language.console_settings import ConsoleSettings
 from lumen.language.show import Show
-from lumen.loading.project import main_settings
-from lumen.loading.settings import Settings
+from lumen.project.building import main_settings
+from lumen.project.settings import Settings
 from tests.tables import for_each
 
 

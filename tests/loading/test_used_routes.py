@@ -12,10 +12,10 @@ from lumen.formats.asyncapi import document
 from lumen.insight.changes.projects import changes
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.projects import Project
-from lumen.loading.chosen_robot import as_robot
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.project import draft
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.building import draft
+from lumen.project.chosen_robot import as_robot
+from lumen.project.draft import ProjectDraft
 from tests import ROOT
 from tests.tables import for_each
 

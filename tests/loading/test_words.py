@@ -14,10 +14,10 @@ from lumen.formats.xstate import read_xstate, write_xstate
 from lumen.insight.changes import changes
 from lumen.insight.changes.change import Risk
 from lumen.language.diagnostics import has_errors
-from lumen.loading.files import read_files
-from lumen.loading.project import draft
+from lumen.lint import check_files
 from lumen.project import load
-from lumen.rules import check_files
+from lumen.project.building import draft
+from lumen.project.files import read_files
 from lumen.statechart import Interpreter, Machine
 from tests import ROOT
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from lumen.loading.packaged import shipped_root
-from lumen.loading.yaml_composer import TooLargeError, compose
-from lumen.loading.yaml_reader import parse
+from lumen.project.packaged import shipped_root
+from lumen.project.yaml_composer import TooLargeError, compose
+from lumen.project.yaml_reader import parse
 from tests.scanning import matching
 from tests.tables import for_each
 

@@ -1,6 +1,5 @@
 """What is shown between and behind the lines: lenses, hints, signatures, folds, links, and what is found by name."""
 
-from lumen.loading.files import read_files
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.folding import folds
 from lumen.lsp.hints import hints
@@ -8,6 +7,7 @@ from lumen.lsp.lenses import ACTIVE_NOW, PLAY_MOTION, RUN_STORY, active_places, 
 from lumen.lsp.links import links
 from lumen.lsp.signatures import signature
 from lumen.lsp.symbols import search
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.tables import for_each
 

@@ -3,12 +3,12 @@
 import pytest
 
 from lumen.errors import UsageError
-from lumen.loading.files import read_files
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.completion import complete
 from lumen.lsp.hover import hover
 from lumen.lsp.renaming import renamable, rename
 from lumen.lsp.symbols import Symbol, symbols
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.tables import for_each
 

@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import UsageError
-from lumen.loading.common_words import COMMON_FILE, common_words
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.completion import complete
 from lumen.lsp.definitions import definitions, uses
 from lumen.lsp.hover import hover
 from lumen.lsp.renaming import applied, renamable, rename
 from lumen.lsp.symbols import search
+from lumen.project.common_words import COMMON_FILE, common_words
 from tests.tables import for_each
 
 MAIN = """\

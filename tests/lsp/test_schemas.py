@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from lumen.loading.project_folders import PROJECT_FOLDERS
+from lumen.project.project_folders import PROJECT_FOLDERS
 from tests import ROOT
 from tests.fetched import fetched
 from tests.lsp.client import Client

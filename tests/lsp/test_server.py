@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from lumen.loading.project_folders import PROJECT_FOLDERS
+from lumen.project.project_folders import PROJECT_FOLDERS
 from tests import ROOT
 from tests.lsp.client import Client
 from tests.tables import for_each

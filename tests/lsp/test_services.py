@@ -9,7 +9,6 @@ import pytest
 from pygls.exceptions import JsonRpcContentModified
 
 from lumen.errors import UsageError
-from lumen.loading.files import read_files
 from lumen.lsp.analysis import Analysis, Judgement
 from lumen.lsp.completion import complete
 from lumen.lsp.definitions import definitions, uses
@@ -18,6 +17,7 @@ from lumen.lsp.hover import hover
 from lumen.lsp.names import NameKind
 from lumen.lsp.renaming import applied, refuse_harm, renamable, rename
 from lumen.lsp.symbols import symbols
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.mutation.mutants import Nursery
 from tests.tables import for_each

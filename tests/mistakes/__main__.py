@@ -4,7 +4,7 @@ import argparse
 import sys
 import time
 
-from lumen.rules import check_files
+from lumen.lint import check_files
 from tests.mistakes.rows import rows
 from tests.mistakes.scores import Judged, judge, score
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.rules import check_files
+from lumen.lint import check_files
 
 _found: dict[tuple[Path, frozenset[tuple[str, bytes]]], tuple[Diagnostic, ...]] = {}
 

@@ -20,8 +20,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lumen.loading.files import read_files
-from lumen.loading.yaml_reader import parse
+from lumen.project.files import read_files
+from lumen.project.yaml_reader import parse
 from tests import ROOT
 from tests.scanning import matching
 

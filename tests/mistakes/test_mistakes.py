@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from lumen.rules import check_files
+from lumen.lint import check_files
 from tests.mistakes.__main__ import told
 from tests.mistakes.linted import findings
 from tests.mistakes.rows import PROJECTS, Row, rows, shipped

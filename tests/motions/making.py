@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
-from lumen.loading.bodies import build_body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.motions import build_motion
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
+from lumen.project.bodies import build_body
+from lumen.project.document_report import DocumentReport
+from lumen.project.motions import build_motion
+from lumen.project.schema import check_schema
+from lumen.project.yaml_reader import parse
 from tests import ROOT
 
 SHIPPED = ("goodbye", "dance", "sing", "photo")

@@ -7,11 +7,11 @@ import pytest
 
 from lumen.errors import ProjectError
 from lumen.language.diagnostics import Severity
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.motions import build_motions
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
 from lumen.motion import Motion
+from lumen.project.document_report import DocumentReport
+from lumen.project.motions import build_motions
+from lumen.project.schema import check_schema
+from lumen.project.yaml_reader import parse
 from tests.motions.making import nao, read
 from tests.scanning import matching
 from tests.tables import for_each

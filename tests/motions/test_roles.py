@@ -9,12 +9,12 @@ from lumen.language.mirrors import mirror_of
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body, Joint
 from lumen.language.roles import JointRole, Roles
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.gestures import build_gestures
-from lumen.loading.life import build_life
-from lumen.loading.motions import build_motion
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
+from lumen.project.document_report import DocumentReport
+from lumen.project.gestures import build_gestures
+from lumen.project.life import build_life
+from lumen.project.motions import build_motion
+from lumen.project.schema import check_schema
+from lumen.project.yaml_reader import parse
 from tests.motions.making import made, nao
 
 GREETER = Body(

@@ -15,10 +15,10 @@ from lumen.language.commands import Command, Publish, Start, Volume
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlaces
 from lumen.language.projects import Project
-from lumen.loading.files import read_files
-from lumen.loading.lending import model_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from lumen.project.lending import model_files
 from lumen.robots.simulation import SimulatedRobot
-from lumen.rules import check_files
 from lumen.runtime.loop import Observer
 from lumen.statechart import Step
 from tests import ROOT

@@ -14,9 +14,9 @@ from lumen.language.commands import Command, Play, Start
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.document import Document
-from lumen.rules import check_files
-from lumen.rules.codes import codes
+from lumen.lint import check_files
+from lumen.lint.codes import codes
+from lumen.project.document import Document
 from lumen.runtime.loop import Observer
 from lumen.statechart import Step
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from random import Random
 from typing import NamedTuple
 
-from lumen.loading.files import read_files
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.mutation.operators import OPERATORS
 from tests.mutation.text import Sheet

@@ -1,8 +1,8 @@
 """A YAML file as text that can be cut and joined at its nodes: a mutant keeps the rest as its author wrote it."""
 
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.document import Document
-from lumen.loading.yaml_reader import parse
+from lumen.project.document import Document
+from lumen.project.yaml_reader import parse
 
 
 class Sheet:

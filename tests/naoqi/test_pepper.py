@@ -10,8 +10,8 @@ from lumen.language.commands import Leds, Look, Posture, Rest, Say, Wake, Walk
 from lumen.language.gestures import merged
 from lumen.language.motions import Cue, MotionDefinition
 from lumen.language.projects import Project
-from lumen.loading.chosen_model import MODEL_VARIABLE
 from lumen.ports import Joints, Live, Perform, Sense, Sonar, Tactile
+from lumen.project.chosen_model import MODEL_VARIABLE
 from tests import ROOT
 from tests.naoqi.conftest import Live as LiveFor
 from tests.naoqi.fake import FakeNao

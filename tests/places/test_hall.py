@@ -6,8 +6,8 @@ from pathlib import Path
 import mujoco
 import pytest
 
-from lumen.rules.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
-from lumen.rules.ways import _followers
+from lumen.lint.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
+from lumen.lint.ways import _followers
 from lumen.statechart import Machine
 from tests import ROOT
 from tests.tables import for_each

@@ -7,11 +7,11 @@ import pytest
 from lumen.cli.main import main
 from lumen.insight.changes.projects import changes
 from lumen.insight.exploration import explore
+from lumen.lint import check_files
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.completion import complete
 from lumen.lsp.definitions import definitions
 from lumen.lsp.renaming import renamable, rename
-from lumen.rules import check_files
 from lumen.statechart import Machine
 from tests import ROOT
 from tests.lsp.test_services import SHIPPED, TOUR, place

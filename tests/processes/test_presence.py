@@ -14,8 +14,8 @@ from lumen.bus import Bus, BusError, connect
 from lumen.buses.validated import validated
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Track
 from lumen.language.events import Event
-from lumen.loading.packaged import shipped_root
 from lumen.ports import Aim, Message, Perform
+from lumen.project.packaged import shipped_root
 from lumen.robots.recording import RecordingRobot
 from lumen.robots.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import DelegatedTracking, motion_key

@@ -12,7 +12,7 @@ from lumen.errors import UsageError
 from lumen.language.commands import Posture, Rest, Say
 from lumen.language.motions import MotionDefinition
 from lumen.ports import Perform
-from lumen.runtime.home import home_of
+from lumen.project.home import home_of
 from lumen.runtime.snapshot_store import SNAPSHOT_FILE
 from tests.processes.troupe import Troupe, alone, deeds
 from tests.relay import Relay

@@ -23,8 +23,8 @@ from lumen.bus import Bus, connect
 from lumen.buses.validated import validated
 from lumen.clocks.real import RealClock
 from lumen.ports import Clock
+from lumen.project.home import home_of
 from lumen.robots.recording import RecordingRobot
-from lumen.runtime.home import home_of
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 from tests.nodes import Printed, whole
 from tests.waiting import Collector, source_of, until

@@ -15,12 +15,11 @@ from lumen.insight.changes import Change, Risk, changes, live, risk, summary
 from lumen.insight.changes.machines import machine_changes
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.loading import revisions
-from lumen.loading.files import read_files
-from lumen.loading.revisions import files_at
-from lumen.project import load
-from lumen.rules import check_files
-from lumen.runtime.home import Home, home_of
+from lumen.lint import check_files
+from lumen.project import load, revisions
+from lumen.project.files import read_files
+from lumen.project.home import Home, home_of
+from lumen.project.revisions import files_at
 from lumen.runtime.snapshot_store import SnapshotStore
 from lumen.statechart import Machine, initial, step
 from tests import ROOT

@@ -31,9 +31,9 @@ from lumen.cli.main import main
 from lumen.errors import BusAddressError, BusUnreachableError
 from lumen.language.addresses import public
 from lumen.language.fleet import Fleet, FleetHouse
-from lumen.loading.files import read_files
+from lumen.lint import check_files
 from lumen.ports import BlockableBus, UsesBroker
-from lumen.rules import check_files
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.guarded import run_guarded
 from tests.rabbitmq import RabbitMQ

@@ -14,8 +14,8 @@ from lumen.formats.scxml import read_scxml, write_scxml
 from lumen.formats.scxml.known import ATTRIBUTES, ELEMENTS
 from lumen.formats.xstate import read_xstate
 from lumen.language.diagnostics import Diagnostic, has_errors, nearest
-from lumen.loading.yaml_reader import parse
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.yaml_reader import parse
 from lumen.statechart import Interpreter, Machine
 from tests.tables import for_each
 

@@ -1,7 +1,7 @@
 """Counts that are printed: one is followed by the singular."""
 
 from lumen.language.counts import counted
-from lumen.loading.schema import faults
+from lumen.project.schema import faults
 from tests.tables import for_each
 
 

@@ -21,10 +21,10 @@ from lumen.cli.main import main
 from lumen.errors import ProjectError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.text_lines import LineIndex, lines_of
-from lumen.loading.files import fingerprint, read_files
-from lumen.loading.yaml_reader import parse
-from lumen.rules import check_files
-from lumen.rules.repairs import repaired
+from lumen.lint import check_files
+from lumen.lint.repairs import repaired
+from lumen.project.files import fingerprint, read_files
+from lumen.project.yaml_reader import parse
 from lumen.upkeep import replacing
 from lumen.upkeep.replacing import replace_file
 from tests import ROOT

@@ -13,11 +13,11 @@ from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.controllers import build_controller
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
-from lumen.rules import rulebooks
+from lumen.lint import rulebooks
+from lumen.project.controllers import build_controller
+from lumen.project.document_report import DocumentReport
+from lumen.project.schema import check_schema
+from lumen.project.yaml_reader import parse
 from tests.tables import for_each
 
 INPUTS = Path(__file__).parent / "inputs" / "fuzzy"

@@ -22,17 +22,17 @@ from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinitio
 from lumen.language.robots import Body
 from lumen.language.roles import JointRole
 from lumen.language.skills import lack_of
-from lumen.loading.bodies import build_body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.motions import build_motion
-from lumen.loading.packaged import shipped_root
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
+from lumen.lint import check_files
 from lumen.motion import bounds
 from lumen.motion.bounds import within_limits
 from lumen.motion.limits import beyond_limits, overspeed
 from lumen.ports import Aim, Perform, RobotCommand, Sense
-from lumen.rules import check_files
+from lumen.project.bodies import build_body
+from lumen.project.document_report import DocumentReport
+from lumen.project.motions import build_motion
+from lumen.project.packaged import shipped_root
+from lumen.project.schema import check_schema
+from lumen.project.yaml_reader import parse
 from lumen.statechart import VirtualClock
 from tests.tables import for_each
 

@@ -13,7 +13,7 @@ from lumen.formats.fis import read_fis
 from lumen.formats.fll import read_fll
 from lumen.formats.gestures import read_gesture
 from lumen.formats.robot_models import read_robot
-from lumen.loading.packaged import shipped_root
+from lumen.project.packaged import shipped_root
 from tests.tables import for_each
 
 CONTROLLERS = {"fll": read_fll, "fcl": read_fcl, "fis": read_fis}

@@ -8,7 +8,7 @@ from PIL import ImageColor
 
 import lumen
 from lumen.language.lights import COLOURS, LIGHT_GROUPS, LIGHTS, light_fault, rgb
-from lumen.loading.schema import load_schema
+from lumen.project.schema import load_schema
 from lumen.robots.naoqi.hardware import NAO, PEPPER
 from lumen.robots.naoqi.lights import NAOQI_COLOURS, fades
 from lumen.robots.simulation.lights import RENDERED_COLOURS, rendered

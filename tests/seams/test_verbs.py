@@ -38,8 +38,6 @@ from lumen.language.life import STILL_STYLE
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.routes import route_meanings
 from lumen.language.verbs import COMPUTED, VERBS, Quantity, verb_of
-from lumen.loading.actions import COMPUTED_READERS
-from lumen.loading.schema import load_schema
 from lumen.ports import (
     Aim,
     Battery,
@@ -55,6 +53,8 @@ from lumen.ports import (
     Tactile,
     Whereabouts,
 )
+from lumen.project.actions import COMPUTED_READERS
+from lumen.project.schema import load_schema
 from lumen.robots.command_codec import decode_command, encode_command
 from lumen.robots.command_table import COMMANDS, row_of
 from lumen.robots.recording import RecordingRobot

@@ -4,9 +4,9 @@ from functools import cache
 from typing import Any
 
 from lumen.language.robots import Body
-from lumen.loading.bodies import build_body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.yaml_reader import parse
+from lumen.project.bodies import build_body
+from lumen.project.document_report import DocumentReport
+from lumen.project.yaml_reader import parse
 from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import MODELS
 from tests.simulation.walks import on_the_floor

@@ -8,10 +8,10 @@ import jsonschema
 import pytest
 
 from lumen.language.robots import Body
-from lumen.loading.bodies import build_body
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.yaml_reader import parse
+from lumen.project.bodies import build_body
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.yaml_reader import parse
 from tests import ROOT
 from tests.tables import for_each
 

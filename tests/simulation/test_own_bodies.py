@@ -9,9 +9,9 @@ import pytest
 import yaml
 
 from lumen.language.roles import BaseKind
-from lumen.loading.bodies import build_body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.yaml_reader import parse
+from lumen.project.bodies import build_body
+from lumen.project.document_report import DocumentReport
+from lumen.project.yaml_reader import parse
 from lumen.robots.simulation.model_terms import Variation
 from lumen.robots.simulation.world_model import physics
 from tests import ROOT

@@ -116,9 +116,9 @@ def test_a_hall_without_that_camera_is_not_filmed(robot: SimulatedRobot, tmp_pat
 def test_without_opengl_there_are_no_images_and_a_remedy() -> None:
     script = f"""
 import pathlib
-from lumen.loading.bodies import build_body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.yaml_reader import parse
+from lumen.project.bodies import build_body
+from lumen.project.document_report import DocumentReport
+from lumen.project.yaml_reader import parse
 from lumen.ports import Sense
 from lumen.robots.simulation import SimulatedRobot, available
 models = pathlib.Path({str(MODELS)!r})

@@ -10,8 +10,8 @@ import pytest
 import lumen
 from lumen.language.commands import Walk
 from lumen.language.robots import Body
-from lumen.loading.files import read_files
-from lumen.loading.project import draft
+from lumen.project.building import draft
+from lumen.project.files import read_files
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.mass_model import MassModel
 from tests.simulation.conftest import MODELS, answer, until_answered

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import lumen
-from lumen.loading import memoization
+from lumen.project import memoization
 from lumen.robots.simulation import model
 from lumen.robots.simulation.model_terms import Variation
 from lumen.robots.simulation.world_model import physics

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.language.commands import Cancel, Command, Log, Publish, Start
-from lumen.loading.yaml_reader import parse
+from lumen.project.yaml_reader import parse
 from lumen.statechart import Interpreter, Machine, Step
 from tests.scanning import matching
 

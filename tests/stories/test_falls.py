@@ -6,8 +6,8 @@ from typing import Any
 import pytest
 
 from lumen.language.events import Event
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from lumen.runtime.story import StoryPlayer
 from lumen.runtime.story_observations import expects_fall
 from tests import ROOT

@@ -24,9 +24,9 @@ from lumen.journal.redaction import redact
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Expect, Speak
-from lumen.loading.files import read_files
-from lumen.loading.project_folders import PROJECT_FOLDERS
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from lumen.project.project_folders import PROJECT_FOLDERS
 from tests import ROOT
 
 pytestmark = pytest.mark.rest  # dear

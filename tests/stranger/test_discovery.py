@@ -15,10 +15,10 @@ from lumen.app.lint import outcome_cache
 from lumen.app.workers import tasks
 from lumen.cli.main import main
 from lumen.feature import BUILT_IN, Feature, features, resolve, wrong_rows
-from lumen.loading import engine_files
-from lumen.loading.files import read_files
-from lumen.loading.packaged import PACKAGE
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project import engine_files
+from lumen.project.files import read_files
+from lumen.project.packaged import PACKAGE
 from tests import ROOT
 from tests.guarded import run_guarded
 from tests.stranger.installing import Installed

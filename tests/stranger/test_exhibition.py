@@ -19,15 +19,15 @@ from lumen.expressions import Scope, compile_expression
 from lumen.language.events import robot_events
 from lumen.language.routes import route_meanings
 from lumen.language.stories import Visitor
-from lumen.loading.files import read_files
-from lumen.loading.schema import load_schema
+from lumen.lint import check_files
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.completion import complete
 from lumen.lsp.hover import hover
 from lumen.lsp.signatures import signature
+from lumen.project.files import read_files
+from lumen.project.schema import load_schema
 from lumen.robots.bounded_robot import BoundedRobot
 from lumen.robots.remote import RemoteRobot
-from lumen.rules import check_files
 from lumen.runtime.presence import all_parts, unique_parts
 from tests import ROOT
 from tests.lsp.test_services import place

@@ -16,13 +16,13 @@ from lumen.errors import ExpressionError, LumenError, Refused
 from lumen.expressions import Scope, compile_expression
 from lumen.feature import features, owner, resolve, table
 from lumen.language.people import PersonName
-from lumen.loading.files import read_files
+from lumen.lint import check_files
+from lumen.lint.fixes import fixes
 from lumen.ports import Joints, Message, Sense
+from lumen.project.files import read_files
 from lumen.robots.command_table import speech_duration
 from lumen.robots.remote import RemoteRobot
 from lumen.robots.sense_codec import decode_reading, encode_reading
-from lumen.rules import check_files
-from lumen.rules.fixes import fixes
 from tests import ROOT
 from tests.stranger.installing import Installed
 

@@ -21,8 +21,8 @@ from lumen.buses.validated import validated
 from lumen.errors import UsageError
 from lumen.feature import resolve
 from lumen.language.events import Event
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.stranger.installing import Installed
 from tests.tables import for_each

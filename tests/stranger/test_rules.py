@@ -12,10 +12,10 @@ from scripts.rule_pages import said
 
 from lumen.cli.main import main
 from lumen.feature import rows
-from lumen.loading.files import read_files
-from lumen.rules import check_files
-from lumen.rules.codes import codes, families
-from lumen.rules.pages import page
+from lumen.lint import check_files
+from lumen.lint.codes import codes, families
+from lumen.lint.pages import page
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.lsp.client import Client
 from tests.stranger.installing import Installed, Lumen
@@ -132,7 +132,7 @@ def test_a_rule_of_lumen_that_raises_ends_lint(project: Path, monkeypatch: pytes
     def check(draft: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("lumen.rules.traps.check", check)
+    monkeypatch.setattr("lumen.lint.traps.check", check)
     with pytest.raises(ZeroDivisionError):
         list(found(project))
 
@@ -159,5 +159,5 @@ def test_a_module_of_rules_that_cannot_be_imported_is_one_finding(
 
 
 def test_unused_things_are_reported_after_all_other_rules(installed: Installed, project: Path) -> None:
-    assert "lumen.rules.unused:check" in [rule for _, rule in rows("last_rules")]
-    assert "lumen.rules.unused:check" not in [rule for _, rule in rows("rules")]
+    assert "lumen.lint.unused:check" in [rule for _, rule in rows("last_rules")]
+    assert "lumen.lint.unused:check" not in [rule for _, rule in rows("rules")]

@@ -17,12 +17,12 @@ from lumen.cli.main import main
 from lumen.feature import resolve
 from lumen.insight.changes import changes, live
 from lumen.language.projects import Project
-from lumen.loading import memoization
-from lumen.loading.files import read_files
+from lumen.lint import check_files
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.completion import complete
 from lumen.lsp.hover import hover
-from lumen.rules import check_files
+from lumen.project import memoization
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.stranger.installing import SOURCES, Installed
 from tests.tables import for_each

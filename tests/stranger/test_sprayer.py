@@ -12,9 +12,9 @@ import lumen
 from lumen.feature import resolve
 from lumen.insight.changes import changes
 from lumen.language.stories import Visitor
-from lumen.loading.files import read_files
-from lumen.rules import check_files
-from lumen.rules.pages import page
+from lumen.lint import check_files
+from lumen.lint.pages import page
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.stranger.installing import call_lumen, install, used
 from tests.tables import for_each

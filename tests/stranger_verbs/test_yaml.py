@@ -12,15 +12,15 @@ from lumen.console.entry_words import told_of
 from lumen.formats.behavior_data import plain_action
 from lumen.insight.changes.actions import described
 from lumen.insight.explaining.words import of_deed
-from lumen.interpreters.added_verbs import time_taken
 from lumen.language.actions import Action
 from lumen.language.command_data import command_data
 from lumen.language.commands import Do, Start
 from lumen.language.events import RESULT, Event
-from lumen.loading.files import read_files
-from lumen.loading.schema import load_schema
+from lumen.lint import check_files
 from lumen.lsp.schemas import description_at, keys_at, values_at
-from lumen.rules import check_files
+from lumen.project.added_verbs import time_taken
+from lumen.project.files import read_files
+from lumen.project.schema import load_schema
 from lumen.statechart import Machine, deserialize, initial, serialize, step
 from tests.stranger_verbs.conftest import HERE
 from tests.tables import for_each

@@ -5,7 +5,7 @@ import pytest
 
 import lumen
 from lumen.language.projects import Project
-from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
+from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 from tests import ROOT
 
 

@@ -6,7 +6,7 @@ import lumen
 from lumen.app.rehearsal import rehearse
 from lumen.cli.main import main
 from lumen.language.diagnostics import has_errors
-from lumen.loading.chosen_model import MODEL_VARIABLE
+from lumen.project.chosen_model import MODEL_VARIABLE
 from tests import ROOT
 
 

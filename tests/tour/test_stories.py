@@ -11,7 +11,7 @@ from lumen.app.exploring import explored
 from lumen.cli.main import main
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Expect, Story, StoryStep, Visitor
-from lumen.loading.schedules import read_schedule
+from lumen.project.schedules import read_schedule
 from lumen.runtime.coverage import Coverage
 from tests import ROOT
 from tests.scanning import matching

@@ -13,7 +13,7 @@ from lumen.insight.explaining.sentences import explained, first_context
 from lumen.language.actions import If, Parallel, PlacedAction, SayText
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.projects import Project
-from lumen.loading.common_words import common_words
+from lumen.project.common_words import common_words
 from lumen.talk.speech import NEGATIONS_AFTER, TABLES
 from tests.tables import for_each
 from tests.tour.names import GUIDE, SAFETY

@@ -10,12 +10,12 @@ import yaml
 from lumen.cli.main import main
 from lumen.errors import UsageError
 from lumen.language.vocabulary import VOCABULARY
-from lumen.loading import settings
-from lumen.loading.document import Document
-from lumen.loading.files import read_files
-from lumen.rules import check_files
-from lumen.rules.robot_keys import with_robot_keys
-from lumen.rules.upgrading import MIGRATIONS, Migration, Rewriting, renamed_key, upgraded
+from lumen.lint import check_files
+from lumen.lint.robot_keys import with_robot_keys
+from lumen.lint.upgrading import MIGRATIONS, Migration, Rewriting, renamed_key, upgraded
+from lumen.project import settings
+from lumen.project.document import Document
+from lumen.project.files import read_files
 from tests import ROOT
 from tests.tables import for_each
 

@@ -14,7 +14,7 @@ from lumen.app.workers.workers import Workers, workers_of
 from lumen.errors import WorkersError
 from lumen.extras import MissingExtraError
 from lumen.language.imperfections import Imperfections
-from lumen.loading.files import read_files
+from lumen.project.files import read_files
 from lumen.rules.physics.cases import cases
 from tests import ROOT
 from tests.workers.clusters import dask_cluster

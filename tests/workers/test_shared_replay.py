@@ -12,7 +12,7 @@ from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import against
 from lumen.app.replaying.replay_report import ReplayReport, replayed
 from lumen.app.workers.workers import Workers
-from lumen.loading.files import read_files
+from lumen.project.files import read_files
 from tests import ROOT
 
 
@@ -36,7 +36,7 @@ def both(folder: Path, workers: Workers, other: dict[str, bytes] | None) -> tupl
     if other is None:
         here = replayed(journal.entries(), bundles.machine)
         return here, shared.shared_replay(journal.entries(), bundles, kit, workers)
-    new = lumen.rules.check_files(folder, other)[0]
+    new = lumen.lint.check_files(folder, other)[0]
     assert new
     here = against(journal.entries(), bundles, new)
     return here, shared.shared_against(journal.entries(), bundles, kit, workers)

@@ -13,7 +13,7 @@ from lumen.app.plan import Plan
 from lumen.app.services import Services
 from lumen.errors import LumenError
 from lumen.feature import Feature, PartRow, distribution_of, resolve, rows
-from lumen.loading.broken_features import blamed
+from lumen.project.broken_features import blamed
 
 _log = logging.getLogger(__name__)
 

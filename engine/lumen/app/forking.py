@@ -19,8 +19,8 @@ from lumen.journal.journal_folder import headers
 from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 
 PATIENCE = 3.0
 """How long an answer may take [s]."""

@@ -11,8 +11,8 @@ from lumen.app.workers.tasks import engine
 from lumen.app.workers.work_kit import name_of
 from lumen.language.diagnostics import Place
 from lumen.language.projects import Project
+from lumen.project.home import Home, home_of
 from lumen.runtime.coverage import Gap
-from lumen.runtime.home import Home, home_of
 from lumen.upkeep.private_folder import private_folder
 
 FOLDER = "explored"

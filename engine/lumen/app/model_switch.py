@@ -7,7 +7,7 @@ from typing import Any
 from lumen.app.raised_events import refusal
 from lumen.language.modules import ANSWERS
 from lumen.language.projects import Project
-from lumen.runtime.home import Home
+from lumen.project.home import Home
 from lumen.runtime.questions import Questions
 
 SILENCED_FILE = "model-silenced.json"

@@ -12,14 +12,14 @@ from lumen.errors import UsageError
 from lumen.language.diagnostics import NodePath, Place, Severity
 from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.sayings import Saying
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.files import Unreadable, read_files
-from lumen.loading.project import draft
-from lumen.loading.yaml_reader import parse
-from lumen.rules import sayings, speech
-from lumen.rules.fixes.edits import Edit, FileText, edited
-from lumen.rules.new_language import beside
+from lumen.lint import sayings, speech
+from lumen.lint.fixes.edits import Edit, FileText, edited
+from lumen.lint.new_language import beside
+from lumen.project.building import draft
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.files import Unreadable, read_files
+from lumen.project.yaml_reader import parse
 from lumen.upkeep.replacing import replace_file
 
 DAY_FILE = f"{SAYINGS_FOLDER}/day.yaml"

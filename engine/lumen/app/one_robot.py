@@ -5,8 +5,8 @@ from pathlib import Path
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.loading.project import main_settings
-from lumen.loading.settings import Settings
+from lumen.project.building import main_settings
+from lumen.project.settings import Settings
 
 
 def one_robot(root: Path, name: str = "") -> str:

@@ -11,12 +11,12 @@ from lumen.buses.local import LocalAddress, LocalBusClient
 from lumen.errors import BusUnreachableError
 from lumen.language.causes import TERMINAL
 from lumen.language.routing_keys import default_key
-from lumen.loading.project import main_settings
-from lumen.loading.running_project import running_project
-from lumen.loading.settings import Settings
 from lumen.ports import Bus
+from lumen.project.building import main_settings
+from lumen.project.home import ADDRESS_FILE, Home, homes, homes_of
+from lumen.project.running_project import running_project
+from lumen.project.settings import Settings
 from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
-from lumen.runtime.home import ADDRESS_FILE, Home, homes, homes_of
 
 
 class Reached(NamedTuple):

@@ -16,8 +16,8 @@ from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.iso_time import time_of
 from lumen.language.operator_requests import WHY, WHY_NOT
 from lumen.language.projects import Project
-from lumen.loading.running_project import running_project
-from lumen.runtime.home import home_of
+from lumen.project.home import home_of
+from lumen.project.running_project import running_project
 from lumen.statechart import Snapshot, Step
 
 NOT_ASKED = "no running exhibition was asked"

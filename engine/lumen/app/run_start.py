@@ -14,8 +14,8 @@ from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotE
 from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
-from lumen.loading.project import main_settings
-from lumen.loading.settings import Settings
+from lumen.project.building import main_settings
+from lumen.project.settings import Settings
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 
 WHOLE = (ROBOT_PART, BRAIN)

@@ -10,8 +10,8 @@ from lumen.feature import Feature, RobotOption, RobotRow, distribution_of, owner
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.broken_features import called, faulty, need_made, shown
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, Robot
+from lumen.project.broken_features import called, faulty, need_made, shown
 from lumen.robots.bounded_robot import BoundedRobot, ability
 from lumen.robots.checked_robot import CheckedRobot
 from lumen.runtime.tracking import TrackingService

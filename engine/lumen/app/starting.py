@@ -4,9 +4,9 @@ import re
 import shutil
 from pathlib import Path, PurePosixPath
 
-from lumen.loading.packaged import shipped_root
-from lumen.loading.project import main_settings
-from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
+from lumen.project.building import main_settings
+from lumen.project.packaged import shipped_root
+from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 
 STARTERS = {
     "tour": "the shipped exhibition, with everything",

@@ -12,8 +12,8 @@ from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.projects import Project
 from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
-from lumen.loading.files import composed
-from lumen.loading.project_folders import MAIN_FILE, STORIES
+from lumen.project.files import composed
+from lumen.project.project_folders import MAIN_FILE, STORIES
 
 FOLDER = Path(STORIES)
 

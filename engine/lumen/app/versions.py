@@ -8,12 +8,12 @@ from typing import NamedTuple
 from lumen.app.one_robot import one_robot
 from lumen.errors import ProjectError, UsageError
 from lumen.language.projects import Project
-from lumen.loading.chosen_robot import as_robot
-from lumen.loading.files import read_files
-from lumen.loading.own_project import own_project
-from lumen.loading.revisions import files_at
-from lumen.rules import check_files
-from lumen.runtime.home import Home, home_of
+from lumen.lint import check_files
+from lumen.project.chosen_robot import as_robot
+from lumen.project.files import read_files
+from lumen.project.home import Home, home_of
+from lumen.project.own_project import own_project
+from lumen.project.revisions import files_at
 from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
 from lumen.statechart import Snapshot, deserialize
 

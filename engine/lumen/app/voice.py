@@ -16,11 +16,11 @@ from lumen.errors import ModuleError, UsageError
 from lumen.feature import Feature, distribution_of, owner, table
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.gestures import WordTime
-from lumen.loading.broken_features import called, faults_reported, need_made, shown
 from lumen.modules.audio_track import AudioTrack
 from lumen.modules.sound import Sound, save
 from lumen.modules.voice import espeak
 from lumen.ports import Robot
+from lumen.project.broken_features import called, faults_reported, need_made, shown
 from lumen.robots.bounded_robot import ability
 from lumen.robots.command_table import speech_duration
 

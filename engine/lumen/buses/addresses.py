@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 from lumen.errors import BusAddressError
 from lumen.feature import BusRow, owner, table
-from lumen.loading.broken_features import called, need_made
 from lumen.ports import Bus
+from lumen.project.broken_features import called, need_made
 
 
 def open_bus(url: str, sender: str) -> Bus:

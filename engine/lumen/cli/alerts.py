@@ -7,8 +7,8 @@ from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
 from lumen.errors import UsageError
 from lumen.language.alerts import Alerts
-from lumen.loading.own_project import own_project
-from lumen.loading.project import main_settings
+from lumen.project.building import main_settings
+from lumen.project.own_project import own_project
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -10,8 +10,8 @@ from lumen.app.reaching import reach_exhibition
 from lumen.cli.reach import configure_reach
 from lumen.extras import demand
 from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
-from lumen.loading.project import main_settings
-from lumen.loading.running_project import project_to_run
+from lumen.project.building import main_settings
+from lumen.project.running_project import project_to_run
 from lumen.upkeep.heap import give_back
 from lumen.upkeep.threads import WatchedThread
 

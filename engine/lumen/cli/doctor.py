@@ -21,11 +21,11 @@ from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
-from lumen.loading.files import read_files
-from lumen.loading.own_project import own_project
+from lumen.lint import check_files
 from lumen.ports import Bus
+from lumen.project.files import read_files
+from lumen.project.own_project import own_project
 from lumen.robots.robot_routes import COMMAND_ROUTE
-from lumen.rules import check_files
 from lumen.runtime.delegated_tracking import MOTION_ROUTE as MOTION
 
 LISTENING = 2.0

@@ -9,9 +9,9 @@ from lumen.cli.render.terminal_text import SEVERITY_COLOURS
 from lumen.cli.terminal import coloured, paint
 from lumen.formats.conversion_findings import CODE_MEANINGS
 from lumen.language.text_lines import lines_of
-from lumen.rules.codes import codes, families
-from lumen.rules.pages import Example, Page, page
-from lumen.rules.selection import selected
+from lumen.lint.codes import codes, families
+from lumen.lint.pages import Example, Page, page
+from lumen.lint.selection import selected
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -16,10 +16,10 @@ from lumen.errors import UsageError
 from lumen.feature import Exporter, Feature, owner, table
 from lumen.language.diagnostics import Diagnostic, did_you_mean, has_errors
 from lumen.language.projects import Project
-from lumen.loading.broken_features import called, called_for_text, faulty, shown
-from lumen.loading.document import Document
-from lumen.loading.files import on_disk
-from lumen.loading.yaml_reader import parse
+from lumen.project.broken_features import called, called_for_text, faulty, shown
+from lumen.project.document import Document
+from lumen.project.files import on_disk
+from lumen.project.yaml_reader import parse
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

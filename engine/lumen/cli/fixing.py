@@ -11,8 +11,8 @@ from lumen.cli.render.terminal_text import clean, counted
 from lumen.cli.terminal import paint
 from lumen.errors import UsageError
 from lumen.language.text_lines import lines_of
-from lumen.loading.files import on_disk
-from lumen.rules.repairs import Repair, repaired
+from lumen.lint.repairs import Repair, repaired
+from lumen.project.files import on_disk
 from lumen.upkeep.replacing import replace_file
 
 

@@ -24,9 +24,9 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.errors import BusUnreachableError, ProjectError, UsageError
 from lumen.insight.changes import changes, risk, summary
 from lumen.language.counts import counted
-from lumen.loading.project_folders import FLEET_FILE
-from lumen.loading.units import seconds
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.project_folders import FLEET_FILE
+from lumen.project.units import seconds
 
 WHATS: Mapping[str, str] = {
     "keygen": "make the key that signs bundles",

@@ -5,7 +5,7 @@ from pathlib import Path
 from lumen.errors import UsageError
 from lumen.formats.conversion_findings import MAX_FILE_BYTES
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.regular_files import read_regular
+from lumen.upkeep.regular_files import read_regular
 
 
 def foreign_content(path: Path) -> bytes:

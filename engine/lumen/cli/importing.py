@@ -24,19 +24,19 @@ from lumen.formats.yaml_document import document_yaml
 from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.robots import Body
 from lumen.language.text_lines import lines_of
-from lumen.loading.behaviors import build_machine
-from lumen.loading.bodies import build_body
-from lumen.loading.controllers import build_controller
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import body_of
-from lumen.loading.files import read_files
-from lumen.loading.motions import build_motion
-from lumen.loading.packaged import find_project
-from lumen.loading.project import motion_parts
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
+from lumen.lint.motions import TOO_FAST
 from lumen.motion.limits import Excess, overspeed
-from lumen.rules.motions import TOO_FAST
+from lumen.project.behaviors import build_machine
+from lumen.project.bodies import build_body
+from lumen.project.building import motion_parts
+from lumen.project.controllers import build_controller
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import body_of
+from lumen.project.files import read_files
+from lumen.project.motions import build_motion
+from lumen.project.packaged import find_project
+from lumen.project.schema import check_schema
+from lumen.project.yaml_reader import parse
 from lumen.upkeep.garbage import gc_paused
 
 BEGINNINGS = {b"<": ".scxml", b"{": ".json"}

@@ -9,13 +9,9 @@ from lumen.cli.tables import table
 from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.language_tags import is_language_tag
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import read_files
-from lumen.loading.own_project import own_project
-from lumen.loading.project import draft
-from lumen.rules import check_files
-from lumen.rules.new_language import with_language
-from lumen.rules.translation import (
+from lumen.lint import check_files
+from lumen.lint.new_language import with_language
+from lumen.lint.translation import (
     TO_DO,
     LanguageEntry,
     Untranslated,
@@ -24,6 +20,10 @@ from lumen.rules.translation import (
     switched_to,
     untranslated,
 )
+from lumen.project.building import draft
+from lumen.project.draft import ProjectDraft
+from lumen.project.files import read_files
+from lumen.project.own_project import own_project
 
 VERBS = {
     "list": "list the languages of the project, and how much is missing in each",

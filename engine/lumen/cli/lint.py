@@ -108,7 +108,7 @@ def _wanted(options: argparse.Namespace) -> Wanted:
     """Which findings --select and --ignore leave."""
     if options.select is None and not options.ignore:
         return lambda diagnostic: True
-    from lumen.rules.selection import selected  # which knows all codes, and so all rules
+    from lumen.lint.selection import selected  # which knows all codes, and so all rules
 
     chosen = selected(options.select) if options.select is not None else None
     left_out = selected(options.ignore or ())

@@ -81,7 +81,7 @@ def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:
     except KeyboardInterrupt:
         raise
     except BaseException as error:
-        from lumen.loading.broken_features import blamed  # only if it is needed
+        from lumen.project.broken_features import blamed  # only if it is needed
 
         raise blamed(owner("subcommands", verb), row.module, error) from error
 
@@ -128,7 +128,7 @@ def _run(options: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         return 130
     except (Exception, SystemExit) as error:
-        from lumen.loading.broken_features import fault_of_package
+        from lumen.project.broken_features import fault_of_package
 
         own = isinstance(error, SystemExit) and distribution_of(owner("subcommands", options.verb))
         if own or not (reason := _reason(error) or fault_of_package(error)):
@@ -141,7 +141,7 @@ def _exit_code(verb: str, returned: object) -> int:
     """Return what a subcommand returned. Raises LumenError with the name of its package if that is no exit code."""
     if isinstance(returned, int):
         return returned
-    from lumen.loading.broken_features import faulty
+    from lumen.project.broken_features import faulty
 
     raise faulty(owner("subcommands", verb), f"`run` of its subcommand returned {returned!r}, which is no exit code")
 

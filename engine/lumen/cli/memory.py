@@ -19,13 +19,13 @@ from lumen.language.counts import counted
 from lumen.language.iso_time import local_time
 from lumen.language.people import name_key
 from lumen.language.routing_keys import default_key
-from lumen.loading.files import read_files
-from lumen.loading.project import draft, main_settings
-from lumen.loading.settings import Settings
 from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
 from lumen.ports import Bus
-from lumen.runtime.home import home_of
+from lumen.project.building import draft, main_settings
+from lumen.project.files import read_files
+from lumen.project.home import home_of
+from lumen.project.settings import Settings
 
 ANSWER_TIMEOUT = 2.0
 """How long the memory of a running exhibition has to answer [s]; where none answers, all others are told."""

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.loading.chosen_model import choose
-from lumen.loading.files import composed
-from lumen.loading.project_folders import MODELS
+from lumen.project.chosen_model import choose
+from lumen.project.files import composed
+from lumen.project.project_folders import MODELS
 
 
 def configure_model(parser: argparse.ArgumentParser) -> None:
@@ -20,7 +20,7 @@ def use_model(name: str, roots: Iterable[Path]) -> None:
     """Take that body from now on, none where it is empty. Raises UsageError where a project has no such one."""
     if not name:
         return
-    from lumen.loading.lending import shipped_models  # only who asks for one waits for it
+    from lumen.project.lending import shipped_models  # only who asks for one waits for it
 
     for root in roots:
         known = {*shipped_models(), *(composed(file.stem) for file in (root / MODELS).glob("*.yaml"))}

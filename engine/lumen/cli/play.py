@@ -22,15 +22,15 @@ from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft, body_of
-from lumen.loading.files import read_files
-from lumen.loading.motions import build_motion
-from lumen.loading.project import assemble, motion_parts
-from lumen.loading.schema import check_schema
 from lumen.motion.limits import overspeed
 from lumen.ports import Perform, RobotCommand
+from lumen.project.building import assemble, motion_parts
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft, body_of
+from lumen.project.files import read_files
+from lumen.project.motions import build_motion
+from lumen.project.schema import check_schema
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.troubles import trouble_of_answer
 

@@ -11,8 +11,8 @@ from lumen.errors import UsageError
 from lumen.formats.plots import PLOT_ENDINGS, PlotSheet, controller_sheet, draw, explained_sheet, motion_sheet
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import did_you_mean
-from lumen.loading.files import on_disk
 from lumen.motion import Motion
+from lumen.project.files import on_disk
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import lumen
 from lumen.errors import LumenError
-from lumen.loading.files import composed
-from lumen.loading.project import main_settings
-from lumen.loading.running_project import running_project
+from lumen.project.building import main_settings
+from lumen.project.files import composed
+from lumen.project.running_project import running_project
 
 
 def names_of(placeholder: str) -> Sequence[str]:
@@ -21,7 +21,7 @@ def _files(folder: str) -> Callable[[Path], Iterable[str]]:
 
 
 def _codes(root: Path) -> Iterable[str]:
-    from lumen.rules.codes import codes, families  # with all rules: only for who asks for codes
+    from lumen.lint.codes import codes, families  # with all rules: only for who asks for codes
 
     return [*codes(), *families()]
 

@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from lumen.loading.packaged import shipped_root
-from lumen.loading.running_project import is_substituted, running_project
+from lumen.project.packaged import shipped_root
+from lumen.project.running_project import is_substituted, running_project
 
 
 def shown_project(path: str | None) -> Path:

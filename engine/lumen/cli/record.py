@@ -27,13 +27,13 @@ from lumen.language.iso_time import file_stamp
 from lumen.language.operator_requests import MARK, STATUS
 from lumen.language.projects import Project
 from lumen.language.retention import RecordingSettings
-from lumen.loading.chosen_robot import as_robot
-from lumen.loading.files import read_files
-from lumen.loading.running_project import project_to_run
-from lumen.loading.units import seconds
+from lumen.lint import check_files
 from lumen.ports import Bus, EndsWithExhibition
-from lumen.rules import check_files
-from lumen.runtime.home import Home, home_of
+from lumen.project.chosen_robot import as_robot
+from lumen.project.files import read_files
+from lumen.project.home import Home, home_of
+from lumen.project.running_project import project_to_run
+from lumen.project.units import seconds
 from lumen.runtime.snapshot_store import SnapshotStore
 
 LOOK = 0.1

@@ -24,7 +24,7 @@ from lumen.cli.transcript import Transcript
 from lumen.cli.workers_option import configure_workers
 from lumen.insight.replay.entries import RecordedEntry
 from lumen.language.iso_time import local_time
-from lumen.loading.chosen_robot import as_robot
+from lumen.project.chosen_robot import as_robot
 
 SMALL = 1_000_000
 """A journal of fewer bytes is replayed before other processes have begun."""

@@ -36,12 +36,12 @@ from lumen.errors import UsageError
 from lumen.feature import table
 from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.language.stories import Story
-from lumen.loading.broken_features import broken_features
-from lumen.loading.running_project import is_substituted, project_to_run
 from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Clock
+from lumen.project.broken_features import broken_features
+from lumen.project.home import home_of as home_of_run
+from lumen.project.running_project import is_substituted, project_to_run
 from lumen.robots.bounded_robot import ability
-from lumen.runtime.home import home_of as home_of_run
 from lumen.runtime.presence import BRAIN, ROBOT_PART, all_parts
 from lumen.upkeep.heap import give_back
 

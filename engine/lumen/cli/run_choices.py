@@ -12,7 +12,7 @@ from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.loading.units import seconds
+from lumen.project.units import seconds
 
 
 def alert_desk(project: Project, parts: Sequence[str], narrator: Narrator) -> AlertDesk:

@@ -20,7 +20,7 @@ from lumen.language.console_settings import ConsoleSettings
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
-from lumen.runtime.home import home_of
+from lumen.project.home import home_of
 
 
 @dataclass(frozen=True, slots=True)

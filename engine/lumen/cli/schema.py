@@ -10,11 +10,11 @@ from lumen.cli.formats import configure_format
 from lumen.cli.jsonc import added
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.loading.files import MAX_FILE_BYTES
-from lumen.loading.packaged import find_project, schema_folder
-from lumen.loading.project_folders import FILE_KINDS, KINDS
-from lumen.loading.regular_files import read_regular
-from lumen.loading.schema import load_schema
+from lumen.project.files import MAX_FILE_BYTES
+from lumen.project.packaged import find_project, schema_folder
+from lumen.project.project_folders import FILE_KINDS, KINDS
+from lumen.project.schema import load_schema
+from lumen.upkeep.regular_files import read_regular
 
 FILES: Mapping[str, tuple[str, ...]] = {
     kind: tuple(

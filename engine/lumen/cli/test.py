@@ -25,8 +25,8 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
-from lumen.loading.own_project import own_project
-from lumen.loading.project_folders import MAIN_FILE
+from lumen.project.own_project import own_project
+from lumen.project.project_folders import MAIN_FILE
 from lumen.runtime.coverage import Coverage
 
 

@@ -20,12 +20,12 @@ from lumen.errors import BusClosedError, BusRefusedError, UsageError
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.projects import Project
 from lumen.language.routes import Direction, Route
-from lumen.loading.files import read_files
-from lumen.loading.project_folders import MAIN_FILE
-from lumen.loading.running_project import running_project
-from lumen.loading.units import seconds
+from lumen.lint import check_files
 from lumen.ports import Bus, EndsWithExhibition, Message, ReturningBus
-from lumen.rules import check_files
+from lumen.project.files import read_files
+from lumen.project.project_folders import MAIN_FILE
+from lumen.project.running_project import running_project
+from lumen.project.units import seconds
 
 TOPIC_VERBS = {
     "list": "list the routes, and count the messages on them",

@@ -12,10 +12,10 @@ from lumen.cli.terminal import coloured
 from lumen.errors import UsageError
 from lumen.language.diagnostics import has_errors
 from lumen.language.vocabulary import VOCABULARY
-from lumen.loading.files import read_files
-from lumen.loading.own_project import own_project
-from lumen.rules.robot_keys import old_keys, with_robot_keys
-from lumen.rules.upgrading import Rewriting, upgraded
+from lumen.lint.robot_keys import old_keys, with_robot_keys
+from lumen.lint.upgrading import Rewriting, upgraded
+from lumen.project.files import read_files
+from lumen.project.own_project import own_project
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -13,10 +13,10 @@ from pathlib import Path
 
 from lumen.console.people import ROLES, Person, Role
 from lumen.errors import UsageError
-from lumen.loading.regular_files import read_regular
-from lumen.runtime.home import Home, home_of
+from lumen.project.home import Home, home_of
 from lumen.upkeep.backoff import pause_after
 from lumen.upkeep.ratelimit import TokenBucket
+from lumen.upkeep.regular_files import read_regular
 
 COOKIE = "lumen_session"
 SESSION_TIME = 16 * 3600.0

@@ -9,8 +9,8 @@ import numpy as np
 
 import lumen
 from lumen.extras import demand
-from lumen.loading.lending import model_files
 from lumen.ports import Joints, Sense
+from lumen.project.lending import model_files
 from lumen.robots.sense_codec import decode_reading
 
 DIGITS = 4

@@ -25,8 +25,8 @@ from lumen.console.job_promises import JOB_TIME, NOTHING
 from lumen.console.kept_days import KeptDays
 from lumen.errors import LumenError
 from lumen.language.sayings import Saying
-from lumen.loading.files import read_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from lumen.upkeep.judge_process import MAX_MEMORY, AnswerPipe, answering, limit_time
 
 TOO_LONG_AGO = "too long ago"

@@ -15,10 +15,10 @@ from lumen.journal.journal_file import each_entry
 from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.loading.files import read_files
-from lumen.loading.project import knowledge_parts, sayings_parts
-from lumen.rules import check_files
-from lumen.runtime.home import home_of
+from lumen.lint import check_files
+from lumen.project.building import knowledge_parts, sayings_parts
+from lumen.project.files import read_files
+from lumen.project.home import home_of
 
 WINDOW = 86_400.0 * 1.5
 """How long before the end of a day a file may have begun that holds something of it [s]."""

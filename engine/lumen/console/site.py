@@ -28,7 +28,7 @@ from lumen.console.streams import Listener, Streams, positions_in
 from lumen.console.watch import Watch
 from lumen.errors import UsageError
 from lumen.language.iso_time import iso_time
-from lumen.loading.project_folders import FLEET_FILE
+from lumen.project.project_folders import FLEET_FILE
 
 PAGES = Path(__file__).parent / "pages"
 MAX_STREAMS = 300

@@ -4,5 +4,5 @@ from lumen.feature import Feature, Section
 
 FEATURE = Feature(
     name="journal",
-    sections={"journal": Section(read="lumen.loading.retention:read_journal", of_house=True)},
+    sections={"journal": Section(read="lumen.project.retention:read_journal", of_house=True)},
 )

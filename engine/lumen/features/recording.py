@@ -11,5 +11,5 @@ FEATURE = Feature(
             after="topic",
         ),
     },
-    sections={"record": Section(read="lumen.loading.retention:read_record", of_house=True)},
+    sections={"record": Section(read="lumen.project.retention:read_record", of_house=True)},
 )

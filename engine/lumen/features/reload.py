@@ -4,10 +4,10 @@ from lumen.feature import Feature, Section
 
 FEATURE = Feature(
     name="reload",
-    codes=("lumen.loading.replay_check",),
+    codes=("lumen.project.replay_check",),
     sections={
         "reload": Section(
-            read="lumen.loading.replay_check:read_replay_check",
+            read="lumen.project.replay_check:read_replay_check",
             title="the check of saved files on recorded visits (`reload`)",
         )
     },

@@ -21,7 +21,7 @@ from lumen.formats.known import FormatTable, Known
 from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.text_lines import LineIndex, lines_of
-from lumen.loading.rule_parser import RuleWord
+from lumen.project.rule_parser import RuleWord
 
 _COMMENT = re.compile(r"(?P<open>\(\*|/\*)|//[^\n]*")
 _OPEN = re.compile(r"(VAR_INPUT|VAR_OUTPUT|FUZZIFY|DEFUZZIFY|RULEBLOCK)\b", re.IGNORECASE)

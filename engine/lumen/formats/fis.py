@@ -19,7 +19,7 @@ from lumen.formats.set_formulas import set_formula
 from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place, did_you_mean
 from lumen.language.text_lines import lines_of
-from lumen.loading.rule_parser import RuleSyntaxError, parse_rule
+from lumen.project.rule_parser import RuleSyntaxError, parse_rule
 
 _SECTION = re.compile(r"\[(System|Input|Output|Rules)\s*(\d*)\]", re.IGNORECASE)
 _MF = re.compile(r"MF(\d+)")

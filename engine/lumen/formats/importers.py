@@ -6,7 +6,7 @@ from typing import Any, Protocol
 from lumen.feature import Importer, distribution_of, owner, table
 from lumen.formats.known import FormatTable
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.broken_features import faulty, resolved, shown
+from lumen.project.broken_features import faulty, resolved, shown
 
 
 class FileReader(Protocol):

@@ -7,7 +7,7 @@ from typing import Any
 import yaml
 from yaml.representer import SafeRepresenter
 
-from lumen.loading.yaml_scalars import resolve
+from lumen.project.yaml_scalars import resolve
 
 SCHEMA_COMMENT = "# yaml-language-server: $schema=../schemas/{kind}.schema.json\n"
 MAX_FLOW_WIDTH = 90

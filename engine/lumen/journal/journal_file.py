@@ -11,8 +11,8 @@ import orjson
 from lumen.errors import JournalError
 from lumen.insight.replay.entries import RecordedEntry, entry_data, read_entry
 from lumen.journal.frames import unpack
-from lumen.loading.regular_files import read_regular
 from lumen.talk.hearing import MATCHER
+from lumen.upkeep.regular_files import read_regular
 
 JOURNAL_VERSION = 1
 JOURNAL_SUFFIX = ".journal"

@@ -115,7 +115,7 @@ class Diagnostic:
 class Code(str):
     """A kind of finding: as text its name; its family, how bad it is, and in a line what it means.
 
-    Each is declared once, as a value beside the check that raises it; `lumen.rules.codes` has them all, and
+    Each is declared once, as a value beside the check that raises it; `lumen.lint.codes` has them all, and
     `rules/pages/CODE.md` says why it matters and shows what is wrong and what is right.
     """
 

@@ -8,16 +8,16 @@ from pathlib import Path
 from lumen.feature import Feature, distribution_of, resolve, rows
 from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.projects import Project
-from lumen.loading.broken_features import broken, faults_reported, shown
-from lumen.loading.chosen_robot import as_robot, chosen_robot
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import read_files
-from lumen.loading.looks import Looks
-from lumen.loading.packaged import find_project
-from lumen.loading.project import assemble, draft
-from lumen.rules.codes import codes
-from lumen.rules.ignores import obey
-from lumen.rules.several_robots import together
+from lumen.lint.codes import codes
+from lumen.lint.ignores import obey
+from lumen.lint.several_robots import together
+from lumen.project.broken_features import broken, faults_reported, shown
+from lumen.project.building import assemble, draft
+from lumen.project.chosen_robot import as_robot, chosen_robot
+from lumen.project.draft import ProjectDraft
+from lumen.project.files import read_files
+from lumen.project.looks import Looks
+from lumen.project.packaged import find_project
 
 
 def check(path: str | Path | None = None) -> list[Diagnostic]:

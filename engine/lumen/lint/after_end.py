@@ -1,7 +1,7 @@
 """Transitions that wait for the end of the whole behaviour: nothing is heard any more when it has come."""
 
 from lumen.language.diagnostics import WARNING, Code
-from lumen.loading.draft import ProjectDraft
+from lumen.project.draft import ProjectDraft
 
 AFTER_THE_END = Code("after-the-end", "statecharts", WARNING, "a transition waits for the end of the whole behaviour")
 

@@ -4,9 +4,9 @@ from lumen.language.controllers import ControllerDefinition, OutputBinding, Prop
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.robots import Body
 from lumen.language.scales import ranks
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.lookups import first
+from lumen.lint.lookups import first
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 HIGH_GAIN = Code("high-gain", "controllers", WARNING, "the gain of a binding is so high that the joint overshoots")
 RANGE_BEYOND_JOINT = Code(

@@ -6,13 +6,13 @@ from typing import NamedTuple
 from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, walk
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Answer, MachineDefinition, State
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.examples import SHADOWED_PHRASE
-from lumen.rules.guards import covers, heard_call
-from lumen.rules.logic import tree
-from lumen.rules.speech import SHADOWED_ANSWER
-from lumen.rules.word_tables import is_taken, word_tables, written_phrases
+from lumen.lint.examples import SHADOWED_PHRASE
+from lumen.lint.guards import covers, heard_call
+from lumen.lint.logic import tree
+from lumen.lint.speech import SHADOWED_ANSWER
+from lumen.lint.word_tables import is_taken, word_tables, written_phrases
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 from lumen.talk.patterns import Form, forms
 
 

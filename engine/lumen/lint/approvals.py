@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from lumen.language.actions import Raise, Send
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.transitions import MISPLACED_APPROVAL
-from lumen.rules.events import hears
-from lumen.rules.recipients import sent_to
-from lumen.rules.walk import action_sites
+from lumen.lint.events import hears
+from lumen.lint.recipients import sent_to
+from lumen.lint.walk import action_sites
+from lumen.project.draft import ProjectDraft
+from lumen.project.transitions import MISPLACED_APPROVAL
 
 SAFETY_WAITS = Code("safety-waits", "statecharts", WARNING, "a safety reaction waits until a person approves it")
 

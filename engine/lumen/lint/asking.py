@@ -4,8 +4,8 @@ from lumen.language.actions import AskQuestion
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.modules import ANSWERS
 from lumen.language.stories import AnswerQuestion
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.walk import action_sites
+from lumen.lint.walk import action_sites
+from lumen.project.draft import ProjectDraft
 
 ASKS_NOBODY = Code("asks-nobody", "knowledge", WARNING, "a question is asked, but nothing can answer it")
 

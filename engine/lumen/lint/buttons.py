@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from lumen.language.buttons import Button
 from lumen.language.diagnostics import WARNING, Code, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.events import descriptors, hears
-from lumen.rules.logic import never, tree
+from lumen.lint.events import descriptors, hears
+from lumen.lint.logic import never, tree
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 DEAD_BUTTON = Code(
     "dead-button", "statecharts", WARNING, "a button raises an event that nothing waits for while the button is shown"

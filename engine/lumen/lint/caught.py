@@ -6,7 +6,7 @@ from typing import Any
 from lumen.expressions import schema_of
 from lumen.expressions.lists import is_text_by_language
 from lumen.language.machines import Hears, MachineDefinition
-from lumen.rules.lists import entry_schema
+from lumen.lint.lists import entry_schema
 from lumen.talk.patterns import TYPES, PatternError, Slot, forms, read_pattern
 
 _TEXT: Mapping[str, Any] = {"type": "string"}

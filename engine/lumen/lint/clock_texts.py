@@ -5,9 +5,9 @@ from collections.abc import Iterator, Mapping
 
 from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLiteral, Literal, walk
 from lumen.language.diagnostics import WARNING, Code
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.naming import trees
-from lumen.rules.walk import expression_sites
+from lumen.lint.naming import trees
+from lumen.lint.walk import expression_sites
+from lumen.project.draft import ProjectDraft
 
 ODD_TIME = Code("odd-time", "expressions", WARNING, "a time, day or date is compared with an impossible value")
 

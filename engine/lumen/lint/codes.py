@@ -9,7 +9,7 @@ from itertools import chain
 
 from lumen.feature import resolve, rows
 from lumen.language.diagnostics import Code, Severity
-from lumen.loading.broken_features import faults_reported
+from lumen.project.broken_features import faults_reported
 
 FAMILY_ORDER = (
     "text", "shape", "references", "statecharts", "reload", "expressions", "hearing", "speech", "knowledge",

@@ -3,13 +3,13 @@
 from lumen.language.controllers import ControllerDefinition, OutputBinding
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.robots import Body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.memoization import memoize
-from lumen.loading.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
-from lumen.loading.role_names import RoleNames
-from lumen.rules import aims, rulebooks, shapes, surfaces
-from lumen.rules.lookups import first
+from lumen.lint import aims, rulebooks, shapes, surfaces
+from lumen.lint.lookups import first
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.memoization import memoize
+from lumen.project.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
+from lumen.project.role_names import RoleNames
 
 LIMIT_TOLERANCE = 2e-3
 """How far a limit may lie outside the joint's own [rad]: people round."""

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 from lumen.language.actions import Raise, Send, nested
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.transitions import ENDLESS_ALWAYS
-from lumen.rules.endless_chains import ENDLESS_CHAIN
-from lumen.rules.statecharts import ALWAYS_LOOP, reachable, within
-from lumen.rules.walk import action_sites
+from lumen.lint.endless_chains import ENDLESS_CHAIN
+from lumen.lint.statecharts import ALWAYS_LOOP, reachable, within
+from lumen.lint.walk import action_sites
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.transitions import ENDLESS_ALWAYS
 
 DEAD_END = Code("dead-end", "statecharts", WARNING, "no transition leads out of a state")
 NO_WAY_BACK = Code("no-way-back", "statecharts", WARNING, "no transitions lead back from a state to the initial state")

@@ -10,9 +10,9 @@ from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.language.roles import BaseKind
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.ground import covered, ground_of, reach
-from lumen.rules.hall_obstacles import GroundPoint, Obstacle
+from lumen.lint.ground import covered, ground_of, reach
+from lumen.lint.hall_obstacles import GroundPoint, Obstacle
+from lumen.project.draft import ProjectDraft
 
 WALK_BEYOND_GROUND = Code("walk-beyond-ground", "robot", WARNING, "a walk leads off the ground of the hall")
 

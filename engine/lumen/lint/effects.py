@@ -4,13 +4,13 @@ from lumen.language.commands import PlaySound
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.language.motions import MotionDefinition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import on_disk
-from lumen.loading.sounds import sound_duration
-from lumen.rules.lookups import first
-from lumen.rules.statecharts import within
-from lumen.rules.walk import action_sites
+from lumen.lint.lookups import first
+from lumen.lint.statecharts import within
+from lumen.lint.walk import action_sites
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.files import on_disk
+from lumen.project.sounds import sound_duration
 
 NO_EFFECT = Code("no-effect", "statecharts", WARNING, "a key has no effect here")
 MISSING_SOUND = Code("missing-sound", "motions", WARNING, "a sound file is missing, so no sound is played")

@@ -20,12 +20,12 @@ from lumen.language.actions import (
 )
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.transitions import ENDLESS_ALWAYS
-from lumen.rules.events import hears
-from lumen.rules.logic import tree
-from lumen.rules.statecharts import ALWAYS_LOOP, within
+from lumen.lint.events import hears
+from lumen.lint.logic import tree
+from lumen.lint.statecharts import ALWAYS_LOOP, within
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.transitions import ENDLESS_ALWAYS
 
 ENDLESS_CHAIN = Code("endless-chain", "statecharts", WARNING, "transitions loop for ever, without a guard or a delay")
 

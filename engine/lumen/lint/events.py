@@ -12,15 +12,15 @@ from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_m
 from lumen.language.events import robot_events
 from lumen.language.json_paths import values_in
 from lumen.language.machines import MachineDefinition, StateKind, Transition
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.memoization import Same, memoize
-from lumen.loading.settings import Settings
-from lumen.rules.endings import ending_fault
-from lumen.rules.lookups import first
-from lumen.rules.recipients import recipients, sent_to
-from lumen.rules.walk import action_sites
+from lumen.lint.endings import ending_fault
+from lumen.lint.lookups import first
+from lumen.lint.recipients import recipients, sent_to
+from lumen.lint.walk import action_sites
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.memoization import Same, memoize
+from lumen.project.settings import Settings
 
 UNKNOWN_EVENT = Code("unknown-event", "references", ERROR, "a behaviour waits for an event that nothing raises")
 UNUSED_EVENT = Code("unused-event", "statecharts", WARNING, "an event is raised or declared, but nothing waits for it")

@@ -5,14 +5,14 @@ from itertools import islice
 
 from lumen.language.diagnostics import WARNING, Code, NodePath, Related
 from lumen.language.machines import Hears, Transition
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.caught import row_phrases
-from lumen.rules.events import hears
-from lumen.rules.heard_rows import HeardRows, SaidPhrase, SaidRow, hearing_behaviors, remembered, shown
-from lumen.rules.naming import looked_up
-from lumen.rules.speech import SHADOWED_ANSWER
-from lumen.rules.statecharts import within
-from lumen.rules.word_tables import home_of
+from lumen.lint.caught import row_phrases
+from lumen.lint.events import hears
+from lumen.lint.heard_rows import HeardRows, SaidPhrase, SaidRow, hearing_behaviors, remembered, shown
+from lumen.lint.naming import looked_up
+from lumen.lint.speech import SHADOWED_ANSWER
+from lumen.lint.statecharts import within
+from lumen.lint.word_tables import home_of
+from lumen.project.draft import ProjectDraft
 from lumen.talk.hearing import HEARD, Taken, hearing_of
 from lumen.talk.sample_sentences import of_row
 

@@ -12,16 +12,16 @@ from lumen.language.diagnostics import Place, Related
 from lumen.language.json_paths import schema_at
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.shared import SHARED
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.expressions import cause_of, place_within
-from lumen.loading.remembered_findings import Check, RememberedFindings
-from lumen.rules.caught import caught_schema
-from lumen.rules.events import declared, hears, outcome, raised
-from lumen.rules.lists import entry_schema, list_schema
-from lumen.rules.recipients import sent_to
-from lumen.rules.traps import LOOKS_LIKE_TRUTH
-from lumen.rules.walk import ExpressionSite, expression_sites
+from lumen.lint.caught import caught_schema
+from lumen.lint.events import declared, hears, outcome, raised
+from lumen.lint.lists import entry_schema, list_schema
+from lumen.lint.recipients import sent_to
+from lumen.lint.traps import LOOKS_LIKE_TRUTH
+from lumen.lint.walk import ExpressionSite, expression_sites
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.expressions import cause_of, place_within
+from lumen.project.remembered_findings import Check, RememberedFindings
 from lumen.talk.hearing import HEARD
 
 _TRUTHS = (LOOKS_LIKE_TRUTH, TYPE_MISMATCH)

@@ -4,10 +4,10 @@ from lumen.language.actions import PlacedAction, nested
 from lumen.language.commands import GoTo, Move, Play, Walk
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, Transition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.events import descriptors, hears
-from lumen.rules.walk import action_sites
+from lumen.lint.events import descriptors, hears
+from lumen.lint.walk import action_sites
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 UNHANDLED_FALL = Code(
     "unhandled-fall", "statecharts", WARNING, "a behaviour moves the legs, but nothing waits for `fallen`"

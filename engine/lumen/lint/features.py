@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from lumen.feature import Feature, distribution_of, resolve, rows
-from lumen.loading.broken_features import broken_features, faults_reported
-from lumen.loading.draft import ProjectDraft
+from lumen.project.broken_features import broken_features, faults_reported
+from lumen.project.draft import ProjectDraft
 
 
 def check(draft: ProjectDraft) -> None:

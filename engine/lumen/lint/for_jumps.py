@@ -2,9 +2,9 @@
 
 from lumen.language.diagnostics import ERROR, Code
 from lumen.language.machines import MachineDefinition, StateKind
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.statecharts import within
+from lumen.lint.statecharts import within
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 JUMP_INTO_FOR = Code(
     "jump-into-for",

@@ -3,13 +3,13 @@
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.gestures import GestureLibrary, merged
 from lumen.language.robots import Body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.project_folders import GESTURES_FOLDER
+from lumen.lint.effects import NO_EFFECT
+from lumen.lint.lookups import first
+from lumen.lint.motions import TOO_FAST, more_time
 from lumen.motion.gestures import BEAT, GESTURE_SHARE, peak_speeds
-from lumen.rules.effects import NO_EFFECT
-from lumen.rules.lookups import first
-from lumen.rules.motions import TOO_FAST, more_time
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.project_folders import GESTURES_FOLDER
 
 
 def check(draft: ProjectDraft) -> None:

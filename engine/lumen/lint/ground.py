@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.projects import Stage
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.hall_obstacles import GroundPoint, Obstacle, ground
+from lumen.lint.hall_obstacles import GroundPoint, Obstacle, ground
+from lumen.project.draft import ProjectDraft
 
 STAGE_BEYOND_GROUND = Code("stage-beyond-ground", "robot", WARNING, "the stage extends beyond the ground of the hall")
 

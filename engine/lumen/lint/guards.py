@@ -9,14 +9,14 @@ from lumen.expressions.tree import ExpressionNode, FunctionCall, Literal, Logic
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.memoization import memoize
-from lumen.rules.events import hears
-from lumen.rules.logic import always, implies, never, tree
-from lumen.rules.statecharts import within
-from lumen.rules.walk import expression_sites
-from lumen.rules.word_tables import is_taken
+from lumen.lint.events import hears
+from lumen.lint.logic import always, implies, never, tree
+from lumen.lint.statecharts import within
+from lumen.lint.walk import expression_sites
+from lumen.lint.word_tables import is_taken
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.memoization import memoize
 
 CONSTANT_GUARD = Code("constant-guard", "statecharts", WARNING, "a guard is always true, or never true")
 OVERLAPPING_GUARDS = Code(

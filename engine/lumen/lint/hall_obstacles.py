@@ -5,7 +5,7 @@ from contextlib import suppress
 from math import cos, dist, hypot, inf, pi, sin
 from typing import NamedTuple
 
-from lumen.rules.mjcf_elements import ModelElement, mjcf_elements
+from lumen.lint.mjcf_elements import ModelElement, mjcf_elements
 
 ROBOT_HEIGHT, TOE_HEIGHT = 0.6, 0.02
 """What begins above the one over the stage, or ends below the other, is in nobody's way [m]."""

@@ -7,11 +7,11 @@ from lumen.language.actions import AskQuestion, PlacedAction, nested
 from lumen.language.diagnostics import WARNING, Code, Related
 from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.machines import State, StateKind
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.buttons import together
-from lumen.rules.heard_rows import HeardRows, SaidRow, hearing_behaviors, remembered, shown
-from lumen.rules.statecharts import within
-from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
+from lumen.lint.buttons import together
+from lumen.lint.heard_rows import HeardRows, SaidRow, hearing_behaviors, remembered, shown
+from lumen.lint.statecharts import within
+from lumen.lint.word_tables import WrittenPhrase, home_of, written_phrases
+from lumen.project.draft import ProjectDraft
 from lumen.talk.finder import Find
 from lumen.talk.hearing import Taken, hearing_of
 

@@ -9,14 +9,14 @@ from typing import NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.language.machines import Hears, MachineDefinition, State, StateKind, Transition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.memoization import Same, memoize
-from lumen.loading.project_folders import WORDS_FOLDER
-from lumen.rules.events import descriptor_path
-from lumen.rules.naming import heard_rows
-from lumen.rules.statecharts import within
-from lumen.rules.word_tables import WrittenPhrase, home_of, written_phrases
+from lumen.lint.events import descriptor_path
+from lumen.lint.naming import heard_rows
+from lumen.lint.statecharts import within
+from lumen.lint.word_tables import WrittenPhrase, home_of, written_phrases
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.memoization import Same, memoize
+from lumen.project.project_folders import WORDS_FOLDER
 from lumen.talk.finder import Find
 from lumen.talk.hearing import RowOrder, Taken, hearing_of
 from lumen.talk.sample_sentences import of_phrase

@@ -5,7 +5,7 @@ from math import hypot
 
 from lumen.language.diagnostics import ERROR, WARNING, Code
 from lumen.language.routing_keys import DEFAULT_KEYS
-from lumen.loading.draft import ProjectDraft
+from lumen.project.draft import ProjectDraft
 
 CLASHING_NAMES = Code("clashing-names", "robot", ERROR, "two robots of a house would share a key or a folder")
 SAME_PLACE = Code("same-place", "robot", WARNING, "two robots start too close to each other")

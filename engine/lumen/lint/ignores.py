@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place, Severity, did_you_mean, has_errors
 from lumen.language.text_lines import lines_of
-from lumen.loading.document import Document
+from lumen.project.document import Document
 
 IGNORE_WITHOUT_REASON = Code("ignore-without-reason", "comments", WARNING, "an ignore comment gives no reason")
 IGNORED_ERROR = Code("ignored-error", "comments", WARNING, "an ignore comment names the code of an error")

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.life import STILL, LifeStyle, Settles, Sway
 from lumen.language.robots import Body
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.project_folders import LIFE_FOLDER
-from lumen.loading.units import ANGLES
+from lumen.lint.lookups import References, first
 from lumen.motion.life import PEAK_SLOPE, SETTLE_SLOPE, SPEED_SHARE
-from lumen.rules.lookups import References, first
+from lumen.project.draft import ProjectDraft
+from lumen.project.project_folders import LIFE_FOLDER
+from lumen.project.units import ANGLES
 
 LIFE_TOO_FAR = Code("life-too-far", "motions", ERROR, "a style of life moves a joint farther than is safe")
 LIFE_TOO_FAST = Code("life-too-fast", "motions", ERROR, "a style of life moves a joint too fast")

@@ -8,10 +8,10 @@ from lumen.expressions.lists import by_language, is_text_by_language
 from lumen.expressions.value_types import schema_of
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.language_tags import is_language_tag
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.torn_texts import whole_text
-from lumen.rules.word_tables import WordTables, word_tables
+from lumen.lint.word_tables import WordTables, word_tables
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.torn_texts import whole_text
 
 UNEVEN_LIST = Code("uneven-list", "references", ERROR, "an entry of a list has different keys from the others")
 

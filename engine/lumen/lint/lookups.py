@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, nearest
-from lumen.loading.bodies import UNKNOWN_MODEL
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.keyframes import UNKNOWN_MOTION
-from lumen.loading.lending import shipped_names
-from lumen.loading.linking import UNKNOWN_BEHAVIOR
-from lumen.loading.misnamed import misnamed_for
+from lumen.project.bodies import UNKNOWN_MODEL
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.keyframes import UNKNOWN_MOTION
+from lumen.project.lending import shipped_names
+from lumen.project.linking import UNKNOWN_BEHAVIOR
+from lumen.project.misnamed import misnamed_for
 
 MISSING_FOLDER = Code("missing-folder", "text", ERROR, "a name refers to a folder that is empty or missing")
 UNKNOWN_CONTROLLER = Code(

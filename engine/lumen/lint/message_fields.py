@@ -5,9 +5,9 @@ from typing import Any
 
 from lumen.expressions.expression_findings import UNKNOWN_FIELD
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.references import known_route
+from lumen.lint.references import known_route
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 
 def field_schema(

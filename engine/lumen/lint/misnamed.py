@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import MISTAKEN_FOLDERS
-from lumen.loading.misnamed import misnamed_in
-from lumen.loading.packaged import misnamed_main_file
-from lumen.loading.project import MISSING_FILE, NOT_READ
-from lumen.loading.project_folders import ALL_FOLDERS, MAIN_FILE
+from lumen.project.building import MISSING_FILE, NOT_READ
+from lumen.project.draft import ProjectDraft
+from lumen.project.files import MISTAKEN_FOLDERS
+from lumen.project.misnamed import misnamed_in
+from lumen.project.packaged import misnamed_main_file
+from lumen.project.project_folders import ALL_FOLDERS, MAIN_FILE
 
 
 def check(draft: ProjectDraft) -> None:

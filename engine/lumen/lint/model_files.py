@@ -4,7 +4,7 @@ import os
 from pathlib import Path, PurePosixPath
 
 from lumen.language.diagnostics import nearest
-from lumen.loading.draft import ProjectDraft
+from lumen.project.draft import ProjectDraft
 
 _MODELS = "models"
 

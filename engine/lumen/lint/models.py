@@ -11,13 +11,13 @@ from pathlib import PurePosixPath
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, nearest
 from lumen.language.robots import Body
 from lumen.language.roles import Roles
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import MAX_FILE_BYTES, Unreadable
-from lumen.loading.memoization import memoize
-from lumen.loading.packaged_models import in_package
-from lumen.loading.regular_files import read_regular
-from lumen.rules.mjcf_elements import ModelElement, ModelFault, mjcf_elements
-from lumen.rules.model_files import missing, outside
+from lumen.lint.mjcf_elements import ModelElement, ModelFault, mjcf_elements
+from lumen.lint.model_files import missing, outside
+from lumen.project.draft import ProjectDraft
+from lumen.project.files import MAX_FILE_BYTES, Unreadable
+from lumen.project.memoization import memoize
+from lumen.project.packaged_models import in_package
+from lumen.upkeep.regular_files import read_regular
 
 BROKEN_MODEL = Code("broken-model", "robot", ERROR, "a model is not MJCF, or lacks a file or a joint")
 FOREIGN_FILE = Code("foreign-file", "robot", ERROR, "a model refers to a file outside models/")

@@ -8,14 +8,14 @@ from math import ceil
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.memoization import memoize
-from lumen.loading.poses import ANGLE_OUT_OF_RANGE
-from lumen.loading.project_folders import PASSAGES
-from lumen.loading.units import ANGLES
 from lumen.motion.limits import Excess, beyond_limits, overspeed
 from lumen.motion.trajectories import Trajectory
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.memoization import memoize
+from lumen.project.poses import ANGLE_OUT_OF_RANGE
+from lumen.project.project_folders import PASSAGES
+from lumen.project.units import ANGLES
 
 TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
 

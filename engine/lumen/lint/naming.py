@@ -17,9 +17,9 @@ from lumen.expressions.tree import (
 )
 from lumen.language.actions import Expression, Template
 from lumen.language.machines import Hears, MachineDefinition
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.logic import tree
-from lumen.rules.walk import expression_sites
+from lumen.lint.logic import tree
+from lumen.lint.walk import expression_sites
+from lumen.project.draft import ProjectDraft
 from lumen.talk.patterns import slots_of
 
 

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.fixes.edits import Edit, FileText, edited
-from lumen.rules.translation import TO_DO, language_entries, plain_texts
+from lumen.lint.fixes.edits import Edit, FileText, edited
+from lumen.lint.translation import TO_DO, language_entries, plain_texts
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 
 def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str, source: str) -> dict[str, bytes]:

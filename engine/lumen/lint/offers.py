@@ -1,7 +1,7 @@
 """Offers to a language model: events of the behaviour's own, whose data is described."""
 
 from lumen.language.diagnostics import WARNING, Code
-from lumen.loading.draft import ProjectDraft
+from lumen.project.draft import ProjectDraft
 
 MISPLACED_OFFER = Code(
     "misplaced-offer",

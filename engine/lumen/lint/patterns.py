@@ -6,10 +6,10 @@ from functools import partial
 
 from lumen.language.diagnostics import WARNING, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.expressions import place_within
-from lumen.rules.word_tables import WordTables, WrittenPhrase, known_by, slot_place, word_tables, written_phrases
+from lumen.lint.word_tables import WordTables, WrittenPhrase, known_by, slot_place, word_tables, written_phrases
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.expressions import place_within
 from lumen.talk.folding import folded
 from lumen.talk.hearing import phrases_in
 from lumen.talk.patterns import TYPES, PatternError, Slot, read_pattern, slots_of

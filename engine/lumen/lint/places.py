@@ -13,11 +13,11 @@ from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Stage
 from lumen.language.stories import Expect
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.units import HALF_TURN_PARTS, WRONG_UNIT
-from lumen.rules.walk import action_sites
-from lumen.rules.word_tables import word_tables
+from lumen.lint.units import HALF_TURN_PARTS, WRONG_UNIT
+from lumen.lint.walk import action_sites
+from lumen.lint.word_tables import word_tables
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 PLACE_OFF_STAGE = Code("place-off-stage", "robot", ERROR, "a place is outside the area that the robot's feet may enter")
 PLACES_TOO_CLOSE = Code("places-too-close", "robot", WARNING, "two places are too close for the robot to tell apart")

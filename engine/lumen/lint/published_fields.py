@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from lumen.expressions.expression_findings import UNKNOWN_FIELD
 from lumen.language.actions import PublishBody
 from lumen.language.diagnostics import did_you_mean, nearest
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.walk import action_sites
+from lumen.lint.walk import action_sites
+from lumen.project.draft import ProjectDraft
 
 
 def check(draft: ProjectDraft) -> None:

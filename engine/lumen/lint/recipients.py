@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from lumen.language.actions import PARENT, Send
 from lumen.language.diagnostics import WARNING, Code, did_you_mean
 from lumen.language.machines import MachineDefinition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.walk import ActionSite, action_sites
+from lumen.lint.walk import ActionSite, action_sites
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 UNKNOWN_RECIPIENT = Code(
     "unknown-recipient", "references", WARNING, "a `send` goes to a behaviour that is never invoked"

@@ -7,14 +7,14 @@ from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, Related, 
 from lumen.language.routes import Direction
 from lumen.language.routing_keys import SHARED_ROUTES
 from lumen.language.verbs import verb_of
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.packaged_models import in_package
-from lumen.loading.poses import UNKNOWN_POSTURE
-from lumen.loading.project import MISSING_FILE
-from lumen.loading.settings import said_at
-from lumen.rules.lookups import References, first
-from lumen.rules.walk import ActionSite, action_sites
+from lumen.lint.lookups import References, first
+from lumen.lint.walk import ActionSite, action_sites
+from lumen.project.building import MISSING_FILE
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.packaged_models import in_package
+from lumen.project.poses import UNKNOWN_POSTURE
+from lumen.project.settings import said_at
 
 UNKNOWN_ROUTE = Code("unknown-route", "references", ERROR, "a name refers to a route that is not in lumen.yaml")
 WRONG_DIRECTION = Code("wrong-direction", "routes", WARNING, "a route is used in the wrong direction")

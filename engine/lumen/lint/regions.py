@@ -4,9 +4,9 @@ from itertools import islice
 
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, StateKind, Transition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.statecharts import within
+from lumen.lint.statecharts import within
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 CROSSES_REGIONS = Code(
     "crosses-regions", "statecharts", WARNING,

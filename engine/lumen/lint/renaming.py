@@ -2,8 +2,8 @@
 
 from lumen.language.diagnostics import ERROR, Code
 from lumen.language.machines import MachineDefinition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 STILL_THERE = Code("still-there", "statecharts", ERROR, "`renamed` names a state or key that still has its old name")
 

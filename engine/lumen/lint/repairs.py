@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, Severity, has_errors
-from lumen.loading.yaml_errors import TAB, YAML_SYNTAX
-from lumen.loading.yaml_nodes import DUPLICATE_KEY
-from lumen.rules.codes import codes
-from lumen.rules.fixes import Edit, Fix, edited, fixes
+from lumen.lint.codes import codes
+from lumen.lint.fixes import Edit, Fix, edited, fixes
+from lumen.project.yaml_errors import TAB, YAML_SYNTAX
+from lumen.project.yaml_nodes import DUPLICATE_KEY
 
 ProjectFiles = Mapping[str, bytes]
 FileLinter = Callable[[ProjectFiles], Sequence[Diagnostic]]

@@ -7,8 +7,8 @@ from lumen.language.added_verbs import added_verbs
 from lumen.language.commands import Do, GoTo, Look, Move, Play, Posture, Rest, Wake, Walk
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.verbs import verb_of
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 MOVES_AT_REST = Code(
     "moves-at-rest", "statecharts", WARNING, "a state moves the robot after `rest` and before it wakes it"

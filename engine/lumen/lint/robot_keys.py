@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from lumen.errors import UsageError
 from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS
 from lumen.language.text_lines import lines_and_breaks
-from lumen.loading.document import Document
-from lumen.loading.project_folders import MAIN_FILE
-from lumen.loading.yaml_reader import parse
-from lumen.rules.fixes import Edit, edited
-from lumen.rules.upgrading import Rewriting
+from lumen.lint.fixes import Edit, edited
+from lumen.lint.upgrading import Rewriting
+from lumen.project.document import Document
+from lumen.project.project_folders import MAIN_FILE
+from lumen.project.yaml_reader import parse
 
 NEW_KEYS: Mapping[str, str] = {alias: DEFAULT_KEYS[name] for name, alias in DEFAULT_ALIASES.items()}
 """The key of today by that of 2015."""

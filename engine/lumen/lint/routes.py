@@ -21,13 +21,13 @@ from lumen.language.routes import (
     route_meanings,
 )
 from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.events import descriptors, hears
-from lumen.rules.lookups import References
-from lumen.rules.references import UNKNOWN_ROUTE, WRONG_DIRECTION
-from lumen.rules.routing_keys import check_key
-from lumen.rules.walk import action_sites
+from lumen.lint.events import descriptors, hears
+from lumen.lint.lookups import References
+from lumen.lint.references import UNKNOWN_ROUTE, WRONG_DIRECTION
+from lumen.lint.routing_keys import check_key
+from lumen.lint.walk import action_sites
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 DUPLICATE_ROUTE = Code("duplicate-route", "routes", ERROR, "two routes carry the same key to the same event")
 MISSING_ROUTE = Code("missing-route", "routes", WARNING, "a behaviour needs a route that is missing")

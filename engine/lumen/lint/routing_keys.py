@@ -7,8 +7,8 @@ from difflib import get_close_matches
 from lumen.language.diagnostics import ERROR, WARNING, Code
 from lumen.language.routes import Direction, Route, route_meanings
 from lumen.language.routing_keys import DEFAULT_ALIASES, DEFAULT_KEYS, INTERNAL_KEYS, KEY_PREFIXES, SHARED_ROUTES
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.settings import Settings
+from lumen.project.document_report import DocumentReport
+from lumen.project.settings import Settings
 
 ROUTE_KEY = Code("route-key", "routes", ERROR, "a routing key has an invalid form")
 TAKEN_KEY = Code("taken-key", "routes", ERROR, "a route sends with a key that Lumen itself uses for something else")

@@ -15,7 +15,7 @@ from lumen.language.controllers import (
     RuleBlock,
 )
 from lumen.language.diagnostics import WARNING, Code
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 CONTRADICTING_RULE = Code(
     "contradicting-rule", "controllers", WARNING, "two rules have the same condition and different conclusions"

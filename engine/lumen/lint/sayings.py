@@ -7,9 +7,9 @@ from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.folders import SAYINGS_FOLDER
 from lumen.language.machines import Hears, MachineDefinition
 from lumen.language.sayings import Saying
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.lookups import References
+from lumen.lint.lookups import References
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 from lumen.talk.patterns import slots_of
 
 UNKNOWN_ROW = Code("unknown-row", "references", ERROR, "a saying names a row of `hears` that its state does not have")

@@ -1,7 +1,7 @@
 """JSON Schemas inside behaviours: those of context keys and of events; and the first values of the context."""
 
-from lumen.loading.context import check_memory
-from lumen.loading.draft import ProjectDraft
+from lumen.project.context import check_memory
+from lumen.project.draft import ProjectDraft
 
 
 def check(draft: ProjectDraft) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.rules.codes import codes, families
+from lumen.lint.codes import codes, families
 
 
 def selected(words: Iterable[str]) -> frozenset[str]:

@@ -6,10 +6,10 @@ from lumen.expressions.tree import Binary, ExpressionNode, ListLiteral, Literal,
 from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.robots import Body
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.events import hears
-from lumen.rules.logic import tree
-from lumen.rules.stories import UNKNOWN_SENSOR
+from lumen.lint.events import hears
+from lumen.lint.logic import tree
+from lumen.lint.stories import UNKNOWN_SENSOR
+from lumen.project.draft import ProjectDraft
 
 _SENSOR = ("event", "data", "sensor")
 

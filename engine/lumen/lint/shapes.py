@@ -10,7 +10,7 @@ from lumen.fuzzy.survey import grid
 from lumen.language.controllers import VALUE_TERMS, ControllerDefinition, Term, Variable
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.scales import ranks
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 COVERAGE_GAP = Code("coverage-gap", "controllers", WARNING, "no term is true in a part of an input's range")
 TERM_ORDER = Code("term-order", "controllers", WARNING, "the order of the terms contradicts their names")

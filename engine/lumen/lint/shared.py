@@ -7,8 +7,8 @@ from lumen.language.actions import Assign, Send
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
 from lumen.language.shared import SHARED, SHARED_EVENT, SharedKeys
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.walk import action_sites
+from lumen.lint.walk import action_sites
+from lumen.project.draft import ProjectDraft
 
 NOT_OWNER = Code("not-owner", "robot", ERROR, "a robot assigns a key of `shared` that belongs to another robot")
 SHARED_TAKEN = Code(

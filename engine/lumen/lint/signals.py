@@ -21,13 +21,13 @@ from lumen.language.controllers import (
 )
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
 from lumen.language.routes import Direction
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.events import UNUSED_EVENT, descriptors, hears
-from lumen.rules.lookups import first
-from lumen.rules.message_fields import field_schema
-from lumen.rules.references import WRONG_DIRECTION
-from lumen.rules.walk import action_sites
+from lumen.lint.events import UNUSED_EVENT, descriptors, hears
+from lumen.lint.lookups import first
+from lumen.lint.message_fields import field_schema
+from lumen.lint.references import WRONG_DIRECTION
+from lumen.lint.walk import action_sites
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 BOUND_TWICE = Code("bound-twice", "controllers", WARNING, "two controller outputs are bound to the same target")
 MISSING_FIELD = Code("missing-field", "controllers", ERROR, "a controller's message lacks a required field")

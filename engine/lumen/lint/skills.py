@@ -3,10 +3,10 @@
 from lumen.language.diagnostics import NodePath
 from lumen.language.skills import lack_of, tracked, tracking_lack
 from lumen.language.verbs import verb_of
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.role_names import LEFT_OUT
-from lumen.rules.lookups import first
-from lumen.rules.walk import action_sites
+from lumen.lint.lookups import first
+from lumen.lint.walk import action_sites
+from lumen.project.draft import ProjectDraft
+from lumen.project.role_names import LEFT_OUT
 
 
 def check(draft: ProjectDraft) -> None:

@@ -11,18 +11,18 @@ from lumen.language.diagnostics import ERROR, WARNING, Code, Diagnostic, NodePat
 from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.language_tags import is_language_tag
 from lumen.language.machines import Answer, MachineDefinition
-from lumen.loading.common_words import COMMON_FILE
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.settings import said_at
-from lumen.loading.torn_texts import quoting, whole_text
-from lumen.loading.words import ANYHOW
-from lumen.rules.lists import is_torn, listed_texts
-from lumen.rules.naming import heard_rows, looked_up
-from lumen.rules.torn_texts import TORN_TEXT
-from lumen.rules.translation import begun, is_empty, language_entries, switched_to
-from lumen.rules.walk import action_sites
-from lumen.rules.word_tables import WordTables, is_taken, word_tables
+from lumen.lint.lists import is_torn, listed_texts
+from lumen.lint.naming import heard_rows, looked_up
+from lumen.lint.torn_texts import TORN_TEXT
+from lumen.lint.translation import begun, is_empty, language_entries, switched_to
+from lumen.lint.walk import action_sites
+from lumen.lint.word_tables import WordTables, is_taken, word_tables
+from lumen.project.common_words import COMMON_FILE
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.settings import said_at
+from lumen.project.torn_texts import quoting, whole_text
+from lumen.project.words import ANYHOW
 from lumen.talk.speech import TABLES, WORD_LISTS
 
 UNKNOWN_LANGUAGE = Code(

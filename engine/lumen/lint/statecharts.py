@@ -5,10 +5,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from lumen.language.actions import Assign, PlacedAction, nested
 from lumen.language.diagnostics import MAX_COMPARED_NAMES, WARNING, Code, nearest
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.transitions import ENDLESS_ALWAYS
-from lumen.rules.logic import never, tree
+from lumen.lint.logic import never, tree
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.transitions import ENDLESS_ALWAYS
 
 ALWAYS_LOOP = Code("always-loop", "statecharts", WARNING, "an `always` repeats for ever while its guard is true")
 UNREACHABLE_STATE = Code("unreachable-state", "statecharts", WARNING, "no transition leads to a state")

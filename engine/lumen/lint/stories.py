@@ -11,16 +11,16 @@ from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition
 from lumen.language.properties import conditions_of
 from lumen.language.stories import AnswerQuestion, Expect, Happen, SendMessage, Story, TouchSensor
-from lumen.loading.complaints import WRONG_TYPE
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.expressions import place_within
-from lumen.loading.memoization import Same, memoize
-from lumen.loading.schema import faults
-from lumen.rules.events import UNKNOWN_EVENT, declared, descriptors, hears, raised
-from lumen.rules.lookups import References, first
-from lumen.rules.recipients import sent_to
-from lumen.rules.references import known_route
+from lumen.lint.events import UNKNOWN_EVENT, declared, descriptors, hears, raised
+from lumen.lint.lookups import References, first
+from lumen.lint.recipients import sent_to
+from lumen.lint.references import known_route
+from lumen.project.complaints import WRONG_TYPE
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.expressions import place_within
+from lumen.project.memoization import Same, memoize
+from lumen.project.schema import faults
 from lumen.statechart.nesting import ID_SEPARATOR, resolutions
 from lumen.statechart.type_checks import fits, refusal, type_checks
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from lumen.fuzzy.survey import Slice, SurfaceJump, Survey, asked, grid
 from lumen.language.controllers import INTEGRAL_DEFUZZIFIERS, WEIGHTED_DEFUZZIFIERS, ControllerDefinition, Variable
 from lumen.language.diagnostics import WARNING, Code
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 ATTAINABLE_RANGE = Code(
     "attainable-range", "controllers", WARNING, "an output uses only a small part of its range, or goes beyond it"

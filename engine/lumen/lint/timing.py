@@ -6,14 +6,14 @@ from math import hypot
 
 from lumen.errors import BadCommandError
 from lumen.expressions import split_template
-from lumen.interpreters.added_verbs import time_taken
 from lumen.language.actions import If, Parallel, PlacedAction, SayText, Wait
 from lumen.language.commands import Do, Play, Posture, Walk
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.machines import MachineDefinition, State
 from lumen.language.motions import MotionDefinition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
+from lumen.project.added_verbs import time_taken
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 CUT_SHORT = Code("cut-short", "statecharts", WARNING, "an `after` ends a state before its `do` can finish")
 

@@ -6,8 +6,8 @@ from functools import partial
 
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.text_lines import lines_of
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 CUT_TEXT = Code("cut-text", "speech", WARNING, "a text is cut off by ` #`, which begins a comment")
 TORN_TEXT = Code("torn-text", "speech", WARNING, "a text in a list is split by a comma or a colon")

@@ -8,12 +8,12 @@ from lumen.language.actions import SayText
 from lumen.language.commands import Language
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.folders import KNOWLEDGE_FOLDER
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.words import ANYHOW
-from lumen.rules.lists import listed_texts
-from lumen.rules.walk import action_sites
-from lumen.rules.word_tables import word_tables
+from lumen.lint.lists import listed_texts
+from lumen.lint.walk import action_sites
+from lumen.lint.word_tables import word_tables
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.words import ANYHOW
 
 _HOLE = re.compile(r"\{\{.*?\}\}")
 TO_DO = "TODO "

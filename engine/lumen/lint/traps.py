@@ -10,9 +10,9 @@ from lumen.language.actions import SayText
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.language.text_lines import LineIndex, lines_of
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.walk import action_sites
+from lumen.lint.walk import action_sites
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 CURLY_QUOTES = Code("curly-quotes", "text", WARNING, "curly quotes are used where YAML needs straight ones")
 LOOKS_LIKE_NUMBER = Code(

@@ -6,13 +6,13 @@ from lumen.expressions.tree import Literal, walk
 from lumen.language.actions import Expression, Template
 from lumen.language.diagnostics import WARNING, Code, did_you_mean, nearest
 from lumen.language.machines import MachineDefinition, Transition
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.caught import caught_schema, is_broken
-from lumen.rules.heard_rows import HeardRows, SaidRow, hearing_behaviors, shown
-from lumen.rules.logic import tree
-from lumen.rules.naming import heard_rows, read_names, trees
-from lumen.rules.walk import expression_sites
-from lumen.rules.word_tables import WordTables, known_by, slot_place, word_tables, written_phrases
+from lumen.lint.caught import caught_schema, is_broken
+from lumen.lint.heard_rows import HeardRows, SaidRow, hearing_behaviors, shown
+from lumen.lint.logic import tree
+from lumen.lint.naming import heard_rows, read_names, trees
+from lumen.lint.walk import expression_sites
+from lumen.lint.word_tables import WordTables, known_by, slot_place, word_tables, written_phrases
+from lumen.project.draft import ProjectDraft
 from lumen.talk.hearing import HEARD
 from lumen.talk.patterns import slots_of
 

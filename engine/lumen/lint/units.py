@@ -9,10 +9,10 @@ from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.units import ANGLES, LENGTHS
-from lumen.rules.walk import action_sites
+from lumen.lint.walk import action_sites
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.units import ANGLES, LENGTHS
 
 WRONG_UNIT = Code("wrong-unit", "robot", WARNING, "an angle or a length is not in the unit of the file")
 

@@ -12,13 +12,13 @@ from lumen.language.json_paths import values_in
 from lumen.language.machines import MachineDefinition
 from lumen.language.stories import Expect
 from lumen.language.verbs import names_in
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.project_folders import WORDS_FOLDER
-from lumen.rules.events import UNUSED_EVENT, descriptors, hears
-from lumen.rules.naming import Named, heard_rows, named_in
-from lumen.rules.walk import action_sites
-from lumen.rules.word_tables import word_tables
+from lumen.lint.events import UNUSED_EVENT, descriptors, hears
+from lumen.lint.naming import Named, heard_rows, named_in
+from lumen.lint.walk import action_sites
+from lumen.lint.word_tables import word_tables
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.project_folders import WORDS_FOLDER
 from lumen.talk.speech import TABLES, WORD_LISTS
 
 SAME_BUT_CASE = Code("same-but-case", "references", WARNING, "two names differ only in capital letters")

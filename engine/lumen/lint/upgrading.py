@@ -11,10 +11,10 @@ from lumen.errors import UsageError
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.text_lines import lines_of
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
-from lumen.loading.document import Document
-from lumen.loading.project_folders import MAIN_FILE
-from lumen.loading.yaml_reader import parse
-from lumen.rules.fixes import Edit, edited
+from lumen.lint.fixes import Edit, edited
+from lumen.project.document import Document
+from lumen.project.project_folders import MAIN_FILE
+from lumen.project.yaml_reader import parse
 
 
 class Rewriting(NamedTuple):

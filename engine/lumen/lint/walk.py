@@ -24,7 +24,7 @@ from lumen.language.commands import Do, GoTo
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, MachineDefinition, State, Transition
 from lumen.language.properties import conditions_of
-from lumen.loading.memoization import Same, memoize
+from lumen.project.memoization import Same, memoize
 
 
 class ActionSite(NamedTuple):

@@ -9,8 +9,8 @@ from lumen.language.commands import GoTo
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.hall_places import HallPlaces
 from lumen.language.machines import MachineDefinition, State, StateKind
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
+from lumen.lint.hall_obstacles import GroundPoint, Obstacle, nearest, obstacles
+from lumen.project.draft import ProjectDraft
 
 BLOCKED_PLACE = Code(
     "blocked-place", "robot", WARNING, "a place is inside a solid object of the hall, or too close to one"

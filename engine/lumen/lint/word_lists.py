@@ -1,9 +1,9 @@
 """The words by which sentences are read, in each language of a project that hears."""
 
 from lumen.language.diagnostics import WARNING, Code
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.settings import said_at
-from lumen.rules.naming import heard_rows
+from lumen.lint.naming import heard_rows
+from lumen.project.draft import ProjectDraft
+from lumen.project.settings import said_at
 from lumen.talk.speech import FILLERS, NEGATIONS, NEGATIONS_AFTER, QUESTIONS, SMALL_WORDS
 
 MISSING_WORDS = Code(

@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 from lumen.expressions.phrases import is_heard
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import Answer
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.expressions import place_within
-from lumen.loading.project_folders import WORDS_FOLDER
-from lumen.loading.words import ANYHOW
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.expressions import place_within
+from lumen.project.project_folders import WORDS_FOLDER
+from lumen.project.words import ANYHOW
 from lumen.talk.patterns import Slot, forms
 
 

@@ -17,8 +17,8 @@ from lumen.language.alerts import (
     Webhook,
 )
 from lumen.language.diagnostics import NodePath
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.routes import duration
+from lumen.project.document_report import DocumentReport
+from lumen.project.routes import duration
 
 WHERE: NodePath = ("alerts",)
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 
 def read_console(data: Mapping[str, Any], report: DocumentReport) -> ConsoleSettings:

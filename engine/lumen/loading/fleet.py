@@ -15,12 +15,12 @@ from lumen.language.fleet import (
     StepTarget,
     step_target,
 )
-from lumen.loading.built_file import BuiltFile, read_file
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.files import MAX_FILE_BYTES
-from lumen.loading.project_folders import FLEET_FILE
-from lumen.loading.regular_files import read_regular
-from lumen.loading.routes import duration
+from lumen.project.built_file import BuiltFile, read_file
+from lumen.project.document_report import DocumentReport
+from lumen.project.files import MAX_FILE_BYTES
+from lumen.project.project_folders import FLEET_FILE
+from lumen.project.routes import duration
+from lumen.upkeep.regular_files import read_regular
 
 BAD_SHARE = Code("bad-share", "fleet", ERROR, "a rollout step is not a valid share of the robots")
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.imperfections import Imperfections
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 
 def read_imperfections(data: Mapping[str, Any], report: DocumentReport) -> Imperfections:

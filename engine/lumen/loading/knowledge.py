@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code
 from lumen.language.knowledge import Passage, QuestionSet
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 BAD_DATE = Code("bad-date", "knowledge", ERROR, "a date of a passage is not valid, or its dates are in the wrong order")
 

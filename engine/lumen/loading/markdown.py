@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
 from lumen.language.text_lines import lines_of
-from lumen.loading.document import Document, NodeSpan
-from lumen.loading.yaml_reader import parse
+from lumen.project.document import Document, NodeSpan
+from lumen.project.yaml_reader import parse
 
 NO_FRONT_MATTER = Code("no-front-matter", "knowledge", ERROR, "a Markdown passage does not begin with its YAML data")
 STRAY_TEXT = Code(

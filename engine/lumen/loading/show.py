@@ -14,7 +14,7 @@ from lumen.language.show import (
     Show,
     TopicMapping,
 )
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 
 def read_show(main: Mapping[str, Any], report: DocumentReport) -> Show:

@@ -6,15 +6,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, gathered
-from lumen.loading.common_words import COMMON, COMMON_FILE, common_words, is_shipped
-from lumen.loading.document import Document
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.project import draft
-from lumen.loading.project_folders import MAIN_FILE, kind_of
-from lumen.loading.yaml_reader import parse
+from lumen.lint import check_files
 from lumen.lsp.broken_files import BrokenFile, KnownFindings, broken_files, follows, signature
 from lumen.lsp.index import NameIndex
-from lumen.rules import check_files
+from lumen.project.building import draft
+from lumen.project.common_words import COMMON, COMMON_FILE, common_words, is_shipped
+from lumen.project.document import Document
+from lumen.project.draft import ProjectDraft
+from lumen.project.project_folders import MAIN_FILE, kind_of
+from lumen.project.yaml_reader import parse
 
 
 class Judgement(NamedTuple):

@@ -6,10 +6,10 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Diagnostic, Severity
-from lumen.loading.files import Unreadable
-from lumen.loading.project_folders import kind_of
-from lumen.loading.yaml_reader import parse
 from lumen.lsp.mending import MendedText, mended
+from lumen.project.files import Unreadable
+from lumen.project.project_folders import kind_of
+from lumen.project.yaml_reader import parse
 
 _QUOTED = re.compile(r"[^`.#]+(?=[`.])")
 

@@ -9,9 +9,7 @@ from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import robot_events
 from lumen.language.routes import Route
-from lumen.loading.lending import shipped_message
-from lumen.loading.outline import THIS
-from lumen.loading.project_folders import kind_of
+from lumen.lint.events import BUILT_IN_FAMILIES, hears
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.cursor import Cursor, cursor
 from lumen.lsp.grammar import key_kind, value_kind
@@ -19,7 +17,9 @@ from lumen.lsp.heard_rows import ELSE, is_phrase, names_in, row_around, texts_in
 from lumen.lsp.index import WORD_KINDS, NameIndex, stem
 from lumen.lsp.names import NameKind
 from lumen.lsp.schemas import keys_at, values_at
-from lumen.rules.events import BUILT_IN_FAMILIES, hears
+from lumen.project.lending import shipped_message
+from lumen.project.outline import THIS
+from lumen.project.project_folders import kind_of
 from lumen.talk.patterns import TYPES, slots_of
 from lumen.talk.speech import TABLES, WORD_LISTS
 

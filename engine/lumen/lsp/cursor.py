@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
-from lumen.loading.document import Document
-from lumen.loading.yaml_reader import parse
 from lumen.lsp.fragments import fragment
+from lumen.project.document import Document
+from lumen.project.yaml_reader import parse
 
 CURSOR_MARK = "Here0Stands1The2Cursor"
 _BEFORE = re.compile(r"[^\s,\[\]{}:'\"()]*$")

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from lumen.language.text_lines import lines_of
-from lumen.loading.document import Document
+from lumen.project.document import Document
 
 
 class Fold(NamedTuple):

@@ -5,8 +5,8 @@ from functools import lru_cache
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.verbs import VERBS
-from lumen.loading.words import ANYHOW
 from lumen.lsp.names import NameKind
+from lumen.project.words import ANYHOW
 
 MAX_REMEMBERED_PATHS = 50_000
 

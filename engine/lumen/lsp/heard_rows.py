@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
-from lumen.loading.words import ANYHOW
+from lumen.project.words import ANYHOW
 
 WAYS = ("not", "asked")
 ELSE = "else"

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
 from lumen.language.numbers import is_number
-from lumen.loading.project_folders import kind_of
+from lumen.lint.timing import duration
 from lumen.lsp.analysis import Analysis
-from lumen.rules.timing import duration
+from lumen.project.project_folders import kind_of
 
 
 class Hint(NamedTuple):

@@ -6,9 +6,8 @@ from pathlib import PurePosixPath
 
 from lumen.language.counts import counted
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.common_words import COMMON, COMMON_FILE
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.project_folders import WORDS_FOLDER, kind_of
+from lumen.lint.codes import codes
+from lumen.lint.pages import page
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.heard_rows import is_phrase
 from lumen.lsp.index import WORDS_SCOPE
@@ -16,8 +15,9 @@ from lumen.lsp.locating import key_at
 from lumen.lsp.names import NameKind, NameUse, covers
 from lumen.lsp.schemas import description_at
 from lumen.lsp.sentences import of_patterns, of_phrase_at, of_row_at
-from lumen.rules.codes import codes
-from lumen.rules.pages import page
+from lumen.project.common_words import COMMON, COMMON_FILE
+from lumen.project.draft import ProjectDraft
+from lumen.project.project_folders import WORDS_FOLDER, kind_of
 
 MAX_PHRASES = 20
 """Phrases of a language that are shown."""

@@ -7,16 +7,16 @@ from typing import Any
 
 from lumen.language.actions import context_key
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.memoization import memoize
-from lumen.loading.messages import SCHEMA_SUFFIX
-from lumen.loading.outline import BehaviorOutline, OutlinedState
-from lumen.loading.project_folders import kind_of
 from lumen.lsp.grammar import defines, key_kind, value_kind
 from lumen.lsp.heard_rows import names_in
 from lumen.lsp.locating import DocumentText, NameInText, in_expression, in_template
 from lumen.lsp.names import BODY_KINDS, KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.memoization import memoize
+from lumen.project.messages import SCHEMA_SUFFIX
+from lumen.project.outline import BehaviorOutline, OutlinedState
+from lumen.project.project_folders import kind_of
 
 WORDS_SCOPE = "words/"
 """What stands before the name of a words file where it is the scope of names."""

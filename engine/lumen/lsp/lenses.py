@@ -4,9 +4,9 @@ from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
-from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.index import stem
+from lumen.project.project_folders import kind_of
 
 RUN_STORY, PLAY_MOTION, SHOW_PLACES = "lumen.runStory", "lumen.playMotion", "lumen.showPlaces"
 """The commands behind them."""

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
-from lumen.loading.messages import SCHEMA_SUFFIX
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.names import KIND_FOLDERS, NameKind
+from lumen.project.messages import SCHEMA_SUFFIX
 
 
 class FileLink(NamedTuple):

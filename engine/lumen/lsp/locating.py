@@ -9,8 +9,8 @@ from lumen.errors import ExpressionError
 from lumen.expressions.tokens import Token, tokenize
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.text_lines import LineIndex
-from lumen.loading.document import Document
 from lumen.lsp.names import NameKind, covers
+from lumen.project.document import Document
 
 _TEMPLATE = re.compile(r"\{\{(.*?)\}\}", re.DOTALL)
 _NAMED = {"heard": NameKind.PHRASE, "lookup": NameKind.ANSWERS, "In": NameKind.STATE}

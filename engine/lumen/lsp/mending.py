@@ -7,8 +7,8 @@ import re
 from typing import NamedTuple
 
 from lumen.language.text_lines import lines_of
-from lumen.loading.yaml_reader import parse
 from lumen.lsp.fragments import ancestors, block_end
+from lumen.project.yaml_reader import parse
 
 MAX_CUTS = 8
 """Lines that are left out one by one before whole blocks are."""

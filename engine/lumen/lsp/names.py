@@ -4,7 +4,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
-from lumen.loading.project_folders import BEHAVIORS, CONTROLLERS, MESSAGES, MODELS, MOTIONS, STORIES, WORDS_FOLDER
+from lumen.project.project_folders import BEHAVIORS, CONTROLLERS, MESSAGES, MODELS, MOTIONS, STORIES, WORDS_FOLDER
 
 
 class NameKind(StrEnum):

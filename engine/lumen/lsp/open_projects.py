@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.loading.files import composed, read_files
-from lumen.loading.project_folders import MAIN_FILE, kind_of
 from lumen.lsp.analysis import Analysis
+from lumen.project.files import composed, read_files
+from lumen.project.project_folders import MAIN_FILE, kind_of
 
 
 class OpenProjects:

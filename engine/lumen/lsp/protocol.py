@@ -7,13 +7,13 @@ from lsprotocol import types as lsp
 from pygls.workspace import PositionCodec
 
 from lumen.language.diagnostics import Diagnostic, Place, Severity
+from lumen.lint.fixes import Edit, FileText
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.completion import Item
 from lumen.lsp.names import NameKind
 from lumen.lsp.ranges import Ranges
 from lumen.lsp.renaming import Renaming
 from lumen.lsp.symbols import Symbol
-from lumen.rules.fixes import Edit, FileText
 
 LSP_SEVERITIES = {
     Severity.ERROR: lsp.DiagnosticSeverity.Error,

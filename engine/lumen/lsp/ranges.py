@@ -7,7 +7,7 @@ from lsprotocol import types as lsp
 from pygls.workspace import PositionCodec
 
 from lumen.language.diagnostics import Place
-from lumen.rules.fixes import FileText
+from lumen.lint.fixes import FileText
 
 
 class Ranges:

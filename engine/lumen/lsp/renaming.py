@@ -7,11 +7,11 @@ from typing import NamedTuple
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.language.routes import route_meanings
+from lumen.lint.fixes import Edit, edited
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.heard_rows import ELSE, WAYS
 from lumen.lsp.index import WORD_KINDS
 from lumen.lsp.names import KIND_FOLDERS, NameKind, NameUse
-from lumen.rules.fixes import Edit, edited
 from lumen.talk.speech import TABLES, WORD_LISTS
 
 _NAMES = {

@@ -5,8 +5,8 @@ from functools import cache
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
-from lumen.loading.project_folders import FILE_KINDS
-from lumen.loading.schema import load_schema
+from lumen.project.project_folders import FILE_KINDS
+from lumen.project.schema import load_schema
 
 _SAME = ("allOf", "anyOf", "oneOf")
 _BRANCHES = ("then", "else", "$ref")

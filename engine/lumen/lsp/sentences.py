@@ -7,11 +7,11 @@ from typing import Any
 from lumen.insight.explaining.words import shown
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Hears, MachineDefinition
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.index import stem
 from lumen.lsp.locating import key_at
+from lumen.project.draft import ProjectDraft
+from lumen.project.project_folders import kind_of
 from lumen.talk.hearing import HEARD, hearing_of
 from lumen.talk.patterns import forms, slots_of
 from lumen.talk.sample_sentences import SampleSentence, of_phrase, of_row

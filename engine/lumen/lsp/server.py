@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 from lumen.feature import Feature, rows
-from lumen.loading.broken_features import blamed, resolved
 from lumen.lsp.language_server import LanguageServer
 from lumen.lsp.refusals import quiet
+from lumen.project.broken_features import blamed, resolved
 
 SWITCH_INTERVAL = 0.001
 """The longest time that a check may keep an answer waiting [s]."""

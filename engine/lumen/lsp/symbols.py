@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
-from lumen.loading.document import Document
-from lumen.loading.project_folders import kind_of
 from lumen.lsp.analysis import Analysis
 from lumen.lsp.grammar import defines, key_kind
 from lumen.lsp.names import NameKind, NameUse
+from lumen.project.document import Document
+from lumen.project.project_folders import kind_of
 
 
 class Symbol(NamedTuple):

@@ -13,8 +13,8 @@ from lumen.errors import BusError, ModuleError
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
 from lumen.language.routing_keys import default_key
-from lumen.loading.broken_features import fault_of_package
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.project.broken_features import fault_of_package
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 

@@ -8,7 +8,7 @@ from lumen.upkeep.lazy_names import lazy
 __all__ = ["Project", "load"]
 
 _HOMES = {
-    "lumen.project": ("load",),
+    "lumen.standalone.project": ("load",),
     "lumen.language.projects": ("Project",),
 }
 

@@ -1,4 +1,4 @@
 from lumen.language.projects import Project as Project
-from lumen.project import load as load
+from lumen.standalone.project import load as load
 
 __all__ = ["Project", "load"]

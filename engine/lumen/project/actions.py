@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping
 from typing import Any, assert_never
 
 from lumen.feature import VerbRow
-from lumen.interpreters.added_verbs import usable_verbs
 from lumen.language.actions import (
     Action,
     AskQuestion,
@@ -27,11 +26,12 @@ from lumen.language.commands import Do, SaysGestures, VerbCommand
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.durations import duration_hint
 from lumen.language.verbs import Quantity, Verb, verb_named
-from lumen.loading.complaints import MISSING_KEY
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.expressions import Expressions
-from lumen.loading.numbers import finite
-from lumen.loading.units import ANGLES, BAD_DURATION, LENGTHS, seconds
+from lumen.project.added_verbs import usable_verbs
+from lumen.project.complaints import MISSING_KEY
+from lumen.project.document_report import DocumentReport
+from lumen.project.expressions import Expressions
+from lumen.project.numbers import finite
+from lumen.project.units import ANGLES, BAD_DURATION, LENGTHS, seconds
 
 ONLY_IN_DO = Code("only-in-do", "statecharts", ERROR, "a verb that waits is used outside `do`")
 

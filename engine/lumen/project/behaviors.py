@@ -11,18 +11,18 @@ from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_S
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.shared import SHARED, SharedKey, first_values, shared_schema
-from lumen.loading.actions import Actions
-from lumen.loading.buttons import buttons
-from lumen.loading.common_words import COMMON
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.expressions import Expressions
-from lumen.loading.invocations import check_ids, invocations
-from lumen.loading.known_words import WordFiles, known_words
-from lumen.loading.outline import BehaviorOutline, OutlinedState
-from lumen.loading.properties import build_properties
-from lumen.loading.rounds import NOTHING_YET, Rounds, unrolled
-from lumen.loading.shapes import check_shapes
-from lumen.loading.transitions import TransitionReader
+from lumen.project.actions import Actions
+from lumen.project.buttons import buttons
+from lumen.project.common_words import COMMON
+from lumen.project.document_report import DocumentReport
+from lumen.project.expressions import Expressions
+from lumen.project.invocations import check_ids, invocations
+from lumen.project.known_words import WordFiles, known_words
+from lumen.project.outline import BehaviorOutline, OutlinedState
+from lumen.project.properties import build_properties
+from lumen.project.rounds import NOTHING_YET, Rounds, unrolled
+from lumen.project.shapes import check_shapes
+from lumen.project.transitions import TransitionReader
 
 NOT_WITHIN = Code("not-within", "statecharts", ERROR, "the state named in `initial` is not one of the inner states")
 

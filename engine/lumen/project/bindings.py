@@ -5,11 +5,11 @@ from typing import Any
 
 from lumen.language.controllers import ContextInput, InputBinding, OutputBinding, SignalBinding, Variable
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.numbers import EMPTY_RANGE
-from lumen.loading.rulebook import UNKNOWN_VARIABLE
-from lumen.loading.signal_bindings import UNBOUND_OUTPUT, build_signal, signal_fault
-from lumen.loading.units import ANGLES
+from lumen.project.document_report import DocumentReport
+from lumen.project.numbers import EMPTY_RANGE
+from lumen.project.rulebook import UNKNOWN_VARIABLE
+from lumen.project.signal_bindings import UNBOUND_OUTPUT, build_signal, signal_fault
+from lumen.project.units import ANGLES
 
 UNBOUND_INPUT = Code("unbound-input", "controllers", ERROR, "an input of a bound controller has no source")
 

@@ -9,12 +9,12 @@ from typing import Any
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.robots import Body, Camera, CoupledLimit, Joint, LinkInertia, Ultrasound
 from lumen.language.roles import BaseKind, Roles
-from lumen.loading.complaints import MISSING_KEY
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.numbers import EMPTY_RANGE
-from lumen.loading.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
-from lumen.loading.roles import RoleReader
-from lumen.loading.units import ANGLES, LENGTHS
+from lumen.project.complaints import MISSING_KEY
+from lumen.project.document_report import DocumentReport
+from lumen.project.numbers import EMPTY_RANGE
+from lumen.project.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
+from lumen.project.roles import RoleReader
+from lumen.project.units import ANGLES, LENGTHS
 
 UNKNOWN_MODEL = Code("unknown-model", "references", ERROR, "the named body is not in models/")
 INCOMPLETE_POSTURE = Code("incomplete-posture", "robot", ERROR, "a posture has no angle for a joint")

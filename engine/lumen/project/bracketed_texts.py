@@ -4,8 +4,8 @@ import json
 import re
 from collections.abc import Iterator
 
-from lumen.loading.line_marks import marks_of
-from lumen.loading.slips import KEY, Slip, short
+from lumen.project.line_marks import marks_of
+from lumen.project.slips import KEY, Slip, short
 from lumen.talk.patterns import TYPES
 
 _BRACKETED_TEXT = re.compile(r"^(?!\{\w+: )(?=.*[\[{])(?:[\[{][^\[\]{}]*[\]}]|[^\[{(\w])*[\w(]")

@@ -9,15 +9,15 @@ from lumen.distributions import Distribution, distributions
 from lumen.errors import LumenError, UsageError
 from lumen.feature import Feature, FeatureFault, described, distribution_of, found, resolve
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place
-from lumen.loading.packaged import PACKAGE
-from lumen.loading.project_folders import MAIN_FILE
+from lumen.project.packaged import PACKAGE
+from lumen.project.project_folders import MAIN_FILE
 
 BROKEN_FEATURE = Code("broken-feature", "features", WARNING, "an installed feature, or a part of it, can't be used")
 
 
 def broken_features() -> list[Diagnostic]:
     """Return a finding for each installed distribution whose feature, or a row of it, is ignored."""
-    from lumen.interpreters.added_verbs import faulty_verbs  # and with it all of the expressions
+    from lumen.project.added_verbs import faulty_verbs  # and with it all of the expressions
 
     verbs = ((distribution_of(feature), fault) for feature, fault in faulty_verbs())
     faults = [*found().faults, *(FeatureFault(distribution, fault) for distribution, fault in verbs if distribution)]

@@ -15,32 +15,32 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.language.shared import SharedKeys
-from lumen.loading.behaviors import build_machine
-from lumen.loading.bodies import build_body, build_likes
-from lumen.loading.built_file import Build, BuiltFile, read_file
-from lumen.loading.chosen_model import chosen
-from lumen.loading.chosen_robot import chosen_robot
-from lumen.loading.common_words import COMMON, COMMON_FILE, is_shipped, with_common_words
-from lumen.loading.controllers import build_controller
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.files import (
+from lumen.loading.fleet import build_fleet
+from lumen.loading.knowledge import build_passage, build_questions
+from lumen.loading.markdown import MARKDOWN_SUFFIX
+from lumen.project.behaviors import build_machine
+from lumen.project.bodies import build_body, build_likes
+from lumen.project.built_file import Build, BuiltFile, read_file
+from lumen.project.chosen_model import chosen
+from lumen.project.chosen_robot import chosen_robot
+from lumen.project.common_words import COMMON, COMMON_FILE, is_shipped, with_common_words
+from lumen.project.controllers import build_controller
+from lumen.project.draft import ProjectDraft
+from lumen.project.files import (
     LEADS_OUT,
     MISTAKEN_FOLDERS,
     Unreadable,
     fingerprint,
     read_main_file,
 )
-from lumen.loading.fleet import build_fleet
-from lumen.loading.gestures import build_gestures
-from lumen.loading.knowledge import build_passage, build_questions
-from lumen.loading.lending import lend, shipped_models
-from lumen.loading.life import build_life
-from lumen.loading.linking import link, with_robots
-from lumen.loading.markdown import MARKDOWN_SUFFIX
-from lumen.loading.messages import SCHEMA_SUFFIX, build_message
-from lumen.loading.motions import build_motions
-from lumen.loading.passages import belongs_to
-from lumen.loading.project_folders import (
+from lumen.project.gestures import build_gestures
+from lumen.project.lending import lend, shipped_models
+from lumen.project.life import build_life
+from lumen.project.linking import link, with_robots
+from lumen.project.messages import SCHEMA_SUFFIX, build_message
+from lumen.project.motions import build_motions
+from lumen.project.passages import belongs_to
+from lumen.project.project_folders import (
     ALL_FOLDERS,
     FLEET_FILE,
     GESTURES_FOLDER,
@@ -56,11 +56,11 @@ from lumen.loading.project_folders import (
     is_robots_own,
     kind_in,
 )
-from lumen.loading.sayings import build_sayings
-from lumen.loading.settings import Settings, build_settings, other_vocabulary
-from lumen.loading.stories import build_story
-from lumen.loading.used_routes import used_routes
-from lumen.loading.words import build_words
+from lumen.project.sayings import build_sayings
+from lumen.project.settings import Settings, build_settings, other_vocabulary
+from lumen.project.stories import build_story
+from lumen.project.used_routes import used_routes
+from lumen.project.words import build_words
 
 MISSING_FILE = Code("missing-file", "text", ERROR, "a required file is missing")
 NOT_READ = Code("not-read", "text", WARNING, "a file is not read, because of its ending or its folder")

@@ -5,12 +5,12 @@ from pathlib import PurePosixPath
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.document import TOO_LARGE
-from lumen.loading.document_report import DocumentReport
 from lumen.loading.markdown import MARKDOWN_SUFFIX, parse_markdown
-from lumen.loading.memoization import memoize
-from lumen.loading.schema import check_schema
-from lumen.loading.yaml_reader import parse
+from lumen.project.document import TOO_LARGE
+from lumen.project.document_report import DocumentReport
+from lumen.project.memoization import memoize
+from lumen.project.schema import check_schema
+from lumen.project.yaml_reader import parse
 
 T = TypeVar("T")
 B = TypeVar("B", covariant=True)

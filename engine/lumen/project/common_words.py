@@ -8,8 +8,8 @@ import re
 from collections.abc import Mapping
 from functools import cache
 
-from lumen.loading.packaged import PACKAGE
-from lumen.loading.project_folders import BEHAVIORS, WORDS_FOLDER
+from lumen.project.packaged import PACKAGE
+from lumen.project.project_folders import BEHAVIORS, WORDS_FOLDER
 
 COMMON = "common"
 COMMON_FILE = f"{WORDS_FOLDER}/{COMMON}.yaml"

@@ -7,7 +7,7 @@ from typing import Any
 from lumen.expressions.json_schema import occurs
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, mean, nearest
 from lumen.language.lookalikes import other_sign, typed
-from lumen.loading.schema_messages import Error, describe, like, node, wording
+from lumen.project.schema_messages import Error, describe, like, node, wording
 
 MISSING_KEY = Code("missing-key", "shape", ERROR, "a required key is missing")
 ONE_VERB = Code("one-verb", "shape", ERROR, "an item has no verb, or more than one")

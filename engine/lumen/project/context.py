@@ -1,10 +1,10 @@
 """What a behaviour remembers: first values and JSON Schemas of context keys and events, checked to be sound."""
 
 from lumen.language.machines import MachineDefinition
-from lumen.loading.complaints import WRONG_VALUE
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.messages import examine
-from lumen.loading.numbers import finite, numbers_in
+from lumen.project.complaints import WRONG_VALUE
+from lumen.project.document_report import DocumentReport
+from lumen.project.messages import examine
+from lumen.project.numbers import finite, numbers_in
 from lumen.statechart.type_checks import fits, refusal, type_checks
 
 

@@ -5,13 +5,13 @@ from typing import Any
 
 from lumen.language.controllers import ControllerDefinition, TrackingSettings
 from lumen.language.diagnostics import NodePath
-from lumen.loading.bindings import Bindings
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.numbers import without_extremes
-from lumen.loading.rulebook import Rulebook
-from lumen.loading.table import spread, termless
-from lumen.loading.units import ANGLES, BAD_DURATION, seconds
-from lumen.loading.variables import build_variables
+from lumen.project.bindings import Bindings
+from lumen.project.document_report import DocumentReport
+from lumen.project.numbers import without_extremes
+from lumen.project.rulebook import Rulebook
+from lumen.project.table import spread, termless
+from lumen.project.units import ANGLES, BAD_DURATION, seconds
+from lumen.project.variables import build_variables
 
 
 def build_controller(data: Any, report: DocumentReport, *, name: str) -> ControllerDefinition | None:

@@ -1,6 +1,6 @@
 """Which bundles were begun with and have not lasted: a crash loop is noticed by the start that comes after it."""
 
-from lumen.runtime.home import Home
+from lumen.project.home import Home
 
 CRASH_COUNTS_FILE = "trials.json"
 CRASH_COUNTS_VERSION = 1

@@ -5,9 +5,9 @@ from collections.abc import Callable, Hashable, Iterable
 from typing import Any, TypeVar
 
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Related
-from lumen.loading.complaints import UNKNOWN_KEY
-from lumen.loading.document import Document
-from lumen.loading.memoization import memoize
+from lumen.project.complaints import UNKNOWN_KEY
+from lumen.project.document import Document
+from lumen.project.memoization import memoize
 
 T = TypeVar("T")
 

@@ -20,10 +20,10 @@ from lumen.language.robots import Body
 from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
 from lumen.language.words import Words
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.looks import Looks
-from lumen.loading.project_folders import MAIN_FILE, WORDS_FOLDER
-from lumen.loading.settings import Settings
+from lumen.project.document_report import DocumentReport
+from lumen.project.looks import Looks
+from lumen.project.project_folders import MAIN_FILE, WORDS_FOLDER
+from lumen.project.settings import Settings
 
 
 @dataclass

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from lumen.distributions import Distribution, distributions, metadata_folders
-from lumen.loading.packaged import PACKAGE, schema_folder, shipped_root
+from lumen.project.packaged import PACKAGE, schema_folder, shipped_root
 
 
 @cache

@@ -23,13 +23,13 @@ from lumen.expressions.functions import CAUGHT
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import NodePath, Place, did_you_mean
 from lumen.language.text_lines import lines_of
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.known_words import KnownWords
-from lumen.loading.numbers import finite
-from lumen.loading.remembered_findings import Check, RememberedFindings
-from lumen.loading.rounds import Rounds
-from lumen.loading.scalars import within
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.known_words import KnownWords
+from lumen.project.numbers import finite
+from lumen.project.remembered_findings import Check, RememberedFindings
+from lumen.project.rounds import Rounds
+from lumen.project.scalars import within
 from lumen.talk.hearing import HEARD
 
 

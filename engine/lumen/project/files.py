@@ -7,12 +7,12 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path, PurePosixPath
 from unicodedata import normalize
 
-from lumen.loading.chosen_model import choice
-from lumen.loading.chosen_robot import CHOSEN_ROBOT, as_robot
-from lumen.loading.common_words import with_common_words
-from lumen.loading.kept_contents import KeptContents
-from lumen.loading.project_folders import FLEET_FILE, KINDS, MAIN_FILE, MOTIONS, endings_in
-from lumen.loading.regular_files import MEGABYTE
+from lumen.project.chosen_model import choice
+from lumen.project.chosen_robot import CHOSEN_ROBOT, as_robot
+from lumen.project.common_words import with_common_words
+from lumen.project.kept_contents import KeptContents
+from lumen.project.project_folders import FLEET_FILE, KINDS, MAIN_FILE, MOTIONS, endings_in
+from lumen.upkeep.regular_files import MEGABYTE
 
 MAX_FILE_BYTES = 4_000_000
 """Of one file; a behaviour of ten thousand states is smaller."""

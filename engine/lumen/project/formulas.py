@@ -25,8 +25,8 @@ from lumen.expressions.tree import (
 from lumen.fuzzy.formulas import FORMULA_FUNCTIONS
 from lumen.language.diagnostics import Code, NodePath, did_you_mean
 from lumen.language.numbers import is_number
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.word_places import report_word
+from lumen.project.document_report import DocumentReport
+from lumen.project.word_places import report_word
 
 _PLAIN = (Identifier, Unary, Logic, Conditional)
 

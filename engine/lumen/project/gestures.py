@@ -6,9 +6,9 @@ from typing import Any
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.gestures import Gesture, GestureLibrary
 from lumen.language.robots import Body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.poses import PoseReader
-from lumen.loading.units import ANGLES, BAD_DURATION, seconds
+from lumen.project.document_report import DocumentReport
+from lumen.project.poses import PoseReader
+from lumen.project.units import ANGLES, BAD_DURATION, seconds
 
 POSTURE = "Stand"
 """The posture from which a gesture begins, and to which it leads back."""

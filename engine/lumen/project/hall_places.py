@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace, HallPlaces
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.numbers import finite
-from lumen.loading.units import ANGLES, LENGTHS
+from lumen.project.document_report import DocumentReport
+from lumen.project.numbers import finite
+from lumen.project.units import ANGLES, LENGTHS
 
 
 def read_hall_places(data: Mapping[str, Any], report: DocumentReport) -> HallPlaces:

@@ -7,9 +7,9 @@ from typing import Literal
 from lumen.expressions.expression_findings import UNKNOWN_PHRASE
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, did_you_mean
 from lumen.language.text_lines import lines_of
-from lumen.loading.common_words import COMMON
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.expressions import Expressions
+from lumen.project.common_words import COMMON
+from lumen.project.document_report import DocumentReport
+from lumen.project.expressions import Expressions
 from lumen.talk.speech import TABLES, WORD_LISTS
 
 BAD_ROW = Code("bad-row", "hearing", ERROR, "a key of `hears` can't be read")

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import UsageError
-from lumen.loading.packaged import PACKAGE
-from lumen.loading.regular_files import read_regular
+from lumen.project.packaged import PACKAGE
 from lumen.upkeep.private_folder import NO_LINK, private_folder, write_private
+from lumen.upkeep.regular_files import read_regular
 from lumen.upkeep.state_folder import state_folder
 
 STATE_FOLDER = ".lumen"

@@ -6,10 +6,10 @@ from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.house import DEFAULT_SPACING, RobotSpec, StartPose
-from lumen.loading.complaints import MISSING_KEY
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.numbers import finite
-from lumen.loading.units import ANGLES, LENGTHS
+from lumen.project.complaints import MISSING_KEY
+from lumen.project.document_report import DocumentReport
+from lumen.project.numbers import finite
+from lumen.project.units import ANGLES, LENGTHS
 
 DEFAULT_ROBOT = "NAO"
 ROBOTS_TWICE = Code("robots-twice", "robot", ERROR, "lumen.yaml has both `robot` and `robots`")

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from lumen.loading.slips import Slip
+from lumen.project.slips import Slip
 
 LINES_BACK = 60
 """Lines before the one at which a reader stopped where a block may stand at the wrong depth."""

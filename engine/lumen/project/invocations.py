@@ -6,9 +6,9 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Invoke, StateKind
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.expressions import Expressions
-from lumen.loading.outline import DUPLICATE_ID, BehaviorOutline, OutlinedState
+from lumen.project.document_report import DocumentReport
+from lumen.project.expressions import Expressions
+from lumen.project.outline import DUPLICATE_ID, BehaviorOutline, OutlinedState
 
 
 def invocations(entry: OutlinedState, expressions: Expressions) -> tuple[Invoke, ...]:

@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from lumen.loading.regular_files import read_regular
+from lumen.upkeep.regular_files import read_regular
 
 SETTLED_NS = 2_000_000_000
 """How long ago a file was changed whose next change certainly shows in its times [ns]: some disks count in seconds."""

@@ -6,10 +6,10 @@ from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, has_errors
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.poses import PoseReader
-from lumen.loading.units import seconds
 from lumen.motion.choreography import at_speed, joined, mirrored, placed
+from lumen.project.document_report import DocumentReport
+from lumen.project.poses import PoseReader
+from lumen.project.units import seconds
 
 UNKNOWN_MOTION = Code("unknown-motion", "references", ERROR, "the named motion is not in motions/")
 HANDLES_WITHOUT_KEY = Code("handles-without-key", "motions", ERROR, "a joint has handles but no angle in this keyframe")

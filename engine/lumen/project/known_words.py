@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, Related, did_you_mean
 from lumen.language.machines import Answer
 from lumen.language.words import Words
-from lumen.loading.built_file import BuiltFile
-from lumen.loading.common_words import COMMON
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.project_folders import WORDS_FOLDER
-from lumen.loading.words import anyhow, tables
+from lumen.project.built_file import BuiltFile
+from lumen.project.common_words import COMMON
+from lumen.project.document_report import DocumentReport
+from lumen.project.project_folders import WORDS_FOLDER
+from lumen.project.words import anyhow, tables
 from lumen.talk.speech import TABLES, WORD_LISTS
 
 UNKNOWN_WORDS = Code("unknown-words", "references", ERROR, "the named words file is not in behaviors/words/")

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from lumen.language.projects import Project
-from lumen.loading.messages import SCHEMA_SUFFIX
-from lumen.loading.packaged import shipped_root
-from lumen.loading.project_folders import MESSAGES, MODELS, PASSAGES
-from lumen.loading.settings import Settings
+from lumen.project.messages import SCHEMA_SUFFIX
+from lumen.project.packaged import shipped_root
+from lumen.project.project_folders import MESSAGES, MODELS, PASSAGES
+from lumen.project.settings import Settings
 
 
 def lend(files: Mapping[str, bytes], settings: Settings, models: Collection[str]) -> dict[str, bytes]:

@@ -6,10 +6,10 @@ from typing import Any
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.life import STILL, Asides, Blinks, EyeColours, Glances, LifeStyle, Nods, Settles, Sway
 from lumen.language.robots import Body
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.poses import UNKNOWN_JOINT
-from lumen.loading.role_names import RoleNames
-from lumen.loading.units import ANGLES, BAD_DURATION, seconds
+from lumen.project.document_report import DocumentReport
+from lumen.project.poses import UNKNOWN_JOINT
+from lumen.project.role_names import RoleNames
+from lumen.project.units import ANGLES, BAD_DURATION, seconds
 
 SHORTEST_PERIOD = 0.1
 """What comes again and again in a life takes at least so long [s]."""

@@ -7,8 +7,8 @@ from lumen.expressions.expression_findings import TYPE_MISMATCH, UNKNOWN_CONTEXT
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.machines import Invoke, MachineDefinition
-from lumen.loading.document import TOO_LARGE
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document import TOO_LARGE
+from lumen.project.document_report import DocumentReport
 from lumen.statechart.type_checks import fits, refusal, type_checks
 
 UNKNOWN_BEHAVIOR = Code("unknown-behavior", "references", ERROR, "the named behaviour is not in behaviors/")

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from lumen.loading.kept_contents import SETTLED_NS
-from lumen.loading.packaged_models import package_file
+from lumen.project.kept_contents import SETTLED_NS
+from lumen.project.packaged_models import package_file
 
 Seen = tuple[str | int, ...]
 """Where a path leads, and what tells what is there from what was there before; the times come last [ns]."""

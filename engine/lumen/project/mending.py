@@ -11,12 +11,12 @@ from itertools import chain, islice
 import yaml
 
 from lumen.language.text_lines import lines_of
-from lumen.loading.bracketed_texts import bracketed
-from lumen.loading.document import MAX_NODE_DEPTH
-from lumen.loading.indentation import depths, items, too_deep
-from lumen.loading.line_marks import closers, marks_of
-from lumen.loading.slips import Slip, brackets, colons, flows, not_closed, quotes, signs
-from lumen.loading.yaml_composer import shielded
+from lumen.project.bracketed_texts import bracketed
+from lumen.project.document import MAX_NODE_DEPTH
+from lumen.project.indentation import depths, items, too_deep
+from lumen.project.line_marks import closers, marks_of
+from lumen.project.slips import Slip, brackets, colons, flows, not_closed, quotes, signs
+from lumen.project.yaml_composer import shielded
 
 MAX_MENDS = 120
 """Changes that are tried."""

@@ -10,12 +10,12 @@ from lumen.expressions.json_schema import deeper_than
 from lumen.expressions.patterns import compile_pattern
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
 from lumen.language.json_paths import values_in
-from lumen.loading.complaints import WRONG_TYPE, WRONG_VALUE
-from lumen.loading.document import MAX_NODE_DEPTH, TOO_LARGE, Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.schema import schema_faults
-from lumen.loading.yaml_errors import NOT_UTF8, merge_conflict
-from lumen.loading.yaml_reader import EMPTY_FILE, parse
+from lumen.project.complaints import WRONG_TYPE, WRONG_VALUE
+from lumen.project.document import MAX_NODE_DEPTH, TOO_LARGE, Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.schema import schema_faults
+from lumen.project.yaml_errors import NOT_UTF8, merge_conflict
+from lumen.project.yaml_reader import EMPTY_FILE, parse
 
 JSON_SYNTAX = Code("json-syntax", "text", ERROR, "a message schema is not JSON")
 ENDLESS_REFERENCE = Code("endless-reference", "routes", ERROR, "a reference in a message schema refers to itself")

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
-from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint
-from lumen.loading.document import Document
-from lumen.loading.indentation import LineMove, holder, indent, is_content, move_hint, shifted
+from lumen.project.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint
+from lumen.project.document import Document
+from lumen.project.indentation import LineMove, holder, indent, is_content, move_hint, shifted
 
 MAX_TRIES = 12
 """Moves that are tried in one file."""

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
-from lumen.loading.files import belongs
-from lumen.loading.project_folders import ALL_FOLDERS, endings_in
+from lumen.project.files import belongs
+from lumen.project.project_folders import ALL_FOLDERS, endings_in
 
 _ENDING = re.compile(r"(?P<stem>.+?)\s*\.(?:(?P<yaml>ya?ml)|(?P<other>md|json|xml))\s*(?:\.te?xt)?\s*", re.IGNORECASE)
 

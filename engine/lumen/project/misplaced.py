@@ -5,8 +5,8 @@ from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import ERROR, Code
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.project_folders import KINDS
+from lumen.project.document_report import DocumentReport
+from lumen.project.project_folders import KINDS
 
 MISPLACED_FILE = Code("misplaced-file", "text", ERROR, "a file is in the folder of another kind of file")
 

@@ -9,12 +9,12 @@ from typing import Any
 from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.motions import Interpolation, MotionDefinition
 from lumen.language.robots import Body
-from lumen.loading.built_file import unless_too_deep
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.keyframes import MOTION_CYCLE, TOO_MANY_KEYS, ZERO_DURATION, KeyframeReader
-from lumen.loading.poses import PoseReader
-from lumen.loading.units import ANGLES, seconds
 from lumen.motion.choreography import at_speed, mirrored, returning, trailing
+from lumen.project.built_file import unless_too_deep
+from lumen.project.document_report import DocumentReport
+from lumen.project.keyframes import MOTION_CYCLE, TOO_MANY_KEYS, ZERO_DURATION, KeyframeReader
+from lumen.project.poses import PoseReader
+from lumen.project.units import ANGLES, seconds
 
 DEFAULT_POSTURE = "Stand"
 """The posture that a motion begins in where its file does not say."""

@@ -7,7 +7,7 @@ from typing import Any
 from lumen.expressions.expression_findings import UNKNOWN_STATE
 from lumen.language.diagnostics import ERROR, MAX_COMPARED_NAMES, Code, NodePath, did_you_mean, nearest
 from lumen.language.machines import StateKind
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 THIS = "."
 """The target that is the state itself: it is left and entered again."""

@@ -6,8 +6,8 @@ from itertools import islice
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.loading.packaged import find_project, misnamed_main_file, project_above
-from lumen.loading.project_folders import MAIN_FILE
+from lumen.project.packaged import find_project, misnamed_main_file, project_above
+from lumen.project.project_folders import MAIN_FILE
 
 MAX_FOLDERS = 5_000
 """How many folders are looked into, which takes a fraction of a second; a project has its place near the top."""

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.loading.project_folders import MAIN_FILE
+from lumen.project.project_folders import MAIN_FILE
 
 _MISNAMED = re.compile(r"lumen\s*\.ya?ml\s*(\.te?xt)?\s*", re.IGNORECASE)
 PACKAGE = Path(__file__).parents[1]

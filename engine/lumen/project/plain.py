@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place
-from lumen.loading.complaints import WRONG_TYPE
-from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Document, NodeSpan
+from lumen.project.complaints import WRONG_TYPE
+from lumen.project.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Document, NodeSpan
 
 
 def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnostic]]:

@@ -9,10 +9,10 @@ from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.mirrors import Mirror, mirror_of
 from lumen.language.robots import Body
 from lumen.language.roles import JointRole
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.numbers import NOT_A_NUMBER
-from lumen.loading.role_names import OUT_OF_REACH, RoleNames
-from lumen.loading.units import ANGLES, seconds
+from lumen.project.document_report import DocumentReport
+from lumen.project.numbers import NOT_A_NUMBER
+from lumen.project.role_names import OUT_OF_REACH, RoleNames
+from lumen.project.units import ANGLES, seconds
 
 UNKNOWN_JOINT = Code("unknown-joint", "references", ERROR, "the robot has no joint of that name")
 UNKNOWN_POSE = Code("unknown-pose", "references", ERROR, "the named pose is not defined in the motion")

@@ -7,10 +7,10 @@ from lumen.expressions import check_expression
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
 from lumen.language.properties import Property
-from lumen.loading.complaints import ONE_VERB
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.expressions import place_within
-from lumen.loading.routes import duration
+from lumen.project.complaints import ONE_VERB
+from lumen.project.document_report import DocumentReport
+from lumen.project.expressions import place_within
+from lumen.project.routes import duration
 
 ReadCondition = Callable[[str, NodePath], Expression | None]
 

@@ -5,8 +5,8 @@ from typing import Any
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.json_paths import values_in
-from lumen.loading.document import Document, NodeSpan
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document import Document, NodeSpan
+from lumen.project.document_report import DocumentReport
 
 
 def prune(report: DocumentReport, doomed: set[NodePath]) -> None:

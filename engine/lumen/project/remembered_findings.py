@@ -4,7 +4,7 @@ from collections.abc import Callable, Hashable, Mapping
 from typing import Any
 
 from lumen.expressions import ExpressionFinding
-from lumen.loading.memoization import memoize
+from lumen.project.memoization import memoize
 
 MAX_REMEMBERED_FINDINGS = 20_000
 

@@ -5,10 +5,10 @@ from typing import Any
 
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.replay_check import DEFAULT_BUDGET, MAX_BUDGET, ReplayCheck
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.retention import read_journal
-from lumen.loading.routes import duration
-from lumen.loading.units import BAD_DURATION
+from lumen.project.document_report import DocumentReport
+from lumen.project.retention import read_journal
+from lumen.project.routes import duration
+from lumen.project.units import BAD_DURATION
 
 IDLE_CHECK = Code(
     "idle-check",

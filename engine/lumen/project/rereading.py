@@ -14,8 +14,8 @@ import yaml
 from lumen.language.diagnostics import NodePath
 from lumen.language.json_paths import with_value
 from lumen.language.text_lines import lines_of
-from lumen.loading.document import MAX_NODES, Document, NodeSpan
-from lumen.loading.yaml_composer import TooLargeError, compose
+from lumen.project.document import MAX_NODES, Document, NodeSpan
+from lumen.project.yaml_composer import TooLargeError, compose
 
 Spans = dict[NodePath, NodeSpan]
 Read = Callable[[str, yaml.Node, NodePath, yaml.Node], tuple[Any, Spans] | None]

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.retention import LONGEST_RING, SHORTEST_RING, JournalRetention, RecordingSettings
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.numbers import finite
-from lumen.loading.routes import duration
-from lumen.loading.units import BAD_DURATION
+from lumen.project.document_report import DocumentReport
+from lumen.project.numbers import finite
+from lumen.project.routes import duration
+from lumen.project.units import BAD_DURATION
 
 
 def read_journal(data: Mapping[str, Any], report: DocumentReport) -> JournalRetention:

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lumen.errors import UsageError
-from lumen.loading.files import MAX_FILE_BYTES, MAX_PROJECT_BYTES, Unreadable, belongs, composed
-from lumen.loading.regular_files import MEGABYTE
+from lumen.project.files import MAX_FILE_BYTES, MAX_PROJECT_BYTES, Unreadable, belongs, composed
+from lumen.upkeep.regular_files import MEGABYTE
 
 
 def files_at(root: Path, revision: str) -> dict[str, bytes] | None:

@@ -6,8 +6,8 @@ from typing import Any
 from lumen.language.diagnostics import ERROR, INFO, WARNING, Code, NodePath, did_you_mean
 from lumen.language.robots import Body
 from lumen.language.roles import JOINT_PATHS, JointRole
-from lumen.loading.complaints import MISSING_KEY
-from lumen.loading.document_report import DocumentReport
+from lumen.project.complaints import MISSING_KEY
+from lumen.project.document_report import DocumentReport
 
 UNKNOWN_ROLE = Code("unknown-role", "references", ERROR, "no robot's body has a role of that name")
 LEFT_OUT = Code("left-out", "robot", INFO, "the robot can't do an action or a movement, so it is left out")

@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.roles import LEG_ROLES, SIDES, Base, BaseKind, EyeRoles, JointRole, Roles, SensorRoles
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 INCOMPLETE_ROLE = Code("incomplete-role", "robot", ERROR, "a role needs another role that is missing")
 JOINT_IN_TWO_ROLES = Code("joint-in-two-roles", "robot", ERROR, "one joint has two roles")

@@ -15,8 +15,8 @@ from lumen.language.actions import Assign, Expression, PlacedAction
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.machines import ForEach, State, StateKind, Transition
 from lumen.language.shared import SHARED
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.project.document_report import DocumentReport
+from lumen.project.outline import BehaviorOutline, OutlinedState
 from lumen.talk.hearing import HEARD
 
 BAD_FOR = Code("bad-for", "statecharts", ERROR, "a `for` can't run through its list here")

@@ -6,8 +6,8 @@ from typing import Any
 from lumen.language.diagnostics import NodePath
 from lumen.language.durations import duration_hint
 from lumen.language.routes import COMMAND, JSON_TYPE, STOP, Carried, Direction, Route, Size
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.units import BAD_DURATION, seconds
+from lumen.project.document_report import DocumentReport
+from lumen.project.units import BAD_DURATION, seconds
 
 DEFAULT_LATENCY = 0.15
 """How old a body without a `time` is taken to be [s], where its route does not say."""

@@ -5,9 +5,9 @@ from typing import Any
 
 from lumen.language.controllers import Activation, Operators, Rule, RuleBlock, Variable
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.rule_parser import Mention, RuleSyntaxError, RuleWord, parse_rule
-from lumen.loading.word_places import report_word
+from lumen.project.document_report import DocumentReport
+from lumen.project.rule_parser import Mention, RuleSyntaxError, RuleWord, parse_rule
+from lumen.project.word_places import report_word
 
 NO_RULES = Code("no-rules", "controllers", ERROR, "a controller has no rules")
 NOT_AN_OUTPUT = Code("not-an-output", "controllers", ERROR, "a rule sets a variable that is not an output")

@@ -12,8 +12,8 @@ from functools import cache
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.loading.packaged import find_project, project_above, shipped_root
-from lumen.loading.project_folders import MAIN_FILE, PROJECT_FOLDERS
+from lumen.project.packaged import find_project, project_above, shipped_root
+from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 from lumen.upkeep.state_folder import state_folder
 
 

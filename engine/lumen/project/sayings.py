@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from lumen.language.sayings import Saying, SayingSet
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 SAY = "say"
 

@@ -7,7 +7,7 @@ from datetime import date
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
 from lumen.language.hours import WEEKDAYS, Schedule
 from lumen.language.text_lines import lines_of
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 BAD_TIME = Code("bad-time", "statecharts", ERROR, "a time of day can't be read")
 UNQUOTED_TIME = Code(

@@ -9,22 +9,22 @@ from typing import Any
 from lumen.errors import LumenError
 from lumen.expressions.json_schema import JsonSchema
 from lumen.feature import VerbRow
-from lumen.interpreters.added_verbs import usable_verbs
 from lumen.language.added_verbs import expected_schema, written_schema
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
-from lumen.loading.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
-from lumen.loading.document import TOO_LARGE, Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.feature_schemas import add_features
-from lumen.loading.misindented import KeyNames, key_names, misindented
-from lumen.loading.misplaced import misplaced
-from lumen.loading.packaged import schema_folder
-from lumen.loading.project_folders import MAIN_KIND
-from lumen.loading.pruning import prune
-from lumen.loading.sections import with_sections
-from lumen.loading.torn_texts import quoting, whole_translation
-from lumen.loading.yaml_nodes import read_text
+from lumen.project.added_verbs import usable_verbs
+from lumen.project.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
+from lumen.project.document import TOO_LARGE, Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.feature_schemas import add_features
+from lumen.project.misindented import KeyNames, key_names, misindented
+from lumen.project.misplaced import misplaced
+from lumen.project.packaged import schema_folder
+from lumen.project.project_folders import MAIN_KIND
+from lumen.project.pruning import prune
+from lumen.project.sections import with_sections
+from lumen.project.torn_texts import quoting, whole_translation
+from lumen.project.yaml_nodes import read_text
 
 MAX_PRUNING_ROUNDS = 20
 

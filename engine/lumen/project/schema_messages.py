@@ -10,9 +10,9 @@ from lumen.language.diagnostics import NodePath, did_you_mean
 from lumen.language.durations import duration_hint, meant_duration
 from lumen.language.lookalikes import other_sign, typed
 from lumen.language.numbers import is_number
-from lumen.loading.bracketed_texts import slot_signs
-from lumen.loading.units import seconds
-from lumen.loading.yaml_scalars import resolve
+from lumen.project.bracketed_texts import slot_signs
+from lumen.project.units import seconds
+from lumen.project.yaml_scalars import resolve
 
 Error = Any
 """A `jsonschema.ValidationError`; its stubs allow for an unset state that a validator never yields."""

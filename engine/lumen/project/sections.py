@@ -8,8 +8,8 @@ from typing import Any
 from lumen.expressions.json_schema import JsonSchema, keywords
 from lumen.feature import Section, resolve, rows, table
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.broken_features import faults_reported
-from lumen.loading.document_report import DocumentReport
+from lumen.project.broken_features import faults_reported
+from lumen.project.document_report import DocumentReport
 
 
 def read_sections(data: Mapping[str, Any], report: DocumentReport) -> dict[str, object]:

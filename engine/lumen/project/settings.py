@@ -15,11 +15,11 @@ from lumen.language.projects import DEFAULT_PATIENCE, Stage
 from lumen.language.routes import Route
 from lumen.language.sections import Sections, section_of
 from lumen.language.vocabulary import FIRST_VOCABULARY, VOCABULARY, VOCABULARY_KEY
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.house import DEFAULT_ROBOT, build_house, build_robots, told_robots
-from lumen.loading.routes import build_routes, duration
-from lumen.loading.sections import is_section, read_sections
-from lumen.loading.units import LENGTHS
+from lumen.project.document_report import DocumentReport
+from lumen.project.house import DEFAULT_ROBOT, build_house, build_robots, told_robots
+from lumen.project.routes import build_routes, duration
+from lumen.project.sections import is_section, read_sections
+from lumen.project.units import LENGTHS
 
 OTHER_VOCABULARY = Code("other-vocabulary", "text", ERROR, "the files were written for another vocabulary")
 BAD_STAGE = Code("bad-stage", "robot", ERROR, "the robot does not start on the stage")

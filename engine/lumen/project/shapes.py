@@ -2,8 +2,8 @@
 
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.machines import StateKind
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.outline import BehaviorOutline, OutlinedState
+from lumen.project.document_report import DocumentReport
+from lumen.project.outline import BehaviorOutline, OutlinedState
 
 MISPLACED_KEY = Code("misplaced-key", "statecharts", ERROR, "this type of state can't have this key")
 NO_STATES = Code("no-states", "statecharts", ERROR, "a compound or parallel state has no states")

@@ -6,11 +6,11 @@ from typing import Any
 from lumen.expressions.json_schema import JsonSchema
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.shared import SharedKey, SharedKeys
-from lumen.loading.complaints import WRONG_VALUE
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.house import robot_names
-from lumen.loading.numbers import finite
-from lumen.loading.schema_messages import TYPE_NAMES
+from lumen.project.complaints import WRONG_VALUE
+from lumen.project.document_report import DocumentReport
+from lumen.project.house import robot_names
+from lumen.project.numbers import finite
+from lumen.project.schema_messages import TYPE_NAMES
 
 UNKNOWN_OWNER = Code("unknown-owner", "robot", ERROR, "a key of `shared` names a robot that is not in the house")
 

@@ -13,7 +13,7 @@ from lumen.language.controllers import (
     VolumeBinding,
 )
 from lumen.language.diagnostics import WARNING, Code, NodePath
-from lumen.loading.complaints import WRONG_VALUE
+from lumen.project.complaints import WRONG_VALUE
 
 UNBOUND_OUTPUT = Code(
     "unbound-output", "controllers", WARNING, "an output of a controller is bound to nothing, or to two targets"

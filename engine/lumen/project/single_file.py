@@ -4,10 +4,10 @@ from pathlib import Path
 
 from lumen.errors import ProjectError, UsageError
 from lumen.language.diagnostics import Diagnostic, has_errors
-from lumen.loading.document import Document
-from lumen.loading.files import MAX_FILE_BYTES
-from lumen.loading.regular_files import read_regular
-from lumen.loading.yaml_reader import parse
+from lumen.project.document import Document
+from lumen.project.files import MAX_FILE_BYTES
+from lumen.project.yaml_reader import parse
+from lumen.upkeep.regular_files import read_regular
 
 
 def parse_file(path: Path) -> tuple[Document | None, list[Diagnostic]]:

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from lumen.loading.line_marks import LineMarks, Mark, closers, marks_of
+from lumen.project.line_marks import LineMarks, Mark, closers, marks_of
 
 KEY = r"[A-Za-z_][\w.]*"
 

@@ -3,7 +3,7 @@
 import wave
 from pathlib import Path
 
-from lumen.loading.files import on_disk
+from lumen.project.files import on_disk
 
 MAX_SOUND_DURATION = 600.0
 """How long a sound may be [s]."""

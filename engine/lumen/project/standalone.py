@@ -10,19 +10,19 @@ from lumen.errors import ProjectError
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.machines import MachineDefinition
 from lumen.language.words import Words
-from lumen.loading.behaviors import build_machine
-from lumen.loading.built_file import BuiltFile, read_file
-from lumen.loading.common_words import COMMON, COMMON_FILE, common_words
-from lumen.loading.complaints import MISSING_KEY
-from lumen.loading.context import check_memory
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.files import composed
-from lumen.loading.linking import link
-from lumen.loading.plain import plain_document
-from lumen.loading.schema import check_schema
-from lumen.loading.single_file import parse_file
-from lumen.loading.words import build_words
+from lumen.project.behaviors import build_machine
+from lumen.project.built_file import BuiltFile, read_file
+from lumen.project.common_words import COMMON, COMMON_FILE, common_words
+from lumen.project.complaints import MISSING_KEY
+from lumen.project.context import check_memory
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.files import composed
+from lumen.project.linking import link
+from lumen.project.plain import plain_document
+from lumen.project.schema import check_schema
+from lumen.project.single_file import parse_file
+from lumen.project.words import build_words
 from lumen.upkeep.garbage import gc_paused
 
 ReadDocument = Callable[[str], tuple[Document | None, list[Diagnostic]]]

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
-from lumen.interpreters.added_verbs import usable_verbs
 from lumen.language.added_verbs import given_arguments
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
@@ -27,12 +26,13 @@ from lumen.language.stories import (
     Visitor,
     VisitorAction,
 )
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.numbers import NOT_A_NUMBER
-from lumen.loading.properties import build_properties, unbound_conditions
-from lumen.loading.routes import duration
-from lumen.loading.schedules import BAD_TIME, schedule
-from lumen.loading.units import BAD_DURATION, seconds
+from lumen.project.added_verbs import usable_verbs
+from lumen.project.document_report import DocumentReport
+from lumen.project.numbers import NOT_A_NUMBER
+from lumen.project.properties import build_properties, unbound_conditions
+from lumen.project.routes import duration
+from lumen.project.schedules import BAD_TIME, schedule
+from lumen.project.units import BAD_DURATION, seconds
 
 DEFAULT_WITHIN = 30.0
 """How long an expectation waits where it does not say [s]."""

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import NodePath, did_you_mean
-from lumen.loading.complaints import MISSING_KEY
-from lumen.loading.document import Document, NodeSpan
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.rulebook import UNKNOWN_VARIABLE
-from lumen.loading.terms import TWO_SHAPES
+from lumen.project.complaints import MISSING_KEY
+from lumen.project.document import Document, NodeSpan
+from lumen.project.document_report import DocumentReport
+from lumen.project.rulebook import UNKNOWN_VARIABLE
+from lumen.project.terms import TWO_SHAPES
 
 
 def spread(report: DocumentReport) -> Any:

@@ -6,10 +6,10 @@ from typing import Any
 
 from lumen.language.controllers import TERM_PARAMETERS, Term
 from lumen.language.diagnostics import ERROR, Code, NodePath
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.formulas import check_formula
-from lumen.loading.numbers import NOT_FINITE
-from lumen.loading.rule_parser import KEYWORDS
+from lumen.project.document_report import DocumentReport
+from lumen.project.formulas import check_formula
+from lumen.project.numbers import NOT_FINITE
+from lumen.project.rule_parser import KEYWORDS
 
 EMPTY_TERM = Code("empty-term", "controllers", ERROR, "a term covers nothing")
 NO_SHAPE = Code("no-shape", "controllers", ERROR, "a term has no shape")

@@ -6,7 +6,7 @@ from typing import Any
 from lumen.language.diagnostics import NodePath
 from lumen.language.language_tags import is_language_tag
 from lumen.language.text_lines import lines_of
-from lumen.loading.document import Document
+from lumen.project.document import Document
 
 
 def whole_text(document: Document, path: NodePath, *, by_language: bool = False) -> str:

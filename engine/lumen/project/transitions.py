@@ -8,13 +8,13 @@ from lumen.language.actions import Template
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.hours import Schedule
 from lumen.language.machines import Approval, Hears, StateKind, Transition
-from lumen.loading.actions import Actions
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.expressions import Expressions
-from lumen.loading.hears_keys import HearsKeys
-from lumen.loading.invocations import invoked
-from lumen.loading.outline import BehaviorOutline, OutlinedState
-from lumen.loading.schedules import schedule
+from lumen.project.actions import Actions
+from lumen.project.document_report import DocumentReport
+from lumen.project.expressions import Expressions
+from lumen.project.hears_keys import HearsKeys
+from lumen.project.invocations import invoked
+from lumen.project.outline import BehaviorOutline, OutlinedState
+from lumen.project.schedules import schedule
 from lumen.talk.hearing import HEARD
 
 CONFLICTING_TARGETS = Code(

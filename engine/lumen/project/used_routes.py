@@ -11,8 +11,8 @@ from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import MachineDefinition
 from lumen.language.routes import Route, RouteUse
-from lumen.loading.memoization import Same, memoize
-from lumen.loading.settings import Settings
+from lumen.project.memoization import Same, memoize
+from lumen.project.settings import Settings
 
 
 class _Uses(NamedTuple):

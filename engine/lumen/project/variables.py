@@ -8,9 +8,9 @@ from typing import Any
 from lumen.fuzzy.weighted import INVERSE_MEMBERSHIPS
 from lumen.language.controllers import VALUE_TERMS, WEIGHTED_DEFUZZIFIERS, Variable
 from lumen.language.diagnostics import ERROR, Code, NodePath
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.numbers import EMPTY_RANGE, NOT_FINITE
-from lumen.loading.terms import build_terms, plain_name
+from lumen.project.document_report import DocumentReport
+from lumen.project.numbers import EMPTY_RANGE, NOT_FINITE
+from lumen.project.terms import build_terms, plain_name
 
 DUPLICATE_VARIABLE = Code("duplicate-variable", "controllers", ERROR, "an input and an output have the same name")
 TERM_WITHOUT_SET = Code("term-without-set", "controllers", ERROR, "a term has no set, but the defuzzifier needs one")

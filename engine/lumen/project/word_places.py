@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from lumen.language.diagnostics import Code, NodePath, Place
 from lumen.language.text_lines import lines_of
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
 
 
 def report_word(

@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.language.machines import Answer
 from lumen.language.words import Words
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 ANYHOW = "anyhow"
 

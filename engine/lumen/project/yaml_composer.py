@@ -11,7 +11,7 @@ from typing import Any
 import yaml
 from yaml.composer import ComposerError
 
-from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES
+from lumen.project.document import MAX_NODE_DEPTH, MAX_NODES
 
 MAX_TAG_DIRECTIVES = 100
 """libyaml compares each with all before it."""

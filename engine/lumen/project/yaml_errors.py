@@ -9,8 +9,8 @@ import yaml
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, Place, mean, nearest
 from lumen.language.text_lines import lines_of
-from lumen.loading.project_folders import kind_of
-from lumen.loading.yaml_composer import UnknownAliasError
+from lumen.project.project_folders import kind_of
+from lumen.project.yaml_composer import UnknownAliasError
 
 MERGE_CONFLICT = Code("merge-conflict", "text", ERROR, "a merge conflict is not resolved: both sides are in the file")
 NOT_UTF8 = Code("not-utf8", "text", ERROR, "a file is not UTF-8 text")
@@ -106,8 +106,8 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         )
     if "quoted scalar" in context or _begins_late(error, lines):
         mark = error.context_mark  # type: ignore[attr-defined]
-    from lumen.loading.mending import mistake  # only where something slipped
-    from lumen.loading.slips import NOT_CLOSED
+    from lumen.project.mending import mistake  # only where something slipped
+    from lumen.project.slips import NOT_CLOSED
 
     if slipped := mistake(text, mark.line, failed, _misfits(file)):
         slip, _ = slipped
@@ -124,7 +124,7 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
 
 def _misfits(file: str) -> Callable[[str], int | None] | None:
     """Counts what the schema of that file refuses in a text; None for a file without a schema."""
-    from lumen.loading.schema import misfits  # it imports what imports this module
+    from lumen.project.schema import misfits  # it imports what imports this module
 
     kind = kind_of(file)
     return partial(misfits, kind) if kind else None

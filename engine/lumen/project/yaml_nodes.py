@@ -9,10 +9,10 @@ import yaml
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place, Related
 from lumen.language.lookalikes import typed
-from lumen.loading.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Document, NodeSpan
-from lumen.loading.slips import BARE_BRACES, QUOTE_BRACES
-from lumen.loading.yaml_composer import PLAIN_TAGS, TooLargeError, compose
-from lumen.loading.yaml_scalars import resolve
+from lumen.project.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Document, NodeSpan
+from lumen.project.slips import BARE_BRACES, QUOTE_BRACES
+from lumen.project.yaml_composer import PLAIN_TAGS, TooLargeError, compose
+from lumen.project.yaml_scalars import resolve
 
 COMPLEX_KEY = Code("complex-key", "text", ERROR, "a key is a list or a map")
 DUPLICATE_KEY = Code("duplicate-key", "text", ERROR, "a key is written twice in the same place")

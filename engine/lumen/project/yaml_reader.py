@@ -10,12 +10,12 @@ from typing import Any
 import yaml
 
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath, Place
-from lumen.loading.document import Document, NodeSpan
-from lumen.loading.memoization import last, memoize
-from lumen.loading.rereading import reread
-from lumen.loading.yaml_composer import TooLargeError, compose
-from lumen.loading.yaml_errors import merge_conflict, not_utf8, syntax_error
-from lumen.loading.yaml_nodes import NodeReader, too_large
+from lumen.project.document import Document, NodeSpan
+from lumen.project.memoization import last, memoize
+from lumen.project.rereading import reread
+from lumen.project.yaml_composer import TooLargeError, compose
+from lumen.project.yaml_errors import merge_conflict, not_utf8, syntax_error
+from lumen.project.yaml_nodes import NodeReader, too_large
 
 EMPTY_FILE = Code("empty-file", "text", ERROR, "a file is empty")
 

@@ -12,7 +12,6 @@ from typing import Any, Generic, TypeVar, get_args
 
 from lumen.errors import BadCommandError
 from lumen.feature import VerbRow
-from lumen.interpreters.added_verbs import time_taken
 from lumen.language.added_verbs import added_verbs, argument_schema, arguments_of
 from lumen.language.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
 from lumen.language.commands import (
@@ -36,10 +35,11 @@ from lumen.language.life import STILL, STILL_STYLE, LifeStyle
 from lumen.language.lights import light_fault
 from lumen.language.robots import Body
 from lumen.language.skills import lack_of
-from lumen.loading.schema import faults
-from lumen.loading.sounds import MAX_SOUND_DURATION
 from lumen.motion.bounds import nearest_angles
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
+from lumen.project.added_verbs import time_taken
+from lumen.project.schema import faults
+from lumen.project.sounds import MAX_SOUND_DURATION
 from lumen.robots.command_parameters import CommandParameters, shown
 from lumen.robots.motion_codec import decode_motion, encode_motion
 

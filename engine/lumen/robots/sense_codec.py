@@ -11,8 +11,8 @@ from lumen.errors import LumenError
 from lumen.feature import SenseRow, distribution_of, owner, table
 from lumen.language.data_url import DataUrl
 from lumen.language.routes import Size
-from lumen.loading.broken_features import blaming, called, faulty, resolved, shown
 from lumen.ports import Battery, Image, Joints, OtherReading, Sonar, Tactile, Whereabouts
+from lumen.project.broken_features import blaming, called, faulty, resolved, shown
 
 if TYPE_CHECKING:
     import numpy as np

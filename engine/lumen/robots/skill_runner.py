@@ -10,8 +10,8 @@ from lumen.errors import RobotError, RobotFailedError, RobotRefusedError
 from lumen.feature import VerbRow, resolve
 from lumen.language.added_verbs import whole_result
 from lumen.language.commands import Do
-from lumen.loading.schema import faults
 from lumen.ports import SkillPerformer
+from lumen.project.schema import faults
 from lumen.robots.command_table import added_verb
 from lumen.upkeep.threads import WatchedThread
 

@@ -9,10 +9,10 @@ from urllib.parse import urlsplit
 from lumen.language.addresses import credentials_of
 from lumen.language.alerts import Alerts, Mail, Recipient, Webhook
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
+from lumen.lint.routes import PASSWORD_IN_FILE
 from lumen.loading.alerts import WHERE
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.routes import PASSWORD_IN_FILE
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 
 ALERT_ADDRESS = Code("alert-address", "alerts", ERROR, "the value of a `webhook` is not a valid web address")
 ALERT_IN_CLEAR = Code("alert-in-clear", "alerts", WARNING, "alerts are sent unencrypted: others can read them")

@@ -4,9 +4,9 @@ import re
 
 from lumen.language.console_settings import ConsoleSettings
 from lumen.language.diagnostics import ERROR, Code
-from lumen.loading.draft import ProjectDraft
+from lumen.lint.routes import PASSWORD_IN_FILE
+from lumen.project.draft import ProjectDraft
 from lumen.rules.alerts import loopback
-from lumen.rules.routes import PASSWORD_IN_FILE
 
 OPEN_CONSOLE = Code("open-console", "robot", ERROR, "other computers can reach the console, and it has no PINs")
 _VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")

@@ -9,12 +9,12 @@ from lumen.interpreters.fleet.conditions import condition_faults
 from lumen.language.addresses import credentials_of
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
 from lumen.language.fleet import Fleet
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.loading.expressions import place_within
-from lumen.loading.project_folders import FLEET_FILE
+from lumen.lint.routes import PASSWORD_IN_FILE
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.expressions import place_within
+from lumen.project.project_folders import FLEET_FILE
 from lumen.rules.alerts import loopback
-from lumen.rules.routes import PASSWORD_IN_FILE
 
 BAD_CONDITION = Code("bad-condition", "fleet", ERROR, "the condition that stops a rollout can't be evaluated")
 BAD_FLEET_KEY = Code("bad-fleet-key", "fleet", ERROR, "the `key` in fleet.yaml is not a public key")

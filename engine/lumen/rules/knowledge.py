@@ -5,9 +5,9 @@ from datetime import date
 from lumen.language.diagnostics import ERROR, WARNING, Code, Place, Related, did_you_mean
 from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.knowledge import Passage
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.lookups import first
+from lumen.lint.lookups import first
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
 from lumen.talk.folding import folded
 
 CLAIMED_TWICE = Code("claimed-twice", "knowledge", WARNING, "two passages have the same question")

@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator, Mapping
 
-from lumen.interpreters.message_fields import FieldKind, SchemaField, message_fields
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.routes import Direction, Route
 from lumen.language.show import SHOW_PATH, DmxLink, MqttLink, OscLink, Show, may_come_from_devices
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.references import known_route
+from lumen.lint.references import known_route
+from lumen.project.document_report import DocumentReport
+from lumen.project.draft import ProjectDraft
+from lumen.project.message_fields import FieldKind, SchemaField, message_fields
 
 SHOW_ADDRESS = Code("show-address", "routes", ERROR, "a topic, an address or a channel is invalid, or is used twice")
 SHOW_DIRECTION = Code("show-direction", "routes", ERROR, "a device can't send on a route, or is not allowed to")

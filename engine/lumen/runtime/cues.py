@@ -7,7 +7,7 @@ from pathlib import Path
 from lumen.language.commands import Cancel, Command, Play, PlaySound, Say, Start
 from lumen.language.events import CUE, Event
 from lumen.language.projects import Project
-from lumen.loading.sounds import sound_duration
+from lumen.project.sounds import sound_duration
 
 _log = logging.getLogger(__name__)
 

@@ -13,7 +13,7 @@ from typing import Any
 from lumen.errors import ModuleError
 from lumen.language.iso_time import iso_time
 from lumen.language.people import PersonName
-from lumen.loading.json_lines import forget_lines
+from lumen.project.json_lines import forget_lines
 
 _log = logging.getLogger(__name__)
 

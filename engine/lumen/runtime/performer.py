@@ -29,8 +29,8 @@ from lumen.language.projects import Project
 from lumen.language.routes import DEFAULT_COMMAND_TTL
 from lumen.language.routing_keys import TOLD, key_of_robot
 from lumen.language.skills import lack_of, tracked, tracking_lack
-from lumen.loading.sounds import sound_duration
 from lumen.ports import Bus, Perform, Robot, RobotCommand
+from lumen.project.sounds import sound_duration
 from lumen.runtime.navigator import Navigator
 from lumen.runtime.questions import Questions
 from lumen.runtime.sending import send

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 from lumen.errors import LumenError
 from lumen.journal.journal_folder import named_bundles
 from lumen.language.projects import Project
-from lumen.loading.files import MAX_PROJECT_BYTES, fingerprint
-from lumen.runtime.home import Home
+from lumen.project.files import MAX_PROJECT_BYTES, fingerprint
+from lumen.project.home import Home
 from lumen.statechart import Snapshot, serialize
 
 SNAPSHOT_FILE, ALIVE_FILE = "snapshot.json", "alive.json"

@@ -10,9 +10,9 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
 
-from lumen.loading.files import Unreadable, fingerprint, read_files
-from lumen.loading.kept_contents import KeptContents
-from lumen.loading.project_folders import ALL_FOLDERS, MOTIONS
+from lumen.project.files import Unreadable, fingerprint, read_files
+from lumen.project.kept_contents import KeptContents
+from lumen.project.project_folders import ALL_FOLDERS, MOTIONS
 from lumen.upkeep.threads import WatchedThread
 
 QUIET_PERIOD = 0.3

@@ -10,12 +10,12 @@ from lumen.fuzzy.evaluator import Evaluator
 from lumen.fuzzy.explanation import Explanation, explain
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import has_errors
-from lumen.loading.controllers import build_controller
-from lumen.loading.derived import derived
-from lumen.loading.document import Document
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.schema import check_schema
-from lumen.loading.single_file import read_document
+from lumen.project.controllers import build_controller
+from lumen.project.derived import derived
+from lumen.project.document import Document
+from lumen.project.document_report import DocumentReport
+from lumen.project.schema import check_schema
+from lumen.project.single_file import read_document
 from lumen.upkeep.arguments import need, need_map, need_numbers, need_path, need_text
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from lumen.errors import UsageError
 from lumen.language import machines
 from lumen.language.events import Event
 from lumen.language.nanoseconds import HALF
-from lumen.loading.derived import derived
-from lumen.loading.standalone import machine_from_dict, machine_from_file
 from lumen.ports import Clock
+from lumen.project.derived import derived
+from lumen.project.standalone import machine_from_dict, machine_from_file
 from lumen.statechart import (
     Snapshot,
     Step,

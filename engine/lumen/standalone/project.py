@@ -4,9 +4,9 @@ from pathlib import Path
 
 from lumen.errors import ProjectError
 from lumen.language.projects import Project
-from lumen.loading.files import read_files
-from lumen.loading.packaged import find_project
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from lumen.project.packaged import find_project
 from lumen.upkeep.garbage import gc_paused
 
 __all__ = ["Project", "load"]

@@ -2,8 +2,8 @@
 
 from lumen.language.commands import Do
 from lumen.language.diagnostics import ERROR, Code
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.walk import action_sites
+from lumen.lint.walk import action_sites
+from lumen.project.draft import ProjectDraft
 from lumen_sprayer.settings import Sprayer
 
 NO_NOZZLE = Code("no-nozzle", "robot", ERROR, "an action sprays from a nozzle that lumen.yaml does not list")

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 SCHEMA = {
     "description": "A sprayer of scents beside the robot",

@@ -11,7 +11,7 @@ from jsonschema import Draft4Validator
 from lumen.app.lint.findings import Findings
 from lumen.cli.render import finding_formats, render
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
-from lumen.loading.files import Unreadable
+from lumen.project.files import Unreadable
 from tests.fetched import fetched
 from tests.tables import for_each
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from scripts.rule_pages import BASE, DOCS, said, written
 
-from lumen.loading.files import read_files
-from lumen.rules import check_files
-from lumen.rules.codes import codes, families
-from lumen.rules.pages import page
+from lumen.lint import check_files
+from lumen.lint.codes import codes, families
+from lumen.lint.pages import page
+from lumen.project.files import read_files
 from tests.scanning import matching
 from tests.tables import for_each
 
@@ -28,7 +28,7 @@ def test_the_project_below_the_examples_is_sound() -> None:
 
 
 def test_every_code_has_a_page_and_every_page_a_code() -> None:
-    assert {file.stem for file in matching(Path(str(files("lumen.rules.pages"))), "*.md")} == codes().keys()
+    assert {file.stem for file in matching(Path(str(files("lumen.lint.pages"))), "*.md")} == codes().keys()
 
 
 def judge(code: str) -> None:

@@ -30,7 +30,7 @@ from lumen.interpreters.fleet.presence import (
     WAITING,
     RobotPresence,
 )
-from lumen.loading.files import fingerprint
+from lumen.project.files import fingerprint
 
 MOST_TRIES = 2
 """How often a process may end while a bundle is on probation, until the robot goes without it."""

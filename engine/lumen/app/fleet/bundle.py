@@ -10,8 +10,8 @@ from typing import Any
 
 from lumen.app.fleet.signing import BUNDLE, Signer, verified
 from lumen.errors import UsageError
-from lumen.loading.files import MAX_PROJECT_BYTES, belongs, fingerprint
-from lumen.loading.project_folders import FLEET_FILE
+from lumen.project.files import MAX_PROJECT_BYTES, belongs, fingerprint
+from lumen.project.project_folders import FLEET_FILE
 from lumen.runtime.snapshot_store import DAMAGED_BUNDLE
 
 HASH = re.compile(r"[0-9a-f]{64}")

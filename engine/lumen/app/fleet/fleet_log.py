@@ -10,7 +10,7 @@ from lumen.buses.stream_reader import StreamEntry
 from lumen.interpreters.fleet.counting import rates
 from lumen.interpreters.fleet.presence import HOURS, MAX_TEXT, measures_from
 from lumen.language.fleet import FleetMeasure
-from lumen.runtime.home import Home
+from lumen.project.home import Home
 
 FILE = "log.json"
 MAX_INCIDENTS, MAX_IDS, MAX_BUNDLES = 200, 2000, 4

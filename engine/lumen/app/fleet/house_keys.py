@@ -5,8 +5,8 @@ from collections.abc import Mapping
 
 from lumen.errors import UsageError
 from lumen.feature import table
-from lumen.loading.files import belongs
-from lumen.loading.project_folders import MAIN_FILE
+from lumen.project.files import belongs
+from lumen.project.project_folders import MAIN_FILE
 
 HOUSE_KEYS = (
     "house", "robot", "robots", "hall", "stage", "units", "bus", "aliases", "timezone", "modules",

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.memory import AgentMemory, keep, memory_file, remember
-from lumen.loading.files import belongs, on_disk, read_files
-from lumen.loading.project_folders import FLEET_FILE
-from lumen.runtime.home import Home, home_of
+from lumen.project.files import belongs, on_disk, read_files
+from lumen.project.home import Home, home_of
+from lumen.project.project_folders import FLEET_FILE
 
 FOLDER = "fleet"
 

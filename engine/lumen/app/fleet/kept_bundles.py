@@ -6,9 +6,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from lumen.app.fleet.bundle import HASH, BadBundleError, packed, unpacked
-from lumen.loading.files import fingerprint
-from lumen.loading.regular_files import read_regular
+from lumen.project.files import fingerprint
 from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.regular_files import read_regular
 
 MAX_FILE = 40_000_000
 

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from lumen.interpreters.fleet.orders import FollowedOrder
-from lumen.runtime.home import Home
+from lumen.project.home import Home
 
 MAX_KEPT = 6
 """Bundles of which it is remembered what they are called in the fleet."""

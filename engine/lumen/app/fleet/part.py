@@ -21,10 +21,10 @@ from lumen.errors import BusError
 from lumen.language.diagnostics import has_errors
 from lumen.language.events import Event
 from lumen.language.fleet import Fleet
-from lumen.loading.files import fingerprint, read_files
 from lumen.loading.fleet import read_fleet
 from lumen.ports import Message
-from lumen.runtime.home import Home
+from lumen.project.files import fingerprint, read_files
+from lumen.project.home import Home
 from lumen.runtime.snapshot_store import SnapshotStore
 
 HOUSE_VARIABLE = "LUMEN_HOUSE"

@@ -21,7 +21,7 @@ from lumen.language.diagnostics import has_errors
 from lumen.language.fleet import Fleet
 from lumen.loading.fleet import read_fleet
 from lumen.ports import Bus
-from lumen.runtime.home import Home, home_of
+from lumen.project.home import Home, home_of
 from lumen.upkeep.private_folder import private_folder
 
 LOOK_PERIOD = 1.0

@@ -19,11 +19,11 @@ from lumen.journal.journal_folder import JOURNAL_FOLDER, newest
 from lumen.journal.redaction import names, redact
 from lumen.language.counts import counted
 from lumen.language.people import PersonName, name_key
-from lumen.loading.json_lines import forget_lines, line_names
 from lumen.modules.eyes.eyes import FACES_FILE
 from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
-from lumen.runtime.home import Home
+from lumen.project.home import Home
+from lumen.project.json_lines import forget_lines, line_names
 from lumen.runtime.snapshot_store import DAMAGED_BUNDLE, SNAPSHOT_FILE
 
 DRAFT_AGE = 5.0

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
-from lumen.loading.engine_files import surroundings
-from lumen.loading.looks import Looks, unchanged
+from lumen.project.engine_files import surroundings
+from lumen.project.looks import Looks, unchanged
 from lumen.upkeep.cache_folder import CacheFolder
 
 MAX_KEPT = 256
@@ -29,7 +29,7 @@ def known_or_checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic
     if known is not None:
         return known
     from lumen.app.lint.kept_memory import keep_memory, recall_memory
-    from lumen.rules import check_files
+    from lumen.lint import check_files
 
     recall_memory(root)
     looks = Looks()

@@ -1,6 +1,6 @@
 """What lint worked out of each file of a project, kept for the next lint of it: most files are as they were.
 
-It is what a process that lives on remembers (loading/memoization.py), in the user's own cache, under a hash of where
+It is what a process that lives on remembers (project/memoization.py), in the user's own cache, under a hash of where
 the project lies, of the engine's own files and of Python; time zones and libraries have to be as they were. Each part
 of it counts only for the very content that it was made of.
 """
@@ -10,9 +10,9 @@ import json
 import pickle
 from pathlib import Path
 
-from lumen.loading.engine_files import surroundings
-from lumen.loading.looks import Looks, unchanged
-from lumen.loading.memoization import begin, newly_made, packed, unpack
+from lumen.project.engine_files import surroundings
+from lumen.project.looks import Looks, unchanged
+from lumen.project.memoization import begin, newly_made, packed, unpack
 from lumen.upkeep.cache_folder import CacheFolder
 
 MAX_KEPT = 8

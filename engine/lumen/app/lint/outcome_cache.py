@@ -11,13 +11,13 @@ from typing import Any
 
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
-from lumen.loading.engine_files import code_hash
-from lumen.loading.lending import model_files
-from lumen.loading.project_folders import MODELS
 from lumen.ports import Perform
+from lumen.project.engine_files import code_hash
+from lumen.project.home import home_of
+from lumen.project.lending import model_files
+from lumen.project.project_folders import MODELS
 from lumen.robots.motion_codec import encode_motion
 from lumen.rules.physics import Case, Outcome
-from lumen.runtime.home import home_of
 from lumen.upkeep.private_folder import private_folder
 
 CODE = ("lumen.fuzzy", "lumen.interpreters", "lumen.language", "lumen.motion", "lumen.robots", "lumen.rules.physics")

@@ -15,8 +15,8 @@ from lumen.extras import demand
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
-from lumen.loading.lending import model_files
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.lending import model_files
 from lumen.rules.physics import CaseResult, Outcome, attempt
 from lumen.rules.physics.cases import cases
 from lumen.rules.physics.verdict import findings

@@ -8,7 +8,7 @@ from lumen.app.lint.findings import Findings
 from lumen.app.reload.against import against
 from lumen.app.versions import version
 from lumen.language.diagnostics import Diagnostic
-from lumen.rules import check_files
+from lumen.lint import check_files
 
 
 def compared(found: Findings, name: str, wanted: Callable[[Diagnostic], bool]) -> Findings:

@@ -10,11 +10,11 @@ from lumen.app.lint.findings import Findings
 from lumen.app.lint.kept_findings import known_or_checked
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.common_words import own_files
-from lumen.loading.files import MAX_FILE_BYTES, belongs, composed, read_files
-from lumen.loading.own_project import own_project
-from lumen.loading.packaged import project_above
-from lumen.loading.project_folders import MAIN_FILE
+from lumen.project.common_words import own_files
+from lumen.project.files import MAX_FILE_BYTES, belongs, composed, read_files
+from lumen.project.own_project import own_project
+from lumen.project.packaged import project_above
+from lumen.project.project_folders import MAIN_FILE
 
 Wanted = Callable[[Diagnostic], bool]
 STDIN = "-"
@@ -79,7 +79,7 @@ def checked(root: Path, files: Mapping[str, bytes], *, kept: bool = False) -> tu
     """Everything wrong with these files; with `kept` also from what was found in the very same ones before."""
     if kept:
         return known_or_checked(root, files)
-    from lumen.rules import check_files  # not where everything is known
+    from lumen.lint import check_files  # not where everything is known
 
     return check_files(root, files)[1]
 

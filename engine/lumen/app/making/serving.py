@@ -16,8 +16,8 @@ from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.services import Services
 from lumen.app.status import LastReload
 from lumen.journal.journal_writer import JournalWriter
-from lumen.loading.project_folders import FLEET_FILE
 from lumen.motion.bounds import analyse
+from lumen.project.project_folders import FLEET_FILE
 from lumen.robots.person_hold import StoppedBy
 from lumen.runtime.resuming import FreshStart, Resumption
 

@@ -11,7 +11,7 @@ from lumen.app.reload.alerting import RefusalPart
 from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader
 from lumen.app.services import Services
-from lumen.runtime.home import home_of
+from lumen.project.home import home_of
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 
 

@@ -11,9 +11,9 @@ from lumen.errors import UsageError
 from lumen.language.events import Event
 from lumen.language.stories import Story, TouchSensor
 from lumen.ports import FeelsTouch, RobotCommand
+from lumen.project.home import home_of
 from lumen.robots.command_receiver import CommandListener
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE
-from lumen.runtime.home import home_of
 from lumen.runtime.resuming import FreshStart, Resumption
 
 

@@ -9,7 +9,7 @@ from lumen.feature import Feature, PartRow, described, distribution_of
 from lumen.language.commands import Command, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.loading.broken_features import faulty, shown
+from lumen.project.broken_features import faulty, shown
 from lumen.runtime.loop import Observer
 from lumen.runtime.troubles import RunTrouble
 from lumen.statechart import Step

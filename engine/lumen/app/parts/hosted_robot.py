@@ -18,10 +18,10 @@ from lumen.language.events import Event
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
+from lumen.project.home import home_of
 from lumen.robots.deduplication_log import DEDUPLICATION_FILE
 from lumen.robots.person_hold import StoppedBy
 from lumen.robots.remote import RobotHost
-from lumen.runtime.home import home_of
 from lumen.runtime.journal import Journal
 from lumen.runtime.presence import BRAIN, ROBOT_PART, Presence
 from lumen.upkeep.threads import WatchedThread

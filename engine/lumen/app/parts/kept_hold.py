@@ -3,9 +3,9 @@
 from datetime import datetime
 from pathlib import Path
 
+from lumen.project.home import Home
 from lumen.robots.command_receiver import CommandListener
 from lumen.robots.person_hold import PersonHold, StoppedBy
-from lumen.runtime.home import Home
 
 STOPPED_FILE = "stopped.json"
 

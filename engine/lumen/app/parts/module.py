@@ -14,9 +14,9 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
-from lumen.loading.broken_features import faults_reported
 from lumen.modules.module import Module
 from lumen.ports import Bus
+from lumen.project.broken_features import faults_reported
 from lumen.runtime.presence import Presence
 
 EYES_TIMEOUT = 60.0

@@ -6,9 +6,9 @@ from pathlib import Path
 from lumen.errors import LumenError, UsageError
 from lumen.feature import owner, table
 from lumen.language.projects import Project
-from lumen.loading.broken_features import blaming, faulty, resolved, shown
 from lumen.modules.module import Module
 from lumen.ports import Bus
+from lumen.project.broken_features import blaming, faulty, resolved, shown
 
 
 def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Module:

@@ -22,7 +22,7 @@ from lumen.formats.recordings.recording_file import demand_recording, renamed, w
 from lumen.language.counts import counted
 from lumen.language.projects import Project
 from lumen.language.retention import RecordingSettings
-from lumen.runtime.home import home_of
+from lumen.project.home import home_of
 
 Telling = Callable[[str], None]
 

@@ -14,11 +14,11 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock, RobotCommand
+from lumen.project.home import Home
 from lumen.robots.command_table import row_of
 from lumen.robots.person_hold import StoppedBy, on_head
 from lumen.robots.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import DelegatedTracking
-from lumen.runtime.home import Home
 from lumen.runtime.loop import Observer
 from lumen.runtime.presence import BRAIN, HERE, MOTION, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.resuming import FreshStart, Resumption

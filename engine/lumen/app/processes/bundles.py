@@ -9,11 +9,11 @@ from lumen.app.parts.part import Part
 from lumen.app.reload.requests import status_key
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.loading.chosen_robot import as_robot
-from lumen.loading.files import fingerprint, read_files
 from lumen.motion.bounds import analyse
 from lumen.ports import Bus, Message
-from lumen.runtime.home import Home, home_of
+from lumen.project.chosen_robot import as_robot
+from lumen.project.files import fingerprint, read_files
+from lumen.project.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 from lumen.runtime.watcher import SWITCH_INTERVAL
 from lumen.upkeep.threads import WatchedThread
@@ -60,7 +60,7 @@ class BundleFollower(Part):
             self._wanted.put(body["after"])
 
     def _run(self) -> None:
-        from lumen.rules import check_files  # with all the rules, of which one process alone needs none
+        from lumen.lint import check_files  # with all the rules, of which one process alone needs none
 
         missed = ""
         while (wanted := self._latest()) is not None:

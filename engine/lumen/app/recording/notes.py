@@ -15,8 +15,8 @@ from lumen.journal.journal_file import JOURNAL_SUFFIX
 from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.iso_time import iso_time
 from lumen.language.projects import Project
-from lumen.loading.files import fingerprint, read_files
-from lumen.runtime.home import Home, home_of
+from lumen.project.files import fingerprint, read_files
+from lumen.project.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 
 NOTES = "lumen"

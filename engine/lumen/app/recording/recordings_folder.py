@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from lumen.errors import UsageError
-from lumen.runtime.home import Home
+from lumen.project.home import Home
 from lumen.upkeep.private_folder import private_folder
 
 RECORDINGS_FOLDER, RING_FOLDER = "recordings", "ring"

@@ -10,8 +10,8 @@ from lumen.formats.recordings.encoding import nanoseconds
 from lumen.formats.recordings.foxglove import NANO, form_class, foxglove_channel, stamp
 from lumen.formats.recordings.recorded import RecordedMessage
 from lumen.language.projects import Project
-from lumen.loading.lending import model_files
 from lumen.ports import Joints, Message, Sense
+from lumen.project.lending import model_files
 from lumen.robots.sense_codec import decode_reading
 
 if TYPE_CHECKING:

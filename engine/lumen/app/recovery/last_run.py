@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.app.parts.kept_hold import kept_hold
 from lumen.language.iso_time import iso_time
-from lumen.runtime.home import Home, home_of
+from lumen.project.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 
 

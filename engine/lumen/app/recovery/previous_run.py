@@ -12,8 +12,8 @@ from lumen.errors import LumenError, ProjectError
 from lumen.insight.changes import changes
 from lumen.insight.migration import Refusal
 from lumen.language.projects import Project
-from lumen.loading.chosen_robot import as_robot
-from lumen.runtime.crash_counter import MAX_CRASHES
+from lumen.project.chosen_robot import as_robot
+from lumen.project.crash_counter import MAX_CRASHES
 from lumen.runtime.resuming import FreshStart, Resumption, resume
 from lumen.runtime.snapshot_store import SNAPSHOT_VERSION, SnapshotStore, StoredSnapshot
 from lumen.statechart import deserialize

@@ -10,8 +10,8 @@ from lumen.journal.journal_writer import JournalWriter
 from lumen.language.projects import Project
 from lumen.language.retention import JournalRetention
 from lumen.language.stories import Story
-from lumen.loading.files import fingerprint, read_files
-from lumen.runtime.home import Home, home_of
+from lumen.project.files import fingerprint, read_files
+from lumen.project.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 from lumen.upkeep.private_folder import private_folder
 

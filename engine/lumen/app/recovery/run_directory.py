@@ -18,10 +18,10 @@ from lumen.buses.addresses import within_process
 from lumen.buses.local import LocalBusServer
 from lumen.errors import UsageError
 from lumen.language.projects import Project
-from lumen.loading.chosen_robot import as_robot
 from lumen.ports import Bus
+from lumen.project.chosen_robot import as_robot
+from lumen.project.home import ADDRESS_FILE, Home, home_of
 from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
-from lumen.runtime.home import ADDRESS_FILE, Home, home_of
 from lumen.runtime.resuming import FreshStart, Resumption
 
 _log = logging.getLogger(__name__)

@@ -11,8 +11,8 @@ from lumen.app.reload.validator import Validation
 from lumen.errors import FatalFilesError, ProjectError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
-from lumen.loading.files import fingerprint, read_files
-from lumen.runtime.crash_counter import MAX_CRASHES
+from lumen.project.crash_counter import MAX_CRASHES
+from lumen.project.files import fingerprint, read_files
 from lumen.runtime.watcher import SavedFiles
 
 

@@ -9,7 +9,7 @@ from lumen.insight.migration.identity import Identity
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.rules.on_request import RELOAD_FORGETS, RELOAD_MOVES, RELOAD_REFUSED
+from lumen.lint.on_request import RELOAD_FORGETS, RELOAD_MOVES, RELOAD_REFUSED
 from lumen.statechart.type_checks import type_checks, type_name
 
 BOUND = 10_000

@@ -14,10 +14,10 @@ from pathlib import Path
 
 from lumen.app.reload.delta import Delta, DeltaDecoder
 from lumen.language.projects import Project
-from lumen.loading.chosen_robot import chosen_robot
-from lumen.loading.engine_files import engine, listed
-from lumen.loading.files import fingerprint
-from lumen.loading.project_folders import MODELS
+from lumen.project.chosen_robot import chosen_robot
+from lumen.project.engine_files import engine, listed
+from lumen.project.files import fingerprint
+from lumen.project.project_folders import MODELS
 from lumen.upkeep.cache_folder import CacheFolder
 
 """The folder of which lint asks which files there are, beside those that it reads."""

@@ -11,8 +11,8 @@ from typing import Any
 from lumen.journal.journal_writer import JournalWriter
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
-from lumen.runtime.crash_counter import CrashCounter
-from lumen.runtime.home import Home
+from lumen.project.crash_counter import CrashCounter
+from lumen.project.home import Home
 from lumen.runtime.journal import Journal
 from lumen.runtime.loop import BehaviorLoop
 from lumen.runtime.snapshot_store import SnapshotStore

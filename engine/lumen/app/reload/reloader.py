@@ -26,10 +26,10 @@ from lumen.language.causes import Cause
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.replay_check import ReplayCheck
-from lumen.loading.chosen_robot import as_robot
-from lumen.loading.files import read_files
 from lumen.motion.bounds import analyse
 from lumen.ports import Message
+from lumen.project.chosen_robot import as_robot
+from lumen.project.files import read_files
 from lumen.runtime.watcher import QUIET_PERIOD, FileWatcher, SavedFiles
 
 _log = logging.getLogger(__name__)

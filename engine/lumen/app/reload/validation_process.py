@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from lumen.app.reload.delta import DeltaEncoder
 from lumen.language.projects import Project
-from lumen.rules import check_files
+from lumen.lint import check_files
 from lumen.upkeep.garbage import gc_paused
 from lumen.upkeep.heap import give_back
 from lumen.upkeep.judge_process import ANSWER_TIMEOUT, MAX_MEMORY, answering

@@ -17,8 +17,8 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.language.replay_check import ReplayCheck
 from lumen.language.stories import Story
-from lumen.loading.files import fingerprint
-from lumen.loading.project_folders import STORIES
+from lumen.project.files import fingerprint
+from lumen.project.project_folders import STORIES
 from lumen.runtime.watcher import SavedFiles
 from lumen.statechart.compiled_machine import prepare
 

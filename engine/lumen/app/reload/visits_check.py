@@ -83,7 +83,7 @@ def check_visits(root: Path, new: Project, running: str, budget: float) -> Visit
     from lumen.app.replaying.latest_visits import latest_first
     from lumen.app.replaying.other_files import VisitPlayer
     from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
-    from lumen.runtime.home import home_of
+    from lumen.project.home import home_of
 
     until = time.monotonic() + budget
 

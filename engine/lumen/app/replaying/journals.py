@@ -11,7 +11,7 @@ from lumen.insight.replay.journal_clock import JournalClock
 from lumen.journal.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
 from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.iso_time import time_of_day
-from lumen.runtime.home import home_of
+from lumen.project.home import home_of
 
 DAYS = {"today": 0, "yesterday": 1}
 

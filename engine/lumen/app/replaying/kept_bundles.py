@@ -5,9 +5,9 @@ from pathlib import Path
 
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.loading.chosen_robot import as_robot
-from lumen.rules import check_files
-from lumen.runtime.home import Home, home_of
+from lumen.lint import check_files
+from lumen.project.chosen_robot import as_robot
+from lumen.project.home import Home, home_of
 from lumen.runtime.snapshot_store import SnapshotStore
 
 

@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 from lumen.insight.replay.entries import JournalInput
 from lumen.insight.replay.visits import RecordedVisit
-from lumen.interpreters.added_verbs import usable_verbs
 from lumen.language.command_data import started
 from lumen.language.controller_events import controller_events
 from lumen.language.events import CLOCK_SET, Event
@@ -23,6 +22,7 @@ from lumen.language.stories import (
     VisitorAction,
 )
 from lumen.language.verbs import VERBS
+from lumen.project.added_verbs import usable_verbs
 from lumen.runtime.visitor import APPROACH_DISTANCE, SPEECH_ROUTE, VISITOR_SPEED
 from lumen.statechart.command_ids import result_of
 

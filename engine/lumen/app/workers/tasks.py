@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 
 from lumen.app.workers.work_kit import UnpackedKit
 from lumen.errors import WorkersError
-from lumen.loading.engine_files import code_hash
-from lumen.loading.memoization import memoize
+from lumen.project.engine_files import code_hash
+from lumen.project.memoization import memoize
 
 PACKAGES = ("lumen-robot", "mujoco", "dm-control", "numpy")
 """What outcomes depend on, beside Python."""

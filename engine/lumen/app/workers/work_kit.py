@@ -12,8 +12,8 @@ from functools import cached_property
 from pathlib import Path
 
 from lumen.language.projects import Project
-from lumen.loading.project_folders import MODELS
-from lumen.rules import check_files
+from lumen.lint import check_files
+from lumen.project.project_folders import MODELS
 
 
 @dataclass(frozen=True)

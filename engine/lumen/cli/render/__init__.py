@@ -5,7 +5,7 @@ from typing import Protocol
 
 from lumen.app.lint.findings import Findings
 from lumen.feature import owner, table
-from lumen.loading.broken_features import called_for_text
+from lumen.project.broken_features import called_for_text
 
 
 class Renderer(Protocol):

@@ -7,7 +7,7 @@ from lumen.cli.render.terminal_text import SEVERITY_COLOURS, clean, summary, wid
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.text_lines import lines_of
-from lumen.loading.files import Unreadable
+from lumen.project.files import Unreadable
 
 MAX_EXCERPT_WIDTH = 140
 """Characters of a line that are shown; of a longer one those around the word."""

@@ -2,7 +2,7 @@
 
 from lumen.app.verdict import Verdict
 from lumen.feature import owner, table
-from lumen.loading.broken_features import called_for_text
+from lumen.project.broken_features import called_for_text
 
 
 def verdict_formats() -> tuple[str, ...]:

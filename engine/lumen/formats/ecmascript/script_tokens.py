@@ -5,7 +5,7 @@ from math import isinf
 
 from lumen.expressions.scope import MAX_EXPRESSION_LENGTH
 from lumen.expressions.tokens import Token
-from lumen.loading.yaml_scalars import MAX_DIGITS
+from lumen.project.yaml_scalars import MAX_DIGITS
 
 _TOKEN = re.compile(
     r"""(?P<blank>(?:\s|//[^\n]*|/\*.*?\*/)+)

@@ -21,10 +21,10 @@ from lumen.language.controllers import (
 )
 from lumen.language.counts import counted
 from lumen.language.diagnostics import Place
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.plain import plain_document
-from lumen.loading.rule_parser import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
-from lumen.loading.terms import build_terms
+from lumen.project.document_report import DocumentReport
+from lumen.project.plain import plain_document
+from lumen.project.rule_parser import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
+from lumen.project.terms import build_terms
 
 _UNFIT = re.compile(r"[^\w\-]+")
 _ENDLESS = ("triangle", "trapezoid", "binary", "rectangle")

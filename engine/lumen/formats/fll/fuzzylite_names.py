@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from math import inf
 
 from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, S_NORMS, T_NORMS, TERM_PARAMETERS
-from lumen.loading.numbers import LEAST_NUMBER
+from lumen.project.numbers import LEAST_NUMBER
 
 
 def _camel(word: str) -> str:

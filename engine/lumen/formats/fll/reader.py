@@ -15,7 +15,7 @@ from lumen.formats.fll.infix_formulas import read_formula
 from lumen.formats.known import FormatTable, Known
 from lumen.language.controllers import ACTIVATIONS, S_NORMS, T_NORMS, WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.loading.rule_parser import RuleWord
+from lumen.project.rule_parser import RuleWord
 
 _SIDES = {"InputVariable": "inputs", "OutputVariable": "outputs"}
 _VARIABLE = frozenset(("description", "enabled", "range", "lock-range", "term"))

@@ -17,7 +17,7 @@ from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
 from lumen.formats.scxml.state_tree import ScxmlStateTree, regular
 from lumen.formats.xml_elements import XmlElement
 from lumen.language.diagnostics import Place
-from lumen.loading.transitions import rivals
+from lumen.project.transitions import rivals
 from lumen.talk.hearing import HEARD
 
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*")

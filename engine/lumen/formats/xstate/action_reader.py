@@ -15,10 +15,10 @@ from lumen.formats.xstate.names import XStateNames
 from lumen.language.actions import PARENT
 from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.numbers import is_number
-from lumen.loading.behaviors import build_machine
-from lumen.loading.document_report import DocumentReport
-from lumen.loading.plain import plain_document
-from lumen.loading.schema import check_schema
+from lumen.project.behaviors import build_machine
+from lumen.project.document_report import DocumentReport
+from lumen.project.plain import plain_document
+from lumen.project.schema import check_schema
 
 EXPRESSION_GUARD = "lumen.expression"
 HEARS_GUARD = "lumen.hears"

@@ -7,9 +7,9 @@ from typing import Any
 from lumen.formats.conversion_findings import broken, check_size
 from lumen.formats.foreign_json import foreign_json
 from lumen.language.diagnostics import NodePath, Place
-from lumen.loading.document import Document
-from lumen.loading.yaml_nodes import DUPLICATE_KEY
-from lumen.loading.yaml_reader import parse
+from lumen.project.document import Document
+from lumen.project.yaml_nodes import DUPLICATE_KEY
+from lumen.project.yaml_reader import parse
 
 MAX_JSON_LEVELS = 95
 """Objects and lists inside each other."""

@@ -7,7 +7,7 @@ from lumen.formats.xstate.action_reader import HEARS_GUARD, XStateActionReader
 from lumen.formats.xstate.known import BOOLEANS, losses
 from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.language.diagnostics import NodePath
-from lumen.loading.transitions import rivals
+from lumen.project.transitions import rivals
 
 
 class XStateTransitionReader:

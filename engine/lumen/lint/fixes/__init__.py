@@ -9,14 +9,14 @@ from typing import Any
 
 from lumen.feature import owner, resolve, table
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.broken_features import blaming, faulty, shown
-from lumen.rules.codes import codes
-from lumen.rules.fixes.edits import Edit, FileText, Fix, edited
-from lumen.rules.fixes.misspellings import outnumbered, slip
+from lumen.lint.codes import codes
+from lumen.lint.fixes.edits import Edit, FileText, Fix, edited
+from lumen.lint.fixes.misspellings import outnumbered, slip
+from lumen.project.broken_features import blaming, faulty, shown
 
 __all__ = ["Edit", "FileText", "Fix", "edited", "fixes"]
 
-SLIP = "lumen.rules.fixes.misspellings:slip"
+SLIP = "lumen.lint.fixes.misspellings:slip"
 """The repair of a word that is unknown or wrong, if its code has no other."""
 
 

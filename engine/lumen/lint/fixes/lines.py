@@ -3,8 +3,8 @@
 import re
 
 from lumen.language.diagnostics import Diagnostic, Place
-from lumen.loading.yaml_errors import TAB_WIDTHS, TABBED
-from lumen.rules.fixes.edits import Edit, FileText, Fix
+from lumen.lint.fixes.edits import Edit, FileText, Fix
+from lumen.project.yaml_errors import TAB_WIDTHS, TABBED
 
 _COMMENT = re.compile(r"[ \t]*#[ \t]*lumen:[ \t]*ignore.*")
 

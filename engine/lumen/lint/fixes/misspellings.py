@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 
 from lumen.language.diagnostics import Diagnostic
-from lumen.rules.fixes.edits import Edit, FileText, Fix
+from lumen.lint.fixes.edits import Edit, FileText, Fix
 
 _MEANT = re.compile(r"did you mean `([^`]+)`\?")
 _INSTEAD = re.compile(r"write `(true|false)`|leave out the quotes: (\S+)")

@@ -14,8 +14,8 @@ from importlib.resources import files
 from typing import NamedTuple
 
 from lumen.feature import resolve, rows
-from lumen.loading.broken_features import blaming
-from lumen.rules.codes import codes
+from lumen.lint.codes import codes
+from lumen.project.broken_features import blaming
 
 _FENCE = re.compile(
     r"^```(?P<language>\w+) (?P<file>\S+?)(?::(?P<line>\d+):(?P<first>\d+)-(?P<last>\d+))?(?: (?P<note>[^\n]+))?\n"

@@ -7,8 +7,8 @@ from pythonosc.osc_message_builder import BuildError, OscMessageBuilder
 from pythonosc.osc_packet import OscPacket, ParseError
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import FieldKind, SchemaField
 from lumen.language.numbers import is_finite_number, is_number
+from lumen.project.message_fields import FieldKind, SchemaField
 
 
 def message_of(address: str, body: Any, fields: Sequence[SchemaField]) -> bytes:

@@ -4,7 +4,7 @@ import struct
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import SchemaField
+from lumen.project.message_fields import SchemaField
 
 CHANNELS = 512
 PORT = 5568

@@ -9,10 +9,10 @@ from contextlib import suppress
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import SchemaField
 from lumen.language.show import DmxLink
 from lumen.modules.show.channels import CHANNELS, PORT, channel_level, data_packet, multicast_group
 from lumen.modules.show.health import LinkHealth
+from lumen.project.message_fields import SchemaField
 
 KEEP_ALIVE = 0.8
 """How often levels are sent that do not change [s]; E1.31 (6.6.2) wants 0.8 to 1.0."""

@@ -11,12 +11,12 @@ from paho.mqtt.client import Client, MQTTMessage
 from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode, MQTTProtocolVersion
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import SchemaField
 from lumen.language.routes import Carried, Route
 from lumen.language.show import MqttLink
 from lumen.modules.show.device_link import TakeFromDevice
 from lumen.modules.show.health import LinkHealth
 from lumen.modules.show.payloads import body_of_payload, payload_of
+from lumen.project.message_fields import SchemaField
 from lumen.upkeep.drops import Drops
 from lumen.upkeep.threads import WatchedThread
 

@@ -7,11 +7,11 @@ from contextlib import suppress
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import SchemaField
 from lumen.language.show import OscLink
 from lumen.modules.show.arguments import body_of_arguments, message_of, messages_of
 from lumen.modules.show.device_link import TakeFromDevice
 from lumen.modules.show.health import LinkHealth
+from lumen.project.message_fields import SchemaField
 from lumen.upkeep.drops import Drops
 from lumen.upkeep.threads import WatchedThread
 

@@ -5,7 +5,7 @@ from typing import Any
 import orjson
 
 from lumen.errors import ModuleError
-from lumen.interpreters.message_fields import FieldKind, SchemaField
+from lumen.project.message_fields import FieldKind, SchemaField
 
 
 def payload_of(body: Any, field: SchemaField | None) -> bytes:

@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any
 
 from lumen.errors import BusError, ModuleError
-from lumen.interpreters.message_fields import SchemaField, message_fields
 from lumen.language.modules import SHOW
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
@@ -17,6 +16,7 @@ from lumen.modules.module import Module
 from lumen.modules.show.device_link import DeviceLink
 from lumen.modules.show.health import LinkHealth
 from lumen.ports import Bus, Message, MessageHandler, UsesBroker
+from lumen.project.message_fields import SchemaField, message_fields
 from lumen.upkeep.drops import Drops
 from lumen.upkeep.ratelimit import RateLimiter
 

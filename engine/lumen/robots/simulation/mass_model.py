@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.language.roles import SIDES
-from lumen.loading.packaged_models import mjcf_path
+from lumen.project.packaged_models import mjcf_path
 
 
 class MassModel:

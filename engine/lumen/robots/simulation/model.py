@@ -10,7 +10,7 @@ from dm_control import mjcf
 from lumen.errors import RobotModelError
 from lumen.language.robots import Body
 from lumen.language.roles import BaseKind
-from lumen.loading.packaged_models import mjcf_path
+from lumen.project.packaged_models import mjcf_path
 from lumen.robots.simulation.added_servos import add_servos
 from lumen.robots.simulation.backlash import loosen
 from lumen.robots.simulation.model_terms import ROBOT_PREFIX, STAGE_SITE, Variation

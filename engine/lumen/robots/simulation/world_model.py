@@ -14,8 +14,8 @@ import numpy as np
 from dm_control.mujoco import Physics, wrapper
 
 from lumen.language.robots import Body
-from lumen.loading.engine_files import files_hash
-from lumen.loading.memoization import memoize
+from lumen.project.engine_files import files_hash
+from lumen.project.memoization import memoize
 from lumen.robots.simulation.model_terms import Variation
 from lumen.upkeep.cache_folder import CacheFolder
 

@@ -9,9 +9,9 @@ from lumen.language.commands import Play, Posture, Wake, Walk
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
-from lumen.loading.project_folders import LIFE_FOLDER, MOTIONS, PASSAGES, is_robots_own
 from lumen.motion.postures import standing
 from lumen.ports import Live, Perform, RobotCommand
+from lumen.project.project_folders import LIFE_FOLDER, MOTIONS, PASSAGES, is_robots_own
 
 FIRST_POSTURE = "Stand"
 """The posture in which a robot begins."""

@@ -7,8 +7,8 @@ from lumen.language.diagnostics import Code, Diagnostic, NodePath, Places
 from lumen.language.life import Sway
 from lumen.language.motions import Keyframe
 from lumen.language.robots import Body
+from lumen.lint.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVERLOADED, SELF_COLLISION, UNSTEADY
 from lumen.ports import Live
-from lumen.rules.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVERLOADED, SELF_COLLISION, UNSTEADY
 from lumen.rules.physics import FELL, CaseResult, Outcome
 from lumen.rules.physics.trial import FALLING_TILT, MAX_FOOT_SLIDE, TimedAmount
 

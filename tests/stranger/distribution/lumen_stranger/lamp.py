@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code
-from lumen.loading.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport
 
 NO_SCENE = Code("no-scene", "robot", ERROR, "the lamp begins with a scene that it does not have")
 

@@ -1,8 +1,8 @@
 """Names of exhibitions begin with a capital letter."""
 
 from lumen.language.diagnostics import WARNING, Code, Diagnostic
-from lumen.loading.draft import ProjectDraft
-from lumen.rules.fixes import Edit, FileText, Fix
+from lumen.lint.fixes import Edit, FileText, Fix
+from lumen.project.draft import ProjectDraft
 
 SMALL_NAME = Code("small-name", "names", WARNING, "the name of an exhibition begins with a small letter")
 
