@@ -20,7 +20,7 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.plan import Plan
 from lumen.app.setup import set_up_with
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
 from lumen.language.gestures import merged
@@ -28,9 +28,9 @@ from lumen.language.imperfections import PERFECT
 from lumen.language.projects import Project
 from lumen.ports import Message
 from lumen.project.lending import model_files
-from lumen.robots.command_table import speech_duration
-from lumen.robots.gesture_player import GesturePlayer
-from lumen.robots.life_layer import LifeLayer
+from lumen.robot.command_table import speech_duration
+from lumen.robot.gesture_player import GesturePlayer
+from lumen.robot.life_layer import LifeLayer
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.loop import Observer
 

@@ -28,13 +28,13 @@ import pika
 
 import lumen
 from lumen.bus import Bus, connect
-from lumen.buses.bodies import decode, encode
+from lumen.bus.bodies import decode, encode
+from lumen.bus.validated import validated
 from lumen.buses.packing import packed, unpacked
-from lumen.buses.validated import validated
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE, Carried, Direction, Route
 from lumen.ports import Image, Joints, Sense
-from lumen.robots.recording import RecordingRobot
-from lumen.robots.sense_codec import encode_reading, image_body
+from lumen.robot.recording import RecordingRobot
+from lumen.robot.sense_codec import encode_reading, image_body
 
 KEY, ANSWER = "lumen.bench.body", "lumen.bench.answer"
 SIZES = {"200 B": 200, "15 kB": 15_000}

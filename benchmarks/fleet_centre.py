@@ -17,7 +17,7 @@ from lumen.app.fleet.fleet_log import FleetLog
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.keys import desired_key, presence_key
 from lumen.app.fleet.signing import Signer, generate
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.interpreters.fleet.presence import RobotPresence
 from lumen.interpreters.fleet.rollout import begin
 from lumen.interpreters.fleet.state import CentreState

@@ -36,11 +36,11 @@ from lumen.app.reload.report import ReloadReport
 from lumen.app.reload.saved_files import RecordsPart, ReloadPart
 from lumen.app.setup import Setup
 from lumen.bus import connect
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.language.events import Event
 from lumen.language.stories import Visitor
 from lumen.project.home import Home
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.watcher import SHORT_QUIET_FRACTION
 from lumen.upkeep.garbage import GcScheduler

@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from fuzzy import processor
 from patterns import importable, imports, measured
 
-from lumen.buses.checking import SchemaCheck
+from lumen.bus.checking import SchemaCheck
 from lumen.expressions.json_schema import JsonSchema
 from lumen.project.files import read_files
 from lumen.project.project_folders import FILE_KINDS, kind_of

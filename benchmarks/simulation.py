@@ -22,7 +22,7 @@ from lumen.app.exhibition import Exhibition
 from lumen.app.plan import Plan
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import Setup
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.language.commands import Walk
 from lumen.language.projects import Project
 from lumen.language.routes import SIZES, Size

@@ -28,7 +28,7 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.plan import Plan
 from lumen.app.setup import Setup
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
 from lumen.fuzzy import Controller
 from lumen.language.commands import Posture, Walk

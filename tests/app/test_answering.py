@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.app.answering import AnsweringThread
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.journal.journal_folder import JournalFolder
 from lumen.journal.journal_writer import JournalWriter
 from lumen.ports import Message

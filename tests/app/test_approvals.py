@@ -13,7 +13,7 @@ from lumen.app.decisions import Decisions
 from lumen.app.exhibition import Exhibition
 from lumen.app.reload.records import RunRecords
 from lumen.bus import Bus, connect
-from lumen.buses.checking import SchemaCheck
+from lumen.bus.checking import SchemaCheck
 from lumen.language.events import Event
 from lumen.project.home import Home
 from lumen.runtime.approvals import Approvals

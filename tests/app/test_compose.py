@@ -14,7 +14,7 @@ from lumen.app.parts.robot import RobotPart
 from lumen.app.plan import Plan
 from lumen.app.services import Services
 from lumen.app.setup import set_up
-from lumen.clocks.real import RealClock
+from lumen.clock.real import RealClock
 from lumen.errors import UsageError
 from lumen.feature import Feature, PartRow, Phase, wrong_rows
 from lumen.language.events import Event

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.stories import Visitor

@@ -4,8 +4,8 @@ import socket
 from random import Random
 
 from lumen.app.reload.requests import COMMAND
-from lumen.buses.local import LocalAddress
-from lumen.buses.local.frames import CLIENT, frame, nonce, proof, unframed
+from lumen.bus.local import LocalAddress
+from lumen.bus.local.frames import CLIENT, frame, nonce, proof, unframed
 from lumen.errors import BusError
 from lumen.project.home import ADDRESS_FILE, Home
 from tests.attack import files, messages

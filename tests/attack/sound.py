@@ -3,7 +3,7 @@
 from typing import Any
 
 from lumen.app.reload.requests import COMMAND, STATUS
-from lumen.buses.local.server import FLUSH_MARK
+from lumen.bus.local.server import FLUSH_MARK
 from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.files import read_files

@@ -13,7 +13,7 @@ from lumen.app.setup import set_up
 from lumen.bus import connect
 from lumen.errors import BadMessageError
 from lumen.language.commands import Rest
-from lumen.robots.command_receiver import CommandReceiver
+from lumen.robot.command_receiver import CommandReceiver
 from lumen.upkeep.threads import ThreadWatch
 from tests.attack.messages import BODIES, FRAMES, HostileMessage, Stranger, encoded, frame, message
 from tests.exhibits import project

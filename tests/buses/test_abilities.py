@@ -7,7 +7,7 @@ import pytest
 
 import lumen
 from lumen.bus import Bus, connect
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.language.routes import Route
 from lumen.ports import (
     BlockableBus,

@@ -6,9 +6,8 @@ from dataclasses import replace
 import pytest
 
 import lumen
-from lumen.bus import Bus, connect
-from lumen.buses import aliases
-from lumen.buses.validated import ValidatedBus, by_key, validated
+from lumen.bus import Bus, aliases, connect
+from lumen.bus.validated import ValidatedBus, by_key, validated
 from lumen.language.causes import MessageOrigin
 from lumen.language.projects import Project
 from lumen.ports import Bus as AnyBus

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.buses.bodies import MAX_BODY_BYTES, copied, decode, encode
+from lumen.bus.bodies import MAX_BODY_BYTES, copied, decode, encode
 from lumen.errors import BusError
 from tests.tables import for_each
 

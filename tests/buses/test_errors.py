@@ -19,7 +19,7 @@ from lumen import (
     errors,
 )
 from lumen.bus import Bus, connect
-from lumen.buses.local import LocalAddress, LocalBusClient, LocalBusServer
+from lumen.bus.local import LocalAddress, LocalBusClient, LocalBusServer
 from lumen.language.routes import Carried, Direction, Route
 from tests.exhibits import project
 from tests.rabbitmq import RabbitMQ

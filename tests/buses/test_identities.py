@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.bus import connect
-from lumen.buses.identities import MAX_IDENTITY_BYTES, believed
+from lumen.bus.identities import MAX_IDENTITY_BYTES, believed
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector
 

@@ -10,7 +10,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, connect
-from lumen.buses import intake as taking
+from lumen.bus import intake as taking
 from lumen.buses.intake import SPENT_BATCH, Intake
 from lumen.buses.properties import MessageProperties
 from lumen.buses.subscriptions import Delivery, Subscription

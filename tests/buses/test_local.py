@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from lumen.bus import BusError, Message, connect
-from lumen.buses.bodies import encode
-from lumen.buses.local import LocalAddress, LocalBusClient, LocalBusServer
-from lumen.buses.local.frames import frame, framed
-from lumen.buses.local.server import ClientConnection
-from lumen.buses.memory import MemoryBus
+from lumen.bus.bodies import encode
+from lumen.bus.local import LocalAddress, LocalBusClient, LocalBusServer
+from lumen.bus.local.frames import frame, framed
+from lumen.bus.local.server import ClientConnection
+from lumen.bus.memory import MemoryBus
 from tests.waiting import HANG, Collector, finished, until
 
 
@@ -153,13 +153,13 @@ def test_whoever_closes_waits_for_no_thread_that_has_nothing_to_do(opened: Opene
 
 
 def test_who_never_says_a_word_is_forgotten(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lumen.buses.local.server.PROOF_TIMEOUT", 0.1)
+    monkeypatch.setattr("lumen.bus.local.server.PROOF_TIMEOUT", 0.1)
     with opened.raw() as wire:
         assert ended(wire)
 
 
 def test_more_than_so_many_do_not_fit_in(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lumen.buses.local.server.MAX_CLIENTS", 1)
+    monkeypatch.setattr("lumen.bus.local.server.MAX_CLIENTS", 1)
     with Client(opened) as client:
         with pytest.raises(BusError):
             LocalBusClient(opened.server.address)
@@ -167,7 +167,7 @@ def test_more_than_so_many_do_not_fit_in(opened: Opened, monkeypatch: pytest.Mon
 
 
 def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lumen.buses.local.server.MAX_UNSENT_BYTES", 1_000_000)
+    monkeypatch.setattr("lumen.bus.local.server.MAX_UNSENT_BYTES", 1_000_000)
     with Client(opened) as client:
         slow = LocalBusClient(opened.server.address)
         held = threading.Event()
@@ -199,7 +199,7 @@ class Narrow:
 
 @pytest.mark.once  # it opens nothing
 def test_of_what_waits_the_oldest_gives_way_but_not_what_is_partly_sent(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lumen.buses.local.server.MAX_UNSENT_BYTES", 100)
+    monkeypatch.setattr("lumen.bus.local.server.MAX_UNSENT_BYTES", 100)
     wire = Narrow(5)
     client = ClientConnection(wire)  # type: ignore[arg-type]
     for letter in (b"a", b"b", b"c", b"d", b"e"):
@@ -215,7 +215,7 @@ def test_of_what_waits_the_oldest_gives_way_but_not_what_is_partly_sent(monkeypa
 @pytest.mark.once  # its wire is a pair of sockets without an address
 def test_what_waits_for_a_subscription_that_has_ended_is_not_handled(monkeypatch: pytest.MonkeyPatch) -> None:
     wire, exhibition = socket.socketpair()
-    monkeypatch.setattr("lumen.buses.local.client._connect", lambda _: (wire, bytearray()))
+    monkeypatch.setattr("lumen.bus.local.client._connect", lambda _: (wire, bytearray()))
     client, seen = LocalBusClient(LocalAddress()), Collector()
 
     def handle(message: Message) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from lumen.bus import Bus, Message, connect
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from tests.waiting import HANG, Collector, threads, until
 
 
@@ -124,7 +124,7 @@ def test_what_waits_is_bounded_and_the_newest_stay(caplog: pytest.LogCaptureFixt
 
 
 def test_closing_is_not_dropped_with_what_waits(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("lumen.buses.memory.MAX_QUEUED_MESSAGES", 10)
+    monkeypatch.setattr("lumen.bus.memory.MAX_QUEUED_MESSAGES", 10)
     one, other, seen = connect("memory://full"), connect("memory://full"), Collector()
     one.subscribe("lumen.a", seen)
     ended, inside = threading.Thread(target=one.close), threading.Event()

@@ -17,16 +17,15 @@ from PIL import Image as Picture
 
 import lumen
 from lumen.app.setup import set_up
-from lumen.bus import connect
-from lumen.buses import publisher
+from lumen.bus import connect, publisher
+from lumen.bus.validated import validated
 from lumen.buses.packing import packed, unpacked
-from lumen.buses.validated import validated
 from lumen.language.projects import Project
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE, Direction, Route
 from lumen.ports import Image, Reading, Sense
-from lumen.robots.recording import RecordingRobot
-from lumen.robots.sense_codec import encode_reading, image_body
-from lumen.robots.server import RobotServer
+from lumen.robot.recording import RecordingRobot
+from lumen.robot.sense_codec import encode_reading, image_body
+from lumen.robot.server import RobotServer
 from tests.rabbitmq import RabbitMQ
 from tests.tables import for_each
 from tests.waiting import HANG, Collector, until

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from lumen.bus import BusError, connect
-from lumen.buses.checking import SchemaCheck
+from lumen.bus.checking import SchemaCheck
 from lumen.expressions.json_schema import JsonSchema
 from lumen.language.causes import MessageOrigin
 from lumen.language.routes import Direction, Route

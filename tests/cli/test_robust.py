@@ -11,11 +11,11 @@ import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.setup import Setup
 from lumen.cli.transcript import Transcript
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.insight.migration import MigrationPlan
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from tests.nodes import whole
 
 HEAD = ["HeadYaw", "HeadPitch"]

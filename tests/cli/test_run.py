@@ -10,10 +10,10 @@ import pytest
 
 from lumen.app.setup import Setup
 from lumen.cli.main import main
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.ports import Perform
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from tests.guarded import PIPE, Guarded, run_guarded
 from tests.nodes import whole
 from tests.rabbitmq import RabbitMQ
@@ -187,5 +187,5 @@ def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) 
 
 @pytest.mark.slow
 def test_a_robot_without_physics_is_run_without_numpy() -> None:
-    code = "import sys, lumen.cli.run, lumen.robots.recording; sys.exit('numpy' in sys.modules)"
+    code = "import sys, lumen.cli.run, lumen.robot.recording; sys.exit('numpy' in sys.modules)"
     assert run_guarded([sys.executable, "-c", code]).returncode == 0

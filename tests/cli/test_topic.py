@@ -11,7 +11,7 @@ import pytest
 import lumen
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.bus import Bus, connect
-from lumen.buses.validated import validated
+from lumen.bus.validated import validated
 from lumen.cli.main import main
 from lumen.language.projects import Project
 from tests import ROOT

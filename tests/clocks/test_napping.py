@@ -13,8 +13,8 @@ from lumen.app.house import House
 from lumen.app.parts.part import Part
 from lumen.app.plan import Plan
 from lumen.app.setup import Setup, set_up, set_up_house
-from lumen.clocks import bell
-from lumen.clocks.real import RealClock
+from lumen.clock import bell
+from lumen.clock.real import RealClock
 from lumen.language.events import Event
 from lumen.runtime.loop import TICK_PERIOD
 

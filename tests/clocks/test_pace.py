@@ -10,13 +10,13 @@ from lumen.app.pace import PaceWatch
 from lumen.app.plan import Plan
 from lumen.app.setup import Setup, set_up_with
 from lumen.bus import connect
-from lumen.buses.memory import MemoryBus
-from lumen.buses.validated import validated
-from lumen.clocks.following import CATCH_UP, SILENCE, FollowingClock
-from lumen.clocks.pace import WINDOW
-from lumen.clocks.simulated import MAX_ARREARS, SimulatedClock
+from lumen.bus.memory import MemoryBus
+from lumen.bus.validated import validated
+from lumen.clock.following import CATCH_UP, SILENCE, FollowingClock
+from lumen.clock.pace import WINDOW
+from lumen.clock.simulated import MAX_ARREARS, SimulatedClock
 from lumen.language.events import Event
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from lumen.runtime.loop import BRAIN_LOST_AFTER, TICK_PERIOD, BehaviorLoop
 from lumen.runtime.presence import Presence
 from lumen.statechart import Machine

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from lumen.app.reaching import Reached
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.console.people import Role
 from lumen.console.serving import Console
 from tests.console.languages import english_on

@@ -16,7 +16,7 @@ from lumen.app.fleet.keys import bundle_key, desired_key, incident_key, presence
 from lumen.app.fleet.memory import AgentMemory
 from lumen.app.fleet.serving import ServedCentre, fleet_in
 from lumen.app.fleet.signing import Signer, generate
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.errors import UsageError
 from lumen.project.files import fingerprint, read_files

@@ -12,7 +12,7 @@ from lumen.app.fleet.signing import Signer, generate
 from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import set_up
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.project import load
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import home_of

@@ -11,7 +11,7 @@ from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.motion.projection import centring
-from lumen.robots.server import RobotServer
+from lumen.robot.server import RobotServer
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.tracking import LocalTracking

@@ -9,12 +9,12 @@ import lumen
 from lumen.app.exploring import explored
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import set_up
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.cli.main import main
-from lumen.clocks.virtual import VirtualClock
+from lumen.clock.virtual import VirtualClock
 from lumen.insight.migration import MigrationPlan
 from lumen.language.commands import Start, Track, Volume
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from lumen.runtime.loop import BehaviorLoop, Observer
 from lumen.statechart import Step, step
 

@@ -12,14 +12,14 @@ from lumen.app.rehearsal import rehearse
 from lumen.app.reload.records import RunRecords
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.replaying.other_files import takes
-from lumen.buses.local import LocalBusServer
-from lumen.buses.local.address import LocalAddress
-from lumen.buses.local.client import LocalBusClient
+from lumen.bus.local import LocalBusServer
+from lumen.bus.local.address import LocalAddress
+from lumen.bus.local.client import LocalBusClient
+from lumen.bus.routing import matches
 from lumen.cli.main import main
 from lumen.insight.replay.entries import entry_data
 from lumen.insight.replay.forking import fork
 from lumen.insight.replay.replaying import replay
-from lumen.interpreters.routing import matches
 from lumen.journal.frames import FramePacker, unpack
 from lumen.journal.journal_file import line_of, read_journal, read_lines
 from lumen.language.body_parts import WHOLE_BODY
@@ -28,8 +28,8 @@ from lumen.language.commands import Say
 from lumen.language.gestures import merged
 from lumen.ports import Live, Perform, Sense
 from lumen.project.home import Home
-from lumen.robots.life_layer import LifeLayer
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.life_layer import LifeLayer
+from lumen.robot.recording import RecordingRobot
 from lumen.runtime.resuming import FreshStart, Resumption, resume
 from lumen.statechart import deserialize, serialize
 from tests.golden.texts import in_one_line

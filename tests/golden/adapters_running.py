@@ -18,7 +18,7 @@ from lumen.app.parts.part import Part
 from lumen.app.rehearsal import Rehearsal, rehearse
 from lumen.app.setup import set_up
 from lumen.app.stories import stories_of
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.language.projects import Project
 
 NAMES: dict[str, str] = {}

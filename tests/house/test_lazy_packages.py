@@ -6,7 +6,7 @@ from types import ModuleType
 
 import pytest
 
-import lumen.buses as bus
+import lumen.bus as bus
 import lumen.fuzzy as fuzzy
 import lumen.motion as motion
 import lumen.project as project

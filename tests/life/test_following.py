@@ -14,7 +14,7 @@ from lumen.language.stories import Visitor
 from lumen.motion.projection import Vector3, centring, seen
 from lumen.motion.tracking import Tracker
 from lumen.ports import Live
-from lumen.robots.life_layer import LifeLayer
+from lumen.robot.life_layer import LifeLayer
 from lumen.robots.simulation import SimulatedRobot
 from tests import ROOT
 from tests.fuzzy import physical_loop

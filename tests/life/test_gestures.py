@@ -15,9 +15,9 @@ from lumen.language.gestures import WordTime, merged
 from lumen.lint.walk import action_sites
 from lumen.motion.gestures import GESTURE_SHARE, gesture_offsets, peak_speeds, plan_gestures
 from lumen.ports import Joints, Live, Sense
-from lumen.robots.command_table import speech_duration
-from lumen.robots.gesture_player import GesturePlayer
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.command_table import speech_duration
+from lumen.robot.gesture_player import GesturePlayer
+from lumen.robot.recording import RecordingRobot
 from lumen.statechart import Machine, initial
 from tests import ROOT
 

@@ -13,7 +13,7 @@ from lumen.language.commands import Say
 from lumen.language.life import STILL_STYLE, Asides, Glances, LifeStyle, Nods, Settles, Sway
 from lumen.motion.life import SETTLE_SLOPE, SPEED_SHARE, settle
 from lumen.motion.life import vigours as vigour
-from lumen.robots.life_layer import LifeLayer
+from lumen.robot.life_layer import LifeLayer
 from tests import ROOT
 
 PROJECT = lumen.load(ROOT)

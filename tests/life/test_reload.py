@@ -9,11 +9,11 @@ import pytest
 import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.setup import Setup
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.insight.migration import MigrationPlan
 from lumen.language.stories import Visitor
 from lumen.ports import Live, RobotCommand
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from tests import ROOT
 from tests.nodes import whole
 

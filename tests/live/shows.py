@@ -15,12 +15,12 @@ from lumen.app.reload.validation_process import failure
 from lumen.app.reload.validation_worker import Loaded
 from lumen.app.reload.visits_check import VisitsCheck, check_visits
 from lumen.app.setup import Setup
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.lint import check_files
 from lumen.project.home import Home
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from tests.nodes import Printed, whole
 from tests.waiting import HANG, Collector, until
 

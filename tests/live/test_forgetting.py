@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from lumen.bus import Bus
-from lumen.buses.local import LocalAddress, LocalBusClient
+from lumen.bus.local import LocalAddress, LocalBusClient
 from lumen.cli.main import main
 from lumen.errors import BusError
 from lumen.journal.frames import unpack

@@ -8,7 +8,7 @@ import pytest
 from lumen.cli.main import main
 from lumen.modules.memory import Store
 from lumen.project.home import Home
-from lumen.robots.deduplication_log import DeduplicationLog
+from lumen.robot.deduplication_log import DeduplicationLog
 from lumen.upkeep.private_folder import private_folder
 from tests import ROOT
 from tests.guarded import run_guarded

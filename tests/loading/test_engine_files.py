@@ -8,7 +8,7 @@ import pytest
 from lumen.app.lint import outcome_cache
 from lumen.project import engine_files
 
-DECIDE = ("lumen.motion.gait", "lumen.motion.life", "lumen.robots.executor", "lumen.rules.physics.trial")
+DECIDE = ("lumen.motion.gait", "lumen.motion.life", "lumen.robot.executor", "lumen.rules.physics.trial")
 """Modules that decide whether a motion falls, at different depths."""
 
 

@@ -6,8 +6,8 @@ from textwrap import dedent
 import pytest
 
 import lumen
-from lumen.buses.aliases import aliases_of
-from lumen.buses.validated import by_key
+from lumen.bus.aliases import aliases_of
+from lumen.bus.validated import by_key
 from lumen.formats.asyncapi import document
 from lumen.insight.changes.projects import changes
 from lumen.language.built_in_routes import BUILT_IN_ROUTES

@@ -19,7 +19,7 @@ from lumen.app.making.modules import ModulesPlan
 from lumen.app.plan import Plan
 from lumen.app.rehearsal import RehearsalTrace
 from lumen.app.setup import Setup
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.errors import ModuleError
 from lumen.language.modules import module_names
 from lumen.language.projects import Project

@@ -10,13 +10,13 @@ import pytest
 import lumen
 from lumen.app.exhibition import Exhibition
 from lumen.app.setup import Setup
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.language.commands import Command, PlaySound, Say, Start
 from lumen.language.events import CUE, Event
 from lumen.language.projects import Project
 from lumen.modules.sound import Sound, save
 from lumen.ports import Perform
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.loop import Observer
 from tests import ROOT

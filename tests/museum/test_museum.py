@@ -10,7 +10,7 @@ import lumen
 from lumen.app.exploring import explored
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import Setup
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.language.commands import Command, Publish, Start, Volume
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlaces

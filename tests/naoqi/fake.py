@@ -8,8 +8,8 @@ import qi
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.motion.projection import seen
+from lumen.robot.recording import FACE_HEIGHT_FRACTION, PODIUM_HEIGHT, TORSO_HEIGHT
 from lumen.robots.naoqi.naoqi_events import event_of
-from lumen.robots.recording import FACE_HEIGHT_FRACTION, PODIUM_HEIGHT, TORSO_HEIGHT
 from tests.naoqi.services import SERVICES, ALAudioDevice, ALMemory, ALSonar, ALVideoDevice
 from tests.naoqi.world import World
 

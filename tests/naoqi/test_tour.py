@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from lumen.language.projects import Project
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from tests.naoqi.lockstep import Lockstep
 from tests.tour.playing import Run, play
 

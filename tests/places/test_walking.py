@@ -5,13 +5,13 @@ from typing import Any
 
 import pytest
 
-from lumen.buses.memory import MemoryBus
-from lumen.clocks.virtual import VirtualClock
+from lumen.bus.memory import MemoryBus
+from lumen.clock.virtual import VirtualClock
 from lumen.insight.migration import MigrationPlan
 from lumen.language.commands import Walk
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlace, HallPlaces
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from lumen.runtime.loop import BehaviorLoop, Observer
 from lumen.statechart import Machine, Step, deserialize, serialize
 from tests.exhibits import BODY, project

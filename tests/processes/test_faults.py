@@ -101,7 +101,7 @@ DYING = """
 import os, signal, sys
 from lumen.buses.consumer import Consumer
 from lumen.cli.main import main
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 perform = RecordingRobot.start
 def die(robot, id, command):
     perform(robot, id, command)

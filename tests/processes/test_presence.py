@@ -11,13 +11,13 @@ import lumen
 from lumen.app.parts.guard import BrainGuard
 from lumen.app.parts.motion import MotionPart
 from lumen.bus import Bus, BusError, connect
-from lumen.buses.validated import validated
+from lumen.bus.validated import validated
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Track
 from lumen.language.events import Event
 from lumen.ports import Aim, Message, Perform
 from lumen.project.packaged import shipped_root
-from lumen.robots.recording import RecordingRobot
-from lumen.robots.remote import RemoteRobot
+from lumen.robot.recording import RecordingRobot
+from lumen.robot.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import DelegatedTracking, motion_key
 from lumen.runtime.presence import LOST_AFTER, MAX_PEERS, Presence
 from tests.exhibits import BODY, JOINTS, messages, project

@@ -20,11 +20,11 @@ from lumen.app.plan import Plan
 from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.setup import Setup, set_up
 from lumen.bus import Bus, connect
-from lumen.buses.validated import validated
-from lumen.clocks.real import RealClock
+from lumen.bus.validated import validated
+from lumen.clock.real import RealClock
 from lumen.ports import Clock
 from lumen.project.home import home_of
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from lumen.runtime.presence import BRAIN, ROBOT_PART
 from tests.nodes import Printed, whole
 from tests.waiting import Collector, source_of, until

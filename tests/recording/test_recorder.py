@@ -13,7 +13,7 @@ from lumen.app.recording.happenings import happening
 from lumen.app.recording.recorder import Recorder
 from lumen.app.recording.recordings_folder import RecordingsFolder
 from lumen.app.recording.tape_file import FileTape
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.formats.recordings.recorded import Recorded
 from lumen.formats.recordings.recording_file import RecordingFile
 from lumen.language.causes import MessageOrigin

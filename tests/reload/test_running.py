@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from lumen.app.setup import Setup
-from lumen.buses.memory import MemoryBus
-from lumen.clocks.simulated import SimulatedClock
+from lumen.bus.memory import MemoryBus
+from lumen.clock.simulated import SimulatedClock
 from lumen.insight.migration import MigrationDelay, MigrationPlan
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
@@ -16,7 +16,7 @@ from lumen.language.projects import Project
 from lumen.language.routes import Direction, Route
 from lumen.language.stories import Visitor
 from lumen.project import load
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
 from lumen.runtime.approvals import Approvals
 from lumen.runtime.loop import TICK_PERIOD, BehaviorLoop, Observer

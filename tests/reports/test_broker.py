@@ -22,11 +22,11 @@ from lumen.app import node
 from lumen.app.fleet.broker_check import check_broker
 from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.bus import connect
-from lumen.buses.bodies import JSON, TEXT, decode
+from lumen.bus.bodies import JSON, TEXT, decode
+from lumen.bus.checking import SchemaCheck
+from lumen.bus.validated import validated
 from lumen.buses.broker import BrokerAddress, shortage
-from lumen.buses.checking import SchemaCheck
 from lumen.buses.probe import BrokerProbe
-from lumen.buses.validated import validated
 from lumen.cli.main import main
 from lumen.errors import BusAddressError, BusUnreachableError
 from lumen.language.addresses import public

@@ -10,22 +10,22 @@ from typing import Any
 import pytest
 
 from lumen.bus import connect
-from lumen.buses import intake as taking
+from lumen.bus import intake as taking
+from lumen.bus.validated import validated
 from lumen.buses.dispatcher import Dispatcher
 from lumen.buses.intake import Intake
 from lumen.buses.properties import MessageProperties
 from lumen.buses.subscriptions import Delivery, Subscription
-from lumen.buses.validated import validated
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Say, Stop
 from lumen.language.motions import MotionDefinition
 from lumen.language.routes import USUAL_RATE, Carried, Direction, Route
 from lumen.motion import bounds
 from lumen.ports import Message, Perform, RobotCommand
-from lumen.robots.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS, MAX_WAITING_OWN, RESTARTED, CommandListener
-from lumen.robots.deduplication_log import DeduplicationLog
-from lumen.robots.recording import RecordingRobot
-from lumen.robots.remote import RobotHost
+from lumen.robot.command_receiver import ID_TAKEN, MAX_WAITING_COMMANDS, MAX_WAITING_OWN, RESTARTED, CommandListener
+from lumen.robot.deduplication_log import DeduplicationLog
+from lumen.robot.recording import RecordingRobot
+from lumen.robot.remote import RobotHost
 from lumen.upkeep.ratelimit import BURST, MAX_SENDERS, RateLimiter
 from tests.exhibits import BODY, messages, project
 from tests.tables import for_each

@@ -18,14 +18,14 @@ from lumen.app.plan import Plan
 from lumen.app.rehearsal import RehearsalTrace, rehearse
 from lumen.app.services import Services
 from lumen.app.setup import set_up
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.console.entry_words import OTHERS, text_of
 from lumen.language.commands import Say, Start, Wake
 from lumen.language.events import HELD, Event
 from lumen.ports import Message, Perform
-from lumen.robots.command_reports import CommandRecord, CommandReports
-from lumen.robots.person_hold import StoppedBy
+from lumen.robot.command_reports import CommandRecord, CommandReports
+from lumen.robot.person_hold import StoppedBy
 from lumen.robots.simulation.robot import SimulatedRobot
 from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.trace_subscriber import TraceSubscriber

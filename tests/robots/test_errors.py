@@ -21,7 +21,7 @@ from lumen.errors import (
 from lumen.language.commands import Posture, Rest, Walk
 from lumen.language.projects import Project
 from lumen.ports import RobotCommand, Whereabouts
-from lumen.robots.command_codec import decode_command
+from lumen.robot.command_codec import decode_command
 from lumen.robots.naoqi import NaoqiRobot
 from lumen.robots.naoqi.sensors import NaoqiSensors
 from lumen.robots.naoqi.session import NaoqiSession

@@ -5,8 +5,8 @@ import pytest
 from lumen.errors import RobotError
 from lumen.language.commands import Look, Move, Posture, Rest, Say, Stop, Walk
 from lumen.ports import RobotCommand
-from lumen.robots.executor import Executor
-from lumen.robots.skill_runner import SkillRunner
+from lumen.robot.executor import Executor
+from lumen.robot.skill_runner import SkillRunner
 
 PARTS = {Say: {"voice"}, Posture: {"head", "arms", "legs"}, Look: {"head"}, Rest: {"head", "arms", "legs"}, Stop: set()}
 

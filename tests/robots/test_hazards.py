@@ -1,6 +1,6 @@
 """What keeps a robot from walking, whichever robot it is."""
 
-from lumen.robots.hazards import STOP_BUTTONS, danger
+from lumen.robot.hazards import STOP_BUTTONS, danger
 
 
 def test_nothing_is_in_the_way() -> None:

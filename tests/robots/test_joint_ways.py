@@ -11,7 +11,7 @@ from lumen.language.body_parts import ARMS, HEAD, LEGS
 from lumen.language.motions import Cue, Keyframe, MotionDefinition
 from lumen.motion.trajectories import Trajectory
 from lumen.project.chosen_model import MODEL_VARIABLE
-from lumen.robots.joint_ways import away, begun_from, home_angles, way_duration
+from lumen.robot.joint_ways import away, begun_from, home_angles, way_duration
 from tests import ROOT
 
 NAO = lumen.load(ROOT).body

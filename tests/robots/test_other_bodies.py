@@ -9,7 +9,7 @@ from lumen.language.robots import Joint
 from lumen.language.roles import Base, BaseKind, JointRole, Roles
 from lumen.language.stories import Visitor
 from lumen.ports import Joints, Sense
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from tests.exhibits import BODY
 
 JOINTS = {"Neck": Joint("Neck", -1.0, 1.0), "Nod": Joint("Nod", -0.5, 0.5)}

@@ -10,8 +10,8 @@ from lumen.app.parts.kept_hold import KeptHold, forget_hold
 from lumen.language.commands import Leds, Look, Posture, Rest, Say, Wake, Walk
 from lumen.language.events import Event
 from lumen.ports import Aim, RobotCommand
-from lumen.robots.command_receiver import CommandListener
-from lumen.robots.person_hold import HoldListener, PersonHold
+from lumen.robot.command_receiver import CommandListener
+from lumen.robot.person_hold import HoldListener, PersonHold
 from tests.server.stand import Stand
 from tests.tables import for_each
 from tests.waiting import Collector

@@ -13,8 +13,8 @@ from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.roles import Base, BaseKind, Roles
 from lumen.language.skills import lack_of, tracking_lack
 from lumen.ports import Aim, Perform, RobotCommand, Sense
-from lumen.robots.command_table import check_command
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.command_table import check_command
+from lumen.robot.recording import RecordingRobot
 from tests import ROOT
 from tests.exhibits import BODY
 from tests.tables import for_each

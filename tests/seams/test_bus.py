@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from lumen.bus import BusError, Message, Refused, connect
-from lumen.buses.local import LocalBusClient, LocalBusServer
+from lumen.bus.local import LocalBusClient, LocalBusServer
 from lumen.language.causes import MessageOrigin
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus

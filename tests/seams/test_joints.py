@@ -13,7 +13,7 @@ import pytest
 import lumen
 from lumen import Exhibition
 from lumen.app.setup import set_up_with
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.language.commands import Language, Look, Posture
 from lumen.language.events import Event
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
@@ -23,10 +23,10 @@ from lumen.motion.bounds import nearest_angles
 from lumen.motion.limits import COUPLED_TOLERANCE, beyond_limits, overspeed
 from lumen.motion.trajectories import Trajectory
 from lumen.ports import Aim, Idles, Joints, Live, Perform, RobotCommand, Sense
-from lumen.robots.bounded_robot import BoundedRobot, ability
-from lumen.robots.command_codec import decode_command, encode_command
-from lumen.robots.recording import RecordingRobot
-from lumen.robots.remote import RemoteRobot
+from lumen.robot.bounded_robot import BoundedRobot, ability
+from lumen.robot.command_codec import decode_command, encode_command
+from lumen.robot.recording import RecordingRobot
+from lumen.robot.remote import RemoteRobot
 from lumen.statechart import VirtualClock
 from tests import ROOT
 from tests.tables import for_each

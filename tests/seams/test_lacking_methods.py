@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.language.commands import Do
 from lumen.language.events import Event
 from lumen.language.routes import Route
@@ -29,7 +29,7 @@ from lumen.ports import (
     RobotCommand,
     Sense,
 )
-from lumen.robots.remote import RemoteHall, RobotHost
+from lumen.robot.remote import RemoteHall, RobotHost
 from lumen.statechart import VirtualClock
 from tests import ROOT
 from tests.tables import for_each

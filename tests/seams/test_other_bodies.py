@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.language.commands import GoTo, Look, Posture, Start, Track, Walk
 from lumen.language.projects import Project
 from lumen.ports import Aim, Joints, Perform, RobotCommand, Sense, Sonar
 from lumen.project.chosen_model import MODEL_VARIABLE
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from lumen.runtime.performer import LEFT_OUT, Performer
 from tests import ROOT
 from tests.seams.test_robot import Remote, live

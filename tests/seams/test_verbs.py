@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 import pytest
 
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.feature import table
 from lumen.formats.behavior_data import plain_action
 from lumen.insight.changes.actions import described
@@ -55,10 +55,10 @@ from lumen.ports import (
 )
 from lumen.project.actions import COMPUTED_READERS
 from lumen.project.schema import load_schema
-from lumen.robots.command_codec import decode_command, encode_command
-from lumen.robots.command_table import COMMANDS, row_of
-from lumen.robots.recording import RecordingRobot
-from lumen.robots.sense_codec import decode_reading, encode_reading
+from lumen.robot.command_codec import decode_command, encode_command
+from lumen.robot.command_table import COMMANDS, row_of
+from lumen.robot.recording import RecordingRobot
+from lumen.robot.sense_codec import decode_reading, encode_reading
 from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.trace_subscriber import TraceSubscriber
 from lumen.statechart import Machine

@@ -2,8 +2,8 @@
 
 import pytest
 
-from lumen.robots import server
-from lumen.robots.sense_publisher import SensePublisher
+from lumen.robot import server
+from lumen.robot.sense_publisher import SensePublisher
 from tests.waiting import HANG
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from lumen.bus import Bus, connect
 from lumen.language.events import Event
 from lumen.ports import Battery, Image, Joints, Reading, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.command_receiver import CommandListener
-from lumen.robots.server import RobotServer
+from lumen.robot.command_receiver import CommandListener
+from lumen.robot.server import RobotServer
 from tests.exhibits import JOINTS, TACTILE, project
 from tests.waiting import HANG, Collector
 

@@ -10,7 +10,7 @@ from lumen.errors import RobotError
 from lumen.language.commands import Language, Leds, Move, Posture, Rest, Say, Stop, Wake, Walk
 from lumen.language.motions import MotionDefinition
 from lumen.ports import Aim, Perform, Record
-from lumen.robots.command_codec import decode_command
+from lumen.robot.command_codec import decode_command
 from tests.exhibits import project
 from tests.tables import for_each
 

@@ -7,7 +7,7 @@ import pytest
 import lumen
 from lumen.errors import RobotError
 from lumen.language.projects import Project
-from lumen.robots.motion_codec import MAX_MOTION_DURATION, decode_motion, encode_motion
+from lumen.robot.motion_codec import MAX_MOTION_DURATION, decode_motion, encode_motion
 from tests import ROOT
 from tests.tables import for_each
 

@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 
 from lumen.bus import connect
-from lumen.buses.validated import validated
+from lumen.bus.validated import validated
 from lumen.language.commands import Look, Say, Wake
 from lumen.ports import Perform
-from lumen.robots.command_receiver import ID_TAKEN
-from lumen.robots.deduplication_log import DEDUPLICATION_WINDOW, DeduplicationLog
-from lumen.robots.recording import RecordingRobot
-from lumen.robots.remote import RobotHost
+from lumen.robot.command_receiver import ID_TAKEN
+from lumen.robot.deduplication_log import DEDUPLICATION_WINDOW, DeduplicationLog
+from lumen.robot.recording import RecordingRobot
+from lumen.robot.remote import RobotHost
 from tests.exhibits import BODY, messages, project
 from tests.waiting import Collector
 

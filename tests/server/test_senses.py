@@ -13,14 +13,14 @@ import pytest
 from PIL import Image as Picture
 
 from lumen.bus import connect
-from lumen.buses.checking import SchemaCheck
-from lumen.buses.validated import validated
+from lumen.bus.checking import SchemaCheck
+from lumen.bus.validated import validated
 from lumen.errors import BusError, RobotError
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.routes import SIZES
 from lumen.ports import Message, Reading, Sense
-from lumen.robots.server import RobotServer
+from lumen.robot.server import RobotServer
 from tests.exhibits import TACTILE, messages, project
 from tests.rabbitmq import RabbitMQ
 from tests.server.stand import DATE, FRAME, NAMES, PATIENT, PROJECT, Puppet, Stand, without

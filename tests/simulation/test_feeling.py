@@ -6,8 +6,8 @@ import pytest
 
 from lumen.language.commands import Posture, Walk
 from lumen.ports import Joints, Sense
-from lumen.robots.recording import RecordingRobot
-from lumen.robots.sense_codec import decode_reading, encode_reading
+from lumen.robot.recording import RecordingRobot
+from lumen.robot.sense_codec import decode_reading, encode_reading
 from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import until_answered
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.statechart import Interpreter, Machine, Step, VirtualClock
 
 TICKING = Machine.from_dict(

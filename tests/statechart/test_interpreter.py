@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from lumen.clocks.virtual import VirtualClock
+from lumen.clock.virtual import VirtualClock
 from lumen.errors import LumenError, ProjectError, SnapshotError, UsageError
 from lumen.statechart import Event, Interpreter, Machine, Step, due, initial, step
 from lumen.statechart.stepping import elapse

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from lumen.clocks.virtual import VirtualClock
+from lumen.clock.virtual import VirtualClock
 from lumen.errors import ProjectError, SnapshotError, UsageError
 from lumen.statechart import Event, Interpreter, Machine, deserialize, due, initial, serialize, step
 

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from lumen.clocks.real import RealClock
-from lumen.clocks.virtual import VirtualClock
+from lumen.clock.real import RealClock
+from lumen.clock.virtual import VirtualClock
 from lumen.errors import LumenError, SnapshotError, UsageError
 from lumen.statechart import Event, Interpreter, Machine, initial, serialize, step
 from tests.tables import for_each

@@ -6,7 +6,7 @@ import pytest
 
 from lumen.formats.behavior_data import plain_action
 from lumen.language.commands import Move, Start, Walk
-from lumen.robots.recording import RecordingRobot
+from lumen.robot.recording import RecordingRobot
 from lumen.statechart import Interpreter, Machine, initial
 from tests.motions.making import nao
 

@@ -26,8 +26,8 @@ from lumen.lsp.hover import hover
 from lumen.lsp.signatures import signature
 from lumen.project.files import read_files
 from lumen.project.schema import load_schema
-from lumen.robots.bounded_robot import BoundedRobot
-from lumen.robots.remote import RemoteRobot
+from lumen.robot.bounded_robot import BoundedRobot
+from lumen.robot.remote import RemoteRobot
 from lumen.runtime.presence import all_parts, unique_parts
 from tests import ROOT
 from tests.lsp.test_services import place

@@ -41,7 +41,7 @@ def make(request):
     return set_up_with(Robot())
 """
 QUIET = ROBOT.replace("1 / 0", "pass")
-BUS = "from lumen.buses.memory import MemoryBus\n\n\nclass make(MemoryBus):\n    def send(self, message): 1 / 0\n"
+BUS = "from lumen.bus.memory import MemoryBus\n\n\nclass make(MemoryBus):\n    def send(self, message): 1 / 0\n"
 RUN = "run --robot recording --speed max --story visitor"
 FAULTS = {
     "robot without a method": (

@@ -20,9 +20,9 @@ from lumen.lint import check_files
 from lumen.lint.fixes import fixes
 from lumen.ports import Joints, Message, Sense
 from lumen.project.files import read_files
-from lumen.robots.command_table import speech_duration
-from lumen.robots.remote import RemoteRobot
-from lumen.robots.sense_codec import decode_reading, encode_reading
+from lumen.robot.command_table import speech_duration
+from lumen.robot.remote import RemoteRobot
+from lumen.robot.sense_codec import decode_reading, encode_reading
 from tests import ROOT
 from tests.stranger.installing import Installed
 

@@ -16,8 +16,8 @@ from lumen.app.parts.part import Part
 from lumen.app.plan import Plan
 from lumen.app.rehearsal import RehearsalTrace
 from lumen.app.setup import set_up
-from lumen.buses.memory import MemoryBus
-from lumen.buses.validated import validated
+from lumen.bus.memory import MemoryBus
+from lumen.bus.validated import validated
 from lumen.errors import UsageError
 from lumen.feature import resolve
 from lumen.language.events import Event
@@ -40,8 +40,8 @@ from lumen.app.parts.part import Part
 from lumen.app.plan import Plan
 from lumen.app.rehearsal import RehearsalTrace
 from lumen.app.setup import set_up
-from lumen.buses.memory import MemoryBus
-from lumen.buses.validated import validated
+from lumen.bus.memory import MemoryBus
+from lumen.bus.validated import validated
 from lumen.errors import UsageError
 from lumen.feature import resolve
 from lumen.runtime.loop import Observer

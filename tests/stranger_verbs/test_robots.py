@@ -6,21 +6,21 @@ from typing import Any
 
 import pytest
 
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.errors import BadCommandError
 from lumen.feature import resolve
 from lumen.language.commands import Do, Posture, Rest, Say, Start, Stop, Wake
 from lumen.language.events import RESULT, Event
 from lumen.ports import RobotCommand
-from lumen.robots.bounded_robot import BoundedRobot, is_idle
-from lumen.robots.command_codec import decode_command, encode_command
-from lumen.robots.command_table import parts_of, row_of
-from lumen.robots.executor import Executor
-from lumen.robots.person_hold import PersonHold
-from lumen.robots.recording import RecordingRobot
-from lumen.robots.remote import RemoteRobot
-from lumen.robots.server import RobotServer
-from lumen.robots.skill_runner import SkillRunner
+from lumen.robot.bounded_robot import BoundedRobot, is_idle
+from lumen.robot.command_codec import decode_command, encode_command
+from lumen.robot.command_table import parts_of, row_of
+from lumen.robot.executor import Executor
+from lumen.robot.person_hold import PersonHold
+from lumen.robot.recording import RecordingRobot
+from lumen.robot.remote import RemoteRobot
+from lumen.robot.server import RobotServer
+from lumen.robot.skill_runner import SkillRunner
 from lumen.runtime.trace_publisher import TracePublisher
 from lumen.runtime.trace_subscriber import TraceSubscriber
 from tests.exhibits import BODY, project

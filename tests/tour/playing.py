@@ -6,7 +6,7 @@ from typing import Protocol
 
 from lumen.app.rehearsal import rehearse
 from lumen.app.setup import Setup
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.commands import Log as LogLine
 from lumen.language.events import Event

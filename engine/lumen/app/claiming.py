@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.projects import Project
 from lumen.ports import BlockableBus, Bus

@@ -11,7 +11,7 @@ from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.verbs import verb_of
 from lumen.ports import Message
-from lumen.robots.command_table import speech_duration
+from lumen.robot.command_table import speech_duration
 from lumen.runtime.loop import Observer
 from lumen.runtime.visitor import SPEECH_ROUTE
 from lumen.statechart import Snapshot, Step

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lumen.buses.checking import SchemaCheck
+from lumen.bus.checking import SchemaCheck
 from lumen.insight.explaining.names import machines_in
 from lumen.language.controller_events import controller_events
 from lumen.language.events import robot_events

@@ -12,14 +12,14 @@ from lumen.app.nap import Nap
 from lumen.app.narrator import Narrator
 from lumen.app.pace import PaceWatch
 from lumen.app.parts.part import Part
-from lumen.buses.validated import ValidatedBus
-from lumen.clocks.following import FollowingClock
+from lumen.bus.validated import ValidatedBus
+from lumen.clock.following import FollowingClock
 from lumen.errors import UsageError
 from lumen.language.events import Event
 from lumen.language.nanoseconds import to_the_nanosecond
 from lumen.language.projects import Project
 from lumen.ports import Clock, CountsDrops, Dozes
-from lumen.robots.robot_routes import COMMAND_ROUTE
+from lumen.robot.robot_routes import COMMAND_ROUTE
 from lumen.runtime.loop import TICK_PERIOD
 from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
 from lumen.runtime.trace_publisher import TRACE_ROUTE

@@ -11,7 +11,7 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, Clock, Robot
 from lumen.project import load
-from lumen.robots.bounded_robot import BoundedRobot
+from lumen.robot.bounded_robot import BoundedRobot
 from lumen.upkeep.arguments import need_methods
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.app.narrator import Narrator
 from lumen.app.setup import Setup
-from lumen.buses.addresses import within_process
+from lumen.bus.addresses import within_process
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, Clock

@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 
 from lumen.app.one_robot import one_robot, robots_of
 from lumen.bus import connect
-from lumen.buses.addresses import within_process
-from lumen.buses.local import LocalAddress, LocalBusClient
+from lumen.bus.addresses import within_process
+from lumen.bus.local import LocalAddress, LocalBusClient
 from lumen.errors import BusUnreachableError
 from lumen.language.causes import TERMINAL
 from lumen.language.routing_keys import default_key
@@ -16,7 +16,7 @@ from lumen.project.building import main_settings
 from lumen.project.home import ADDRESS_FILE, Home, homes, homes_of
 from lumen.project.running_project import running_project
 from lumen.project.settings import Settings
-from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
+from lumen.robot.robot_routes import COMMAND_ROUTE, STOP_ROUTE
 
 
 class Reached(NamedTuple):

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lumen.buses.checking import SchemaCheck
+from lumen.bus.checking import SchemaCheck
 from lumen.language.operator_requests import REQUESTS, UNLISTED, OperatorRequest
 
 

@@ -15,7 +15,7 @@ from lumen.app.parts.robot import RobotPart
 from lumen.app.plan import Plan
 from lumen.app.setup import Setup
 from lumen.bus import connect
-from lumen.buses.validated import validated
+from lumen.bus.validated import validated
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.runtime.loop import Observer

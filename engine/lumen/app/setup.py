@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
-from lumen.clocks.real import RealClock
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.real import RealClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.errors import LumenError, UsageError
 from lumen.feature import Feature, RobotOption, RobotRow, distribution_of, owner, table
 from lumen.language.imperfections import Imperfections
@@ -12,8 +12,8 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, Robot
 from lumen.project.broken_features import called, faulty, need_made, shown
-from lumen.robots.bounded_robot import BoundedRobot, ability
-from lumen.robots.checked_robot import CheckedRobot
+from lumen.robot.bounded_robot import BoundedRobot, ability
+from lumen.robot.checked_robot import CheckedRobot
 from lumen.runtime.tracking import TrackingService
 
 SPEEDS = ("1", "4", "max")

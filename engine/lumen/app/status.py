@@ -9,7 +9,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.modules import MEMORY, VISITOR_KEY
 from lumen.language.projects import Project
 from lumen.ports import Battery
-from lumen.robots.person_hold import StoppedBy
+from lumen.robot.person_hold import StoppedBy
 from lumen.statechart import Snapshot, Timer
 from lumen.statechart.nesting import ID_SEPARATOR, active_names
 

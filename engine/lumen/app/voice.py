@@ -21,8 +21,8 @@ from lumen.modules.sound import Sound, save
 from lumen.modules.voice import espeak
 from lumen.ports import Robot
 from lumen.project.broken_features import called, faults_reported, need_made, shown
-from lumen.robots.bounded_robot import ability
-from lumen.robots.command_table import speech_duration
+from lumen.robot.bounded_robot import ability
+from lumen.robot.command_table import speech_duration
 
 T = TypeVar("T")
 _log = logging.getLogger(__name__)

@@ -1,4 +1,4 @@
-"""Messages by topic: the buses behind `lumen.ports.Bus`, to be had from `lumen.bus.connect`.
+"""Messages by topic: the buses behind `lumen.ports.Bus`, to be had from `lumen.standalone.bus.connect`.
 
     memory.py         the embedded bus, in this process
     local/            the embedded bus of another process of this machine: a server, its clients
@@ -44,7 +44,7 @@ from lumen.upkeep.lazy_names import lazy
 __all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
 
 _HOMES = {
-    "lumen.bus": ("connect",),
+    "lumen.standalone.bus": ("connect",),
     "lumen.errors": (
         "BusError",
         "Refused",

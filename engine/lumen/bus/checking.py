@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from lumen.buses.bodies import text_of_json
+from lumen.bus.bodies import text_of_json
 from lumen.expressions.json_schema import JsonSchema
 from lumen.language.projects import Project
 

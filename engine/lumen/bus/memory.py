@@ -17,10 +17,10 @@ from time import time
 from typing import Any
 from weakref import WeakValueDictionary
 
-from lumen.buses.bodies import check_key, check_subscription, copied
-from lumen.buses.identities import new_id
+from lumen.bus.bodies import check_key, check_subscription, copied
+from lumen.bus.identities import new_id
+from lumen.bus.routing import matches
 from lumen.errors import BusClosedError, Refused
-from lumen.interpreters.routing import matches
 from lumen.language.routes import Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
 from lumen.upkeep.drops import DropLog

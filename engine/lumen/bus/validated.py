@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.buses.aliases import COPY, Aliases
-from lumen.buses.bodies import check_subscription
-from lumen.buses.checking import SchemaCheck, body_checks
+from lumen.bus.aliases import COPY, Aliases
+from lumen.bus.bodies import check_subscription
+from lumen.bus.checking import SchemaCheck, body_checks
 from lumen.errors import BadMessageError, Refused
 from lumen.language.projects import Project
 from lumen.language.routes import Route

@@ -12,10 +12,10 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from lumen.buses.bodies import JSON, check_key, check_subscription, encode
+from lumen.bus.bodies import JSON, check_key, check_subscription, encode
+from lumen.bus.identities import origin_of
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import OutageLog
-from lumen.buses.identities import origin_of
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.packing import packed
 from lumen.buses.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of

@@ -7,7 +7,7 @@ from typing import Any
 
 from pika.exceptions import AMQPChannelError, ConsumerCancelled
 
-from lumen.buses.bodies import MAX_BODY_BYTES, MAX_KEY_BYTES
+from lumen.bus.bodies import MAX_BODY_BYTES, MAX_KEY_BYTES
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.declarer import QueueDeclarer

@@ -7,8 +7,8 @@ import threading
 import time
 from collections.abc import Callable
 
-from lumen.buses.bodies import JSON, decode
-from lumen.buses.identities import believed
+from lumen.bus.bodies import JSON, decode
+from lumen.bus.identities import believed
 from lumen.buses.packing import unpacked
 from lumen.buses.properties import header_fields
 from lumen.buses.queues import UNROUTED

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from sys import byteorder
 from typing import Any, NamedTuple
 
-from lumen.buses.bodies import MAX_BODY_BYTES, copied
+from lumen.bus.bodies import MAX_BODY_BYTES, copied
 from lumen.buses.properties import CAUSE_HEADER
 from lumen.errors import BadMessageError
 from lumen.language.data_url import JPEG_URL, DataUrl

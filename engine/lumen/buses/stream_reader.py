@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from pika.exceptions import ConsumerCancelled
 
-from lumen.buses.bodies import JSON, decode
+from lumen.bus.bodies import JSON, decode
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import BrokerConnection, OutageLog
 from lumen.buses.probe import BrokerProbe

@@ -4,12 +4,12 @@ import time
 import uuid
 from typing import Any
 
-from lumen.buses.bodies import JSON, MAX_BODY_BYTES, TEXT, encode
+from lumen.bus.bodies import JSON, MAX_BODY_BYTES, TEXT, encode
+from lumen.bus.identities import new_id
 from lumen.buses.broker import BrokerAddress
 from lumen.buses.connection import OutageLog
 from lumen.buses.consumer import Consumer
 from lumen.buses.dispatcher import FLUSH_MARK, Dispatcher
-from lumen.buses.identities import new_id
 from lumen.buses.outbox import OutgoingMessage
 from lumen.buses.publisher import Publisher
 from lumen.buses.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY

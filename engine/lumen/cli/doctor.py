@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 
 from lumen.app.attendance import RobotAttendance
 from lumen.bus import connect
-from lumen.buses.addresses import is_rabbitmq, within_process
+from lumen.bus.addresses import is_rabbitmq, within_process
+from lumen.bus.validated import by_key
 from lumen.buses.probe import BrokerProbe
 from lumen.buses.queues import SIDE_QUEUES
-from lumen.buses.validated import by_key
 from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
@@ -25,7 +25,7 @@ from lumen.lint import check_files
 from lumen.ports import Bus
 from lumen.project.files import read_files
 from lumen.project.own_project import own_project
-from lumen.robots.robot_routes import COMMAND_ROUTE
+from lumen.robot.robot_routes import COMMAND_ROUTE
 from lumen.runtime.delegated_tracking import MOTION_ROUTE as MOTION
 
 LISTENING = 2.0

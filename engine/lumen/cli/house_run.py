@@ -12,7 +12,7 @@ from lumen.app.plan import Plan
 from lumen.app.run_start import BegunRun
 from lumen.app.services import Services
 from lumen.app.setup import Setup, robot_options, set_up_house
-from lumen.buses.addresses import within_process
+from lumen.bus.addresses import within_process
 from lumen.cli.imperfection_options import imperfections_of
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
@@ -20,7 +20,7 @@ from lumen.cli.run_choices import chosen_story, period_of
 from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals, leave, plan_of
 from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.transcript import Transcript
-from lumen.clocks.following import FollowingClock
+from lumen.clock.following import FollowingClock
 from lumen.errors import LumenError, UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story

@@ -11,7 +11,7 @@ from lumen.app.forgetting.files import forget_in
 from lumen.app.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
 from lumen.app.one_robot import one_robot
 from lumen.app.reaching import reach_exhibition
-from lumen.buses.addresses import within_process
+from lumen.bus.addresses import within_process
 from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_robot_name
 from lumen.errors import BusUnreachableError, UsageError

@@ -15,7 +15,7 @@ from lumen.cli.printing import clock_time
 from lumen.cli.run_plan import leave, running
 from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.transcript import Transcript
-from lumen.clocks.real import RealClock
+from lumen.clock.real import RealClock
 from lumen.language.projects import Project
 from lumen.language.stories import Leave, VisitorAction
 

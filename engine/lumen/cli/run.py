@@ -18,7 +18,7 @@ from lumen.app.run_start import BegunRun, started
 from lumen.app.services import Services
 from lumen.app.setup import SPEEDS, Setup, robot_names, robot_options
 from lumen.app.stories import home_of
-from lumen.buses.addresses import examples, within_process
+from lumen.bus.addresses import examples, within_process
 from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.imperfection_options import configure_imperfections, set_up_robot
@@ -31,7 +31,7 @@ from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals
 from lumen.cli.run_verdict import FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
 from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
-from lumen.clocks.following import FollowingClock
+from lumen.clock.following import FollowingClock
 from lumen.errors import UsageError
 from lumen.feature import table
 from lumen.journal.journal_folder import JOURNAL_FOLDER
@@ -41,7 +41,7 @@ from lumen.ports import Clock
 from lumen.project.broken_features import broken_features
 from lumen.project.home import home_of as home_of_run
 from lumen.project.running_project import is_substituted, project_to_run
-from lumen.robots.bounded_robot import ability
+from lumen.robot.bounded_robot import ability
 from lumen.runtime.presence import BRAIN, ROBOT_PART, all_parts
 from lumen.upkeep.heap import give_back
 

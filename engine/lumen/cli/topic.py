@@ -11,8 +11,8 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from lumen.app.asking import OPERATOR_ANSWERS
-from lumen.buses.bodies import encode
-from lumen.buses.validated import by_key, validated
+from lumen.bus.bodies import encode
+from lumen.bus.validated import by_key, validated
 from lumen.cli.progress import progress
 from lumen.cli.reach import reach
 from lumen.cli.tables import table

@@ -11,7 +11,7 @@ from lumen.language.causes import OPERATOR
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.durations import seconds
 from lumen.language.stories import Approve, Press, TouchSensor
-from lumen.robots.robot_routes import STOP_ROUTE, publish_on
+from lumen.robot.robot_routes import STOP_ROUTE, publish_on
 from lumen.runtime.story import StoryEnvironment
 from lumen.runtime.visitor import VisitorActor
 

@@ -4,7 +4,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from lumen.clocks.bell import Bell
+from lumen.clock.bell import Bell
 
 WINDOW = 5.0
 """Over how long the robot's pace is measured [s]."""

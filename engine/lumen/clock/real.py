@@ -2,7 +2,7 @@
 
 import time
 
-from lumen.clocks.bell import Bell
+from lumen.clock.bell import Bell
 
 
 class RealClock:

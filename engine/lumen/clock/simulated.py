@@ -3,8 +3,8 @@
 import time
 from collections.abc import Callable
 
-from lumen.clocks.bell import Bell
-from lumen.clocks.pace import PaceMeter
+from lumen.clock.bell import Bell
+from lumen.clock.pace import PaceMeter
 from lumen.language.nanoseconds import to_the_nanosecond
 
 MAX_ARREARS = 0.25

@@ -11,7 +11,7 @@ import lumen
 from lumen.extras import demand
 from lumen.ports import Joints, Sense
 from lumen.project.lending import model_files
-from lumen.robots.sense_codec import decode_reading
+from lumen.robot.sense_codec import decode_reading
 
 DIGITS = 4
 

@@ -9,7 +9,7 @@ from lumen.app.reaching import Reached
 from lumen.app.reload.requests import STATUS, command_key
 from lumen.language.routing_keys import CONFIG_STATUS, DEFAULT_ALIASES, DEFAULT_KEYS, default_key, key_of_robot
 from lumen.project.building import main_settings
-from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
+from lumen.robot.robot_routes import COMMAND_ROUTE, STOP_ROUTE
 
 PRESENCE, IMAGE = "presence", "image"
 SENSES = ("battery", "sonar", "joint")

@@ -6,7 +6,7 @@ FEATURE = Feature(
     name="memory_bus",
     buses={
         "memory": BusRow(
-            "lumen.buses.memory:open_bus", ("memory://", "memory://NAME"), example="memory://", within_process=True
+            "lumen.bus.memory:open_bus", ("memory://", "memory://NAME"), example="memory://", within_process=True
         )
     },
 )

@@ -2,7 +2,7 @@
 
 from lumen.feature import Feature, SenseRow
 
-_CODEC = "lumen.robots.sense_codec"
+_CODEC = "lumen.robot.sense_codec"
 
 FEATURE = Feature(
     name="senses",

@@ -1,7 +1,7 @@
 """Commands as JSON data: in the journal, and in the trace that the brain publishes on the bus.
 
 Both forms come from the classes of `Command` and their fields, so a new command needs no row here. The bodies of
-commands for a robot, spelt as in 2015, are in `robots/command_table.py`.
+commands for a robot, spelt as in 2015, are in `robot/command_table.py`.
 """
 
 from collections.abc import Mapping, Sequence

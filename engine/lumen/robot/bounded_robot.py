@@ -10,12 +10,12 @@ from lumen.language.commands import Do, Posture, Rest, Stop, Wake
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.ports import Aim, Idles, Joints, Perform, PerformsVerbs, Robot, RobotCommand, Sense
-from lumen.robots.checked_robot import CheckedRobot, of_own_robot
-from lumen.robots.command_bounds import CommandBounds
-from lumen.robots.command_table import parts_of
-from lumen.robots.executor import Executor
-from lumen.robots.joint_ways import begun_from
-from lumen.robots.skill_runner import SkillRunner
+from lumen.robot.checked_robot import CheckedRobot, of_own_robot
+from lumen.robot.command_bounds import CommandBounds
+from lumen.robot.command_table import parts_of
+from lumen.robot.executor import Executor
+from lumen.robot.joint_ways import begun_from
+from lumen.robot.skill_runner import SkillRunner
 
 SHADOW = ""
 """The id under which the verbs of features meet a command of the wrapped robot that ends them, or lets them move."""

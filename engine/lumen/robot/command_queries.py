@@ -6,10 +6,10 @@ from typing import Any
 
 from lumen.language.causes import UNNAMED_PROGRAM
 from lumen.ports import Message, Robot
-from lumen.robots.command_codec import method_of, own_id
-from lumen.robots.command_parameters import shown
-from lumen.robots.command_reports import CANCELLED, UNKNOWN_COMMAND, CommandRecord, CommandReports
-from lumen.robots.person_hold import PersonHold
+from lumen.robot.command_codec import method_of, own_id
+from lumen.robot.command_parameters import shown
+from lumen.robot.command_reports import CANCELLED, UNKNOWN_COMMAND, CommandRecord, CommandReports
+from lumen.robot.person_hold import PersonHold
 
 _log = logging.getLogger(__name__)
 

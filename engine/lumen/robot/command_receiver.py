@@ -17,14 +17,14 @@ from lumen.language.events import MISSED, RESULT, Event
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Joints, Live, Message, Perform, Robot, RobotCommand, Sense
-from lumen.robots.command_codec import decode_command, method_of, own_id, stops, stops_all
-from lumen.robots.command_queries import CommandQueries
-from lumen.robots.command_reports import CANCELLED, FAILED, FINISHED, CommandRecord, CommandReports
-from lumen.robots.command_table import parts_of, row_of
-from lumen.robots.deduplication_log import DeduplicationLog
-from lumen.robots.executor import FOREIGN
-from lumen.robots.person_hold import HoldListener, PersonHold
-from lumen.robots.robot_routes import (
+from lumen.robot.command_codec import decode_command, method_of, own_id, stops, stops_all
+from lumen.robot.command_queries import CommandQueries
+from lumen.robot.command_reports import CANCELLED, FAILED, FINISHED, CommandRecord, CommandReports
+from lumen.robot.command_table import parts_of, row_of
+from lumen.robot.deduplication_log import DeduplicationLog
+from lumen.robot.executor import FOREIGN
+from lumen.robot.person_hold import HoldListener, PersonHold
+from lumen.robot.robot_routes import (
     AIM_ROUTE,
     COMMAND_ROUTE,
     REPORT_ROUTE,

@@ -40,8 +40,8 @@ from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.project.added_verbs import time_taken
 from lumen.project.schema import faults
 from lumen.project.sounds import MAX_SOUND_DURATION
-from lumen.robots.command_parameters import CommandParameters, shown
-from lumen.robots.motion_codec import decode_motion, encode_motion
+from lumen.robot.command_parameters import CommandParameters, shown
+from lumen.robot.motion_codec import decode_motion, encode_motion
 
 C = TypeVar("C")
 

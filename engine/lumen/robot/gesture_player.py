@@ -8,7 +8,7 @@ from lumen.language.commands import Say
 from lumen.language.gestures import NO_GESTURES, GestureLibrary, WordTime
 from lumen.language.robots import Body
 from lumen.motion.gestures import GESTURE_SHARE, PlannedGesture, gesture_offsets, plan_gestures
-from lumen.robots.joint_offsets import approach
+from lumen.robot.joint_offsets import approach
 
 TEXTS_APART = 2
 """So many texts have to lie between two with the same gesture."""

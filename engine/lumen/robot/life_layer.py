@@ -25,8 +25,8 @@ from lumen.motion.life import (
 )
 from lumen.motion.life.looking import TOUCHED
 from lumen.ports import Live
-from lumen.robots.gesture_player import GesturePlayer
-from lumen.robots.joint_offsets import approach
+from lumen.robot.gesture_player import GesturePlayer
+from lumen.robot.joint_offsets import approach
 
 LIFE_PERIOD = 0.04
 """How often it is computed where each joint is wanted [s]; in between joints go on evenly."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from lumen.language.commands import Look, Rest
 from lumen.language.events import HELD, Event
 from lumen.ports import Aim, RobotCommand
-from lumen.robots.command_table import row_of
+from lumen.robot.command_table import row_of
 
 HEAD_SENSORS = ("FrontTactil", "MiddleTactil", "RearTactil")
 """Where a hand on the head is felt."""

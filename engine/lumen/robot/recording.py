@@ -18,12 +18,12 @@ from lumen.language.stories import Visitor
 from lumen.motion.dead_reckoning import DeadReckoning, beyond
 from lumen.motion.projection import Vector3, centring, seen
 from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.command_bounds import CommandBounds
-from lumen.robots.command_table import added_verb, parts_of, row_of
-from lumen.robots.cues import CueNotifier
-from lumen.robots.executor import Activity, ExecutingRobot, Executor
-from lumen.robots.life_layer import LifeLayer
-from lumen.robots.silent_recording import SilentRecording
+from lumen.robot.command_bounds import CommandBounds
+from lumen.robot.command_table import added_verb, parts_of, row_of
+from lumen.robot.cues import CueNotifier
+from lumen.robot.executor import Activity, ExecutingRobot, Executor
+from lumen.robot.life_layer import LifeLayer
+from lumen.robot.silent_recording import SilentRecording
 
 TORSO_HEIGHT = 0.333
 """Where the torso of a standing robot is above the floor [m]: NAO's; this robot has no model to ask."""

@@ -17,11 +17,11 @@ from lumen.language.events import RECORDED, Event
 from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.ports import Bus, HasOtherSenses, Image, KnowsListeners, OtherReading, Robot, RobotCommand, Sense
-from lumen.robots.command_receiver import CommandListener, CommandReceiver
-from lumen.robots.deduplication_log import DeduplicationLog
-from lumen.robots.robot_routes import NOTICED_ROUTE, RECORDING_ROUTE, TEXT_ROUTE, publish_on
-from lumen.robots.sense_codec import encode_reading, image_body
-from lumen.robots.sense_publisher import PendingReading, PublishCounts, SensePublisher
+from lumen.robot.command_receiver import CommandListener, CommandReceiver
+from lumen.robot.deduplication_log import DeduplicationLog
+from lumen.robot.robot_routes import NOTICED_ROUTE, RECORDING_ROUTE, TEXT_ROUTE, publish_on
+from lumen.robot.sense_codec import encode_reading, image_body
+from lumen.robot.sense_publisher import PendingReading, PublishCounts, SensePublisher
 
 DEFAULT_SENSE_PERIOD = 0.1
 SENSES_CLOSE_TIMEOUT = 5.0

@@ -2,8 +2,8 @@
 
 from lumen.language.events import RECORDED, Event
 from lumen.ports import Record
-from lumen.robots.cues import EventSink
-from lumen.robots.sense_codec import RECORDING_RATE, recording_body
+from lumen.robot.cues import EventSink
+from lumen.robot.sense_codec import RECORDING_RATE, recording_body
 
 
 class SilentRecording:

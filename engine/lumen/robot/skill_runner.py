@@ -12,7 +12,7 @@ from lumen.language.added_verbs import whole_result
 from lumen.language.commands import Do
 from lumen.ports import SkillPerformer
 from lumen.project.schema import faults
-from lumen.robots.command_table import added_verb
+from lumen.robot.command_table import added_verb
 from lumen.upkeep.threads import WatchedThread
 
 _log = logging.getLogger(__name__)

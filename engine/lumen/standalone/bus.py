@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from lumen.buses.addresses import open_bus
-from lumen.buses.validated import OnRefused, validated
+from lumen.bus.addresses import open_bus
+from lumen.bus.validated import OnRefused, validated
 from lumen.errors import BusError, Refused
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message

@@ -7,7 +7,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
-from lumen.clocks.virtual import VirtualClock
+from lumen.clock.virtual import VirtualClock
 from lumen.errors import UsageError
 from lumen.language import machines
 from lumen.language.events import Event

@@ -10,7 +10,7 @@ __all__ = ["Event", "Interpreter", "Machine", "Snapshot", "Step", "VirtualClock"
 
 _HOMES = {
     "lumen.standalone.machine": ("Interpreter", "Machine"),
-    "lumen.clocks.virtual": ("VirtualClock",),
+    "lumen.clock.virtual": ("VirtualClock",),
     "lumen.language.events": ("Event",),
     "lumen.statechart.serialization": ("TimerPolicy", "paused", "retimed", "serialize"),
     "lumen.statechart.stepping": ("due", "elapse", "finished", "initial", "step"),

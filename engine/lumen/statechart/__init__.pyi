@@ -1,4 +1,4 @@
-from lumen.clocks.virtual import VirtualClock as VirtualClock
+from lumen.clock.virtual import VirtualClock as VirtualClock
 from lumen.language.events import Event as Event
 from lumen.standalone.machine import Interpreter as Interpreter
 from lumen.standalone.machine import Machine as Machine

@@ -16,7 +16,7 @@ from lumen.app.fleet.memory import keep, remember
 from lumen.app.live_behavior import LiveBehavior
 from lumen.app.parts.part import Part
 from lumen.app.reload.reloader import Reloader
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.errors import BusError
 from lumen.language.diagnostics import has_errors
 from lumen.language.events import Event

@@ -13,7 +13,7 @@ from lumen.app.fleet.centre_journal import CentreJournal
 from lumen.app.fleet.fleet_log import FleetLog
 from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.app.fleet.signing import Signer
-from lumen.buses.addresses import is_rabbitmq
+from lumen.bus.addresses import is_rabbitmq
 from lumen.buses.stream_reader import StreamReader, has_stream
 from lumen.errors import UsageError
 from lumen.interpreters.fleet.state import CentreState

@@ -16,11 +16,11 @@ from lumen.project.engine_files import code_hash
 from lumen.project.home import home_of
 from lumen.project.lending import model_files
 from lumen.project.project_folders import MODELS
-from lumen.robots.motion_codec import encode_motion
+from lumen.robot.motion_codec import encode_motion
 from lumen.rules.physics import Case, Outcome
 from lumen.upkeep.private_folder import private_folder
 
-CODE = ("lumen.fuzzy", "lumen.interpreters", "lumen.language", "lumen.motion", "lumen.robots", "lumen.rules.physics")
+CODE = ("lumen.fuzzy", "lumen.interpreters", "lumen.language", "lumen.motion", "lumen.robot", "lumen.rules.physics")
 """The packages whose code decides what comes of a motion in simulation."""
 
 

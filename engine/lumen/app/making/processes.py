@@ -13,7 +13,7 @@ from lumen.app.recovery.run_directory import RunDirectory
 from lumen.app.services import Services
 from lumen.language.projects import Project
 from lumen.motion.bounds import analyse
-from lumen.robots.person_hold import StoppedBy
+from lumen.robot.person_hold import StoppedBy
 from lumen.runtime.presence import Presence
 from lumen.runtime.story import staged
 

@@ -18,7 +18,7 @@ from lumen.app.status import LastReload
 from lumen.journal.journal_writer import JournalWriter
 from lumen.motion.bounds import analyse
 from lumen.project.project_folders import FLEET_FILE
-from lumen.robots.person_hold import StoppedBy
+from lumen.robot.person_hold import StoppedBy
 from lumen.runtime.resuming import FreshStart, Resumption
 
 

@@ -12,8 +12,8 @@ from lumen.language.events import Event
 from lumen.language.stories import Story, TouchSensor
 from lumen.ports import FeelsTouch, RobotCommand
 from lumen.project.home import home_of
-from lumen.robots.command_receiver import CommandListener
-from lumen.robots.deduplication_log import DEDUPLICATION_FILE
+from lumen.robot.command_receiver import CommandListener
+from lumen.robot.deduplication_log import DEDUPLICATION_FILE
 from lumen.runtime.resuming import FreshStart, Resumption
 
 

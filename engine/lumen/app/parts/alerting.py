@@ -9,7 +9,7 @@ from lumen.app.alerts.disk import DiskWatch
 from lumen.app.alerts.falls import FallWatch
 from lumen.app.parts.brain import ENGINE, RUN_BEFORE
 from lumen.app.parts.part import Part
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.language.alerts import Alerts
 from lumen.language.commands import Command
 from lumen.language.events import Event

@@ -9,7 +9,7 @@ from lumen.app.parts.part import Part
 from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.robots.person_hold import PersonHold
+from lumen.robot.person_hold import PersonHold
 from lumen.runtime.presence import BRAIN, Presence
 from lumen.runtime.resuming import FreshStart, Resumption
 

@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from lumen.app.parts.part import Part
-from lumen.buses.addresses import within_process
+from lumen.bus.addresses import within_process
 from lumen.language.events import Event
 from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread

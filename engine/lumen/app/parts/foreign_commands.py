@@ -8,7 +8,7 @@ from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.verbs import verb_of
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
-from lumen.robots.command_receiver import CommandListener
+from lumen.robot.command_receiver import CommandListener
 
 WHO = "command"
 

@@ -12,16 +12,16 @@ from lumen.app.parts.guard import BrainGuard
 from lumen.app.parts.kept_hold import KeptHold, forget_hold
 from lumen.app.parts.robot import RobotPart, RunBefore, Urgency
 from lumen.app.setup import Setup
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.language.commands import Rest, Start
 from lumen.language.events import Event
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.project.home import home_of
-from lumen.robots.deduplication_log import DEDUPLICATION_FILE
-from lumen.robots.person_hold import StoppedBy
-from lumen.robots.remote import RobotHost
+from lumen.robot.deduplication_log import DEDUPLICATION_FILE
+from lumen.robot.person_hold import StoppedBy
+from lumen.robot.remote import RobotHost
 from lumen.runtime.journal import Journal
 from lumen.runtime.presence import BRAIN, ROBOT_PART, Presence
 from lumen.upkeep.threads import WatchedThread

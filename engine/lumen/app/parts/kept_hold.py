@@ -4,8 +4,8 @@ from datetime import datetime
 from pathlib import Path
 
 from lumen.project.home import Home
-from lumen.robots.command_receiver import CommandListener
-from lumen.robots.person_hold import PersonHold, StoppedBy
+from lumen.robot.command_receiver import CommandListener
+from lumen.robot.person_hold import PersonHold, StoppedBy
 
 STOPPED_FILE = "stopped.json"
 

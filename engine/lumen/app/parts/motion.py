@@ -7,12 +7,12 @@ from math import inf
 
 from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.language.commands import Track
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Clock, Message, Perform
-from lumen.robots.remote import RemoteRobot
+from lumen.robot.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import motion_key
 from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
 from lumen.runtime.tracking import LocalTracking

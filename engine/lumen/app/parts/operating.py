@@ -43,8 +43,8 @@ from lumen.language.operator_requests import (
     WHY_NOT,
 )
 from lumen.ports import Message, Sense
-from lumen.robots.person_hold import StoppedBy
-from lumen.robots.robot_routes import TEXT_ROUTE
+from lumen.robot.person_hold import StoppedBy
+from lumen.robot.robot_routes import TEXT_ROUTE
 from lumen.runtime.loop import Observer
 from lumen.statechart import Step
 from lumen.statechart.direct_entry import entered_directly

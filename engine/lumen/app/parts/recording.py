@@ -13,7 +13,7 @@ from lumen.app.recording.recovering import RecordingRescue
 from lumen.app.recording.ring import PIECE_PERIOD, RingTape
 from lumen.app.recording.robot_view import RobotView
 from lumen.app.recording.tape_file import FileTape
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.errors import LumenError, RecordingError, UsageError
 from lumen.extras import MissingExtraError
 from lumen.formats.recordings.reading import read_recording

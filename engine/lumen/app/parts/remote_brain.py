@@ -7,7 +7,7 @@ from lumen.app.live_behavior import LiveBehavior
 from lumen.app.narrator import Narrator
 from lumen.app.parts.brain import BrainPart
 from lumen.app.setup import Setup
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.errors import BusRefusedError
 from lumen.language.commands import Rest
 from lumen.language.events import Event
@@ -15,9 +15,9 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock, RobotCommand
 from lumen.project.home import Home
-from lumen.robots.command_table import row_of
-from lumen.robots.person_hold import StoppedBy, on_head
-from lumen.robots.remote import RemoteRobot
+from lumen.robot.command_table import row_of
+from lumen.robot.person_hold import StoppedBy, on_head
+from lumen.robot.remote import RemoteRobot
 from lumen.runtime.delegated_tracking import DelegatedTracking
 from lumen.runtime.loop import Observer
 from lumen.runtime.presence import BRAIN, HERE, MOTION, ROBOT_PART, Presence, where_it_runs

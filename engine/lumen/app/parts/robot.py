@@ -14,11 +14,11 @@ from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
 from lumen.ports import Bus, HasSpeed
-from lumen.robots.bounded_robot import is_idle
-from lumen.robots.command_receiver import CommandListener
-from lumen.robots.deduplication_log import DeduplicationLog
-from lumen.robots.sense_publisher import PublishCounts
-from lumen.robots.server import RobotServer
+from lumen.robot.bounded_robot import is_idle
+from lumen.robot.command_receiver import CommandListener
+from lumen.robot.deduplication_log import DeduplicationLog
+from lumen.robot.sense_publisher import PublishCounts
+from lumen.robot.server import RobotServer
 from lumen.runtime.loop import Observer
 from lumen.runtime.perception import FaceDetector
 from lumen.runtime.presence import ROBOT_PART, Presence

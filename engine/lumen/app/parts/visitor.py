@@ -7,13 +7,13 @@ from typing import Any
 from lumen.app.causes import innermost
 from lumen.app.narrator import Narrator
 from lumen.app.parts.part import Part
-from lumen.buses.validated import ValidatedBus
+from lumen.bus.validated import ValidatedBus
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story, VisitorAction
 from lumen.ports import Bus, Hall
-from lumen.robots.remote import RemoteHall
+from lumen.robot.remote import RemoteHall
 from lumen.runtime.presence import BRAIN, ROBOT_PART, VISITOR
 from lumen.runtime.story import StoryEnvironment, StoryPlayer
 from lumen.runtime.trace_subscriber import TraceSubscriber

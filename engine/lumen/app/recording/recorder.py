@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 
 from lumen.app.recording.happenings import happening
 from lumen.app.recording.notes import notes_of
-from lumen.buses.aliases import COPY
+from lumen.bus.aliases import COPY
 from lumen.formats.recordings.encoding import MessageEncoder
 from lumen.formats.recordings.recorded import Recorded
 from lumen.language.people import PersonName, name_key

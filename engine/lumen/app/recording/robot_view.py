@@ -12,7 +12,7 @@ from lumen.formats.recordings.recorded import RecordedMessage
 from lumen.language.projects import Project
 from lumen.ports import Joints, Message, Sense
 from lumen.project.lending import model_files
-from lumen.robots.sense_codec import decode_reading
+from lumen.robot.sense_codec import decode_reading
 
 if TYPE_CHECKING:
     from lumen.robots.simulation.link_frames import LinkFrames, LinkShape

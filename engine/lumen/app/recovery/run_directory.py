@@ -14,14 +14,14 @@ from lumen.app.reload.records import RunRecords
 from lumen.app.reload.reloader import Reloader, ReloadOptions
 from lumen.app.reload.report import ReloadReport
 from lumen.app.reload.validation_worker import load_apart
-from lumen.buses.addresses import within_process
-from lumen.buses.local import LocalBusServer
+from lumen.bus.addresses import within_process
+from lumen.bus.local import LocalBusServer
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.ports import Bus
 from lumen.project.chosen_robot import as_robot
 from lumen.project.home import ADDRESS_FILE, Home, home_of
-from lumen.robots.robot_routes import COMMAND_ROUTE, STOP_ROUTE
+from lumen.robot.robot_routes import COMMAND_ROUTE, STOP_ROUTE
 from lumen.runtime.resuming import FreshStart, Resumption
 
 _log = logging.getLogger(__name__)

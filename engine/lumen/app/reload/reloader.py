@@ -19,7 +19,7 @@ from lumen.app.reload.requests import WAITING, ReloadRequest, answering, command
 from lumen.app.reload.validation_worker import FileJudge, ValidationWorker
 from lumen.app.reload.validator import BUDGET, BundleValidator, Validation, fault_of, told
 from lumen.app.status import LastReload
-from lumen.buses.validated import by_key
+from lumen.bus.validated import by_key
 from lumen.errors import BusError, UsageError
 from lumen.insight.changes import changes, live
 from lumen.language.causes import Cause

@@ -14,7 +14,7 @@ from lumen.insight.replay.visits import RecordedVisit, visits
 from lumen.language.commands import BodyCommand, Play
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.robots.command_table import COMMANDS, USUAL_DURATION, row_of
+from lumen.robot.command_table import COMMANDS, USUAL_DURATION, row_of
 
 NOT_WHOLE = "visits that are incomplete in the journal"
 

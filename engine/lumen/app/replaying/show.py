@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from lumen.app.narrator import Narrator
 from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.app.setup import Setup
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.insight.replay.replaying import Replayer
 from lumen.language.projects import Project

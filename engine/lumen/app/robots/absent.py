@@ -1,9 +1,9 @@
 """An exhibition without a robot."""
 
 from lumen.app.setup import RobotRequest, Setup
-from lumen.clocks.real import RealClock
+from lumen.clock.real import RealClock
 from lumen.errors import UsageError
-from lumen.robots.none import NoRobot
+from lumen.robot.none import NoRobot
 
 
 def set_up(request: RobotRequest) -> Setup:

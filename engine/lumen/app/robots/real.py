@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from lumen.app.setup import RobotRequest, Setup
-from lumen.clocks.real import RealClock
+from lumen.clock.real import RealClock
 from lumen.errors import UsageError
 from lumen.robots.naoqi import NaoqiRobot, PhysicalHall
 

@@ -1,8 +1,8 @@
 """A robot that records the commands that it is given."""
 
 from lumen.app.setup import RobotRequest, Setup
-from lumen.clocks.simulated import SimulatedClock
-from lumen.robots.recording import RecordingRobot
+from lumen.clock.simulated import SimulatedClock
+from lumen.robot.recording import RecordingRobot
 
 
 def set_up(request: RobotRequest) -> Setup:

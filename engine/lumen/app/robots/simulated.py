@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from lumen.app.setup import RobotRequest, Setup
-from lumen.clocks.simulated import SimulatedClock
+from lumen.clock.simulated import SimulatedClock
 from lumen.project.lending import model_files
 from lumen.robots.simulation import SimulatedRobot, available
 

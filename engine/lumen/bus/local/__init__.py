@@ -5,8 +5,8 @@ a socket that only the same user can open (a file of mode 0600, or loopback wher
 has proved that it knows the key of the address. Nothing that comes in is ever executed.
 """
 
-from lumen.buses.local.address import LocalAddress
-from lumen.buses.local.client import LocalBusClient
-from lumen.buses.local.server import LocalBusServer
+from lumen.bus.local.address import LocalAddress
+from lumen.bus.local.client import LocalBusClient
+from lumen.bus.local.server import LocalBusServer
 
 __all__ = ["LocalAddress", "LocalBusClient", "LocalBusServer"]

@@ -11,10 +11,10 @@ from contextlib import suppress
 from itertools import count
 from typing import Any
 
-from lumen.buses.bodies import check_key, check_subscription, encode
-from lumen.buses.identities import origin_of
-from lumen.buses.local.address import ANSWER_TIMEOUT, LocalAddress
-from lumen.buses.local.frames import (
+from lumen.bus.bodies import check_key, check_subscription, encode
+from lumen.bus.identities import origin_of
+from lumen.bus.local.address import ANSWER_TIMEOUT, LocalAddress
+from lumen.bus.local.frames import (
     CLIENT,
     RECEIVE_BYTES,
     SERVER,
@@ -26,7 +26,7 @@ from lumen.buses.local.frames import (
     proves,
     unframed,
 )
-from lumen.buses.local.sendbuffer import SendBuffer
+from lumen.bus.local.sendbuffer import SendBuffer
 from lumen.errors import BusClosedError, BusError, BusRefusedError, BusUnreachableError, Refused
 from lumen.language.routes import Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing

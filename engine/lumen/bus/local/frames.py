@@ -8,7 +8,7 @@ import struct
 from collections.abc import Iterator
 from typing import Any
 
-from lumen.buses.bodies import MAX_BODY_BYTES
+from lumen.bus.bodies import MAX_BODY_BYTES
 
 MAX_FRAME_BYTES = MAX_BODY_BYTES + 4_096
 """How long a frame may be [bytes]: a body and what stands around it."""

@@ -14,10 +14,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from lumen.buses.bodies import check_key, check_ttl, encode
-from lumen.buses.identities import believed
-from lumen.buses.local import address as addresses
-from lumen.buses.local.frames import (
+from lumen.bus.bodies import check_key, check_ttl, encode
+from lumen.bus.identities import believed
+from lumen.bus.local import address as addresses
+from lumen.bus.local.frames import (
     CLIENT,
     RECEIVE_BYTES,
     SERVER,

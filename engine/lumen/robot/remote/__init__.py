@@ -3,8 +3,8 @@
 `RobotHost` is the body's side, `RemoteRobot` and `RemoteHall` are the brain's and the visitor's.
 """
 
-from lumen.robots.remote.hall import RemoteHall
-from lumen.robots.remote.host import RobotHost
-from lumen.robots.remote.robot import RemoteRobot
+from lumen.robot.remote.hall import RemoteHall
+from lumen.robot.remote.host import RobotHost
+from lumen.robot.remote.robot import RemoteRobot
 
 __all__ = ["RemoteHall", "RemoteRobot", "RobotHost"]

@@ -11,7 +11,7 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, Message
-from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, publish_on
+from lumen.robot.robot_routes import HALL_ROUTE, SEEN_ROUTE, publish_on
 
 HALL_MESSAGE_TTL = 2.0
 """For how long what is done in a hall may wait on the bus [s]."""

@@ -12,9 +12,9 @@ from lumen.language.numbers import is_finite_number
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, FeelsTouch, Hall, HasCharger, HearsVisitors, Message, Robot
-from lumen.robots.command_receiver import CommandListener
-from lumen.robots.robot_routes import HALL_ROUTE, SEEN_ROUTE, publish_on
-from lumen.robots.server import RobotServer
+from lumen.robot.command_receiver import CommandListener
+from lumen.robot.robot_routes import HALL_ROUTE, SEEN_ROUTE, publish_on
+from lumen.robot.server import RobotServer
 from lumen.upkeep.threads import MessageGuard
 
 FACE_REPORT_PERIOD = 0.1

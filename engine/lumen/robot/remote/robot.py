@@ -16,10 +16,10 @@ from lumen.language.commands import Rest, Stop
 from lumen.language.events import CUE, MISSED, RESULT, Event, robot_events
 from lumen.language.projects import Project
 from lumen.ports import Aim, Bus, Live, Message, NumericReading, OtherReading, Perform, Reading, RobotCommand, Sense
-from lumen.robots.command_bounds import CommandBounds
-from lumen.robots.command_codec import encode_command
-from lumen.robots.command_reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN_COMMAND
-from lumen.robots.robot_routes import (
+from lumen.robot.command_bounds import CommandBounds
+from lumen.robot.command_codec import encode_command
+from lumen.robot.command_reports import ACCEPTED, CANCELLED, FAILED, FINISHED, STARTED, UNKNOWN_COMMAND
+from lumen.robot.robot_routes import (
     AIM_ROUTE,
     COMMAND_ROUTE,
     NOTICED_ROUTE,
@@ -27,7 +27,7 @@ from lumen.robots.robot_routes import (
     STOP_ROUTE,
     publish_on,
 )
-from lumen.robots.sense_codec import decode_reading
+from lumen.robot.sense_codec import decode_reading
 
 RESEND_PERIOD = 1.0
 """How long a command may stay unanswered before it is sent again [s].

@@ -2,7 +2,7 @@
 
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
-from lumen.robots.cues import CueNotifier, EventSink
+from lumen.robot.cues import CueNotifier, EventSink
 from lumen.robots.naoqi.lights import fades
 from lumen.robots.naoqi.walks import PostCall
 

@@ -12,8 +12,8 @@ from lumen.language.robots import Body
 from lumen.motion.bounds import nearest_angles
 from lumen.motion.life import vigour
 from lumen.ports import Live, RobotCommand
-from lumen.robots.command_table import speech_duration
-from lumen.robots.life_layer import LifeLayer
+from lumen.robot.command_table import speech_duration
+from lumen.robot.life_layer import LifeLayer
 from lumen.robots.naoqi.eyes import NaoqiEyes
 from lumen.robots.naoqi.hardware import hardware_of
 from lumen.robots.naoqi.session import NaoqiCall, NaoqiSession

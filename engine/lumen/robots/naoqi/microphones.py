@@ -6,10 +6,10 @@ from typing import Any
 from lumen.errors import RobotFailedError, SenseError
 from lumen.language.events import RECORDED, Event
 from lumen.ports import Record
-from lumen.robots.cues import EventSink
+from lumen.robot.cues import EventSink
+from lumen.robot.sense_codec import RECORDING_RATE, recording_body
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
 from lumen.robots.naoqi.session import NaoqiCall, NaoqiSession
-from lumen.robots.sense_codec import RECORDING_RATE, recording_body
 
 AUDIO_DEVICE, MICROPHONE_SERVICE = "ALAudioDevice", "LumenMicrophones"
 FRONT_MICROPHONE, INTERLEAVED = 3, 0

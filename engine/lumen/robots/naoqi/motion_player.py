@@ -7,8 +7,8 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.motion.postures import UPRIGHT
 from lumen.motion.trajectories import JointTrack, Trajectory
-from lumen.robots.cues import EventSink
-from lumen.robots.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from, home_angles, way_duration
+from lumen.robot.cues import EventSink
+from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from, home_angles, way_duration
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
 from lumen.robots.naoqi.cue_player import CuePlayer
 from lumen.robots.naoqi.curves import curves

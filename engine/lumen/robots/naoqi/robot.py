@@ -9,9 +9,10 @@ from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.motion.bounds import nearest_angles
 from lumen.ports import Aim, Battery, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.command_bounds import CommandBounds
-from lumen.robots.command_table import parts_of
-from lumen.robots.executor import ExecutingRobot, Executor
+from lumen.robot.command_bounds import CommandBounds
+from lumen.robot.command_table import parts_of
+from lumen.robot.executor import ExecutingRobot, Executor
+from lumen.robot.skill_runner import SkillRunner
 from lumen.robots.naoqi.call_sequence import CallSequence
 from lumen.robots.naoqi.hardware import hardware_of
 from lumen.robots.naoqi.life import NaoqiLife
@@ -23,7 +24,6 @@ from lumen.robots.naoqi.sensors import NaoqiSensors
 from lumen.robots.naoqi.session import CALL_TIMEOUT, CONNECTION_LOST, NaoqiCall, NaoqiSession
 from lumen.robots.naoqi.skills import NaoqiSkills
 from lumen.robots.naoqi.walking_area import WalkingArea
-from lumen.robots.skill_runner import SkillRunner
 
 
 class NaoqiRobot(ExecutingRobot):

@@ -9,9 +9,9 @@ from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.robots import Body
 from lumen.ports import Aim, Live, NativeCommand, Perform, Record
-from lumen.robots.command_table import parts_of
-from lumen.robots.cues import EventSink
-from lumen.robots.joint_ways import LOOK_SPEED
+from lumen.robot.command_table import parts_of
+from lumen.robot.cues import EventSink
+from lumen.robot.joint_ways import LOOK_SPEED
 from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
 from lumen.robots.naoqi.hardware import hardware_of
 from lumen.robots.naoqi.lights import fades

@@ -7,7 +7,7 @@ from lumen.errors import RobotRefusedError
 from lumen.language.projects import Stage
 from lumen.motion.dead_reckoning import DeadReckoning, turned
 from lumen.ports import Sonar, Whereabouts
-from lumen.robots.hazards import danger
+from lumen.robot.hazards import danger
 from lumen.robots.naoqi.hardware import Hardware
 
 FALL_DRIFT = 0.6

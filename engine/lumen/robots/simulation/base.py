@@ -4,7 +4,7 @@ from typing import Protocol
 
 from lumen.language.commands import Move, Walk
 from lumen.ports import Whereabouts
-from lumen.robots.executor import Activity
+from lumen.robot.executor import Activity
 from lumen.robots.simulation.contact_shadows import Soles
 from lumen.robots.simulation.joint_envelope import JointVector
 

@@ -7,7 +7,7 @@ from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.motion.gait import paces_of
 from lumen.ports import Whereabouts
-from lumen.robots.executor import Activity
+from lumen.robot.executor import Activity
 from lumen.robots.simulation.balance import BalanceController
 from lumen.robots.simulation.catching import FallCatcher
 from lumen.robots.simulation.contact_shadows import Soles

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
-from lumen.robots.command_table import speech_duration
+from lumen.robot.command_table import speech_duration
 from lumen.robots.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, subtitle_pages, title
 from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 from lumen.robots.simulation.rendering import FILM_QUALITY, PixelArray, RenderState, SceneRenderer, available

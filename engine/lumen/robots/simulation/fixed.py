@@ -4,7 +4,7 @@ import numpy as np
 
 from lumen.errors import RobotRefusedError
 from lumen.language.commands import Move, Walk
-from lumen.robots.executor import Activity
+from lumen.robot.executor import Activity
 from lumen.robots.simulation.contact_shadows import NO_SOLES
 from lumen.robots.simulation.joint_envelope import JointVector
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lumen.robots.hazards import danger
+from lumen.robot.hazards import danger
 from lumen.robots.simulation.sonar import Sonars
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
-from lumen.robots.joint_ways import way_duration
+from lumen.robot.joint_ways import way_duration
 from lumen.robots.simulation.motors import Motors
 
 MIN_TRANSITION_TIME, MAX_TRANSITION_TIME = 0.6, 2.0

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from lumen.language.commands import Say
 from lumen.language.motions import Cue, MotionDefinition
 from lumen.motion.trajectories import Trajectory
-from lumen.robots.cues import CueNotifier, EventSink
-from lumen.robots.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from
+from lumen.robot.cues import CueNotifier, EventSink
+from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from
 from lumen.robots.simulation.joint_transition import JointTransition
 from lumen.robots.simulation.lights import Lights
 from lumen.robots.simulation.motors import Motors

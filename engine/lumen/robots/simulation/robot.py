@@ -23,9 +23,10 @@ from lumen.language.stories import Visitor
 from lumen.motion.life import vigour
 from lumen.motion.projection import centring
 from lumen.ports import Aim, Battery, Image, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
-from lumen.robots.command_bounds import CommandBounds
-from lumen.robots.executor import Activity, ExecutingRobot, Executor
-from lumen.robots.life_layer import LifeLayer
+from lumen.robot.command_bounds import CommandBounds
+from lumen.robot.executor import Activity, ExecutingRobot, Executor
+from lumen.robot.life_layer import LifeLayer
+from lumen.robot.skill_runner import SkillRunner
 from lumen.robots.simulation.aim_controller import AimController
 from lumen.robots.simulation.base import RobotBase
 from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
@@ -48,7 +49,6 @@ from lumen.robots.simulation.tactile_sensors import TactileSensors
 from lumen.robots.simulation.visitor_figure import VisitorFigure
 from lumen.robots.simulation.wheels import Wheels
 from lumen.robots.simulation.world import CONTROL_PERIOD, FALLEN_TILT, World
-from lumen.robots.skill_runner import SkillRunner
 
 _EMPTY = "battery-empty"
 """The id of the rest that an empty battery takes."""

@@ -10,11 +10,11 @@ from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, 
 from lumen.language.roles import BaseKind
 from lumen.motion.postures import RESTFUL, standing
 from lumen.ports import Aim, Live, NativeCommand, Perform, Record, RobotCommand
-from lumen.robots.command_table import parts_of, row_of
-from lumen.robots.cues import EventSink
-from lumen.robots.executor import Activity
-from lumen.robots.joint_ways import LOOK_SPEED, home_angles
-from lumen.robots.silent_recording import SilentRecording
+from lumen.robot.command_table import parts_of, row_of
+from lumen.robot.cues import EventSink
+from lumen.robot.executor import Activity
+from lumen.robot.joint_ways import LOOK_SPEED, home_angles
+from lumen.robot.silent_recording import SilentRecording
 from lumen.robots.simulation.base import RobotBase
 from lumen.robots.simulation.joint_transition import JointTransition
 from lumen.robots.simulation.lights import LightFade, Lights

@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from lumen.language.gestures import WordTime
-from lumen.robots.command_table import speech_duration
+from lumen.robot.command_table import speech_duration
 
 
 class SpeechPlayback(Protocol):

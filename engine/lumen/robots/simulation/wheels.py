@@ -10,7 +10,7 @@ from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
 from lumen.motion.gait import Velocity
 from lumen.ports import Whereabouts
-from lumen.robots.executor import Activity
+from lumen.robot.executor import Activity
 from lumen.robots.simulation.contact_shadows import NO_SOLES, Soles
 from lumen.robots.simulation.drive_geometry import read_drive
 from lumen.robots.simulation.driving import Drive, DriveOn, DriveTo

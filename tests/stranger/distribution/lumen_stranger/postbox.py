@@ -1,6 +1,6 @@
 """A bus inside one process that counts its letters."""
 
-from lumen.buses.memory import MemoryBus
+from lumen.bus.memory import MemoryBus
 from lumen.ports import Outgoing
 
 
