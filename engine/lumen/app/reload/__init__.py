@@ -1,1 +1,0 @@
-"""Saved files on a running exhibition: judged beside it, staged, and active between two of its steps."""

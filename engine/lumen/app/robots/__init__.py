@@ -1,1 +1,0 @@
-"""How each of the robots that come with Lumen is set up, with its clock and the hall around it."""
