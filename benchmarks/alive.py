@@ -17,9 +17,6 @@ from time import process_time
 from typing import Any
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.setup import set_up_with
 from lumen.bus.memory import MemoryBus
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
@@ -32,7 +29,10 @@ from lumen.robot.command_table import speech_duration
 from lumen.robot.gesture_player import GesturePlayer
 from lumen.robot.life_layer import LifeLayer
 from lumen.robots.simulation import SimulatedRobot
-from lumen.runtime.loop import Observer
+from lumen.run.exhibition import Exhibition
+from lumen.run.loop import Observer
+from lumen.run.plan import Plan
+from lumen.run.setup import set_up_with
 
 ROOT = Path(__file__).parents[1]
 STEP = 0.1

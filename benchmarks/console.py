@@ -31,12 +31,12 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.guarded import DEVNULL, PIPE, Guarded, temporary_folder
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.setup import set_up
 from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
-from lumen.runtime.loop import TICK_PERIOD
+from lumen.run.exhibition import Exhibition
+from lumen.run.loop import TICK_PERIOD
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.setup import set_up
 
 ROOT = Path(__file__).parents[1]
 SETTLED = 3.0

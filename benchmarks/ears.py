@@ -21,8 +21,8 @@ from lumen.language.projects import Project
 from lumen.modules.ears.expected import expected, heard_names
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.sphinx import Sphinx
-from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
+from lumen.run.sound import Sound
 
 ENGLISH = {
     "offer": """

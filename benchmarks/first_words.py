@@ -18,7 +18,7 @@ from lumen.language.causes import UNKNOWN_ORIGIN
 from lumen.language.commands import Ask
 from lumen.language.modules import ANSWERS, ModuleSettings
 from lumen.modules.answers import Answers
-from lumen.runtime.questions import Questions
+from lumen.run.questions import Questions
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.conversation.fake_model import fake_model, says

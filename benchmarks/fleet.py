@@ -23,15 +23,15 @@ import numpy as np
 from tests.guarded import run_guarded
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.house import House
-from lumen.app.node import NAP
-from lumen.app.parts.part import Part
-from lumen.app.plan import Plan
-from lumen.app.setup import set_up_house
 from lumen.language.events import Event
 from lumen.ports import Message
-from lumen.runtime.loop import TICK_PERIOD
+from lumen.run.exhibition import Exhibition
+from lumen.run.house import House
+from lumen.run.loop import TICK_PERIOD
+from lumen.run.node import NAP
+from lumen.run.parts.part import Part
+from lumen.run.plan import Plan
+from lumen.run.setup import set_up_house
 
 ROOT = Path(__file__).parents[1]
 SENSES = ("joint", "sonar", "tactile", "battery")

@@ -20,9 +20,6 @@ from pathlib import Path
 from statistics import median
 
 import lumen
-from lumen.app.rehearsal import rehearse
-from lumen.app.replaying.other_files import against
-from lumen.app.replaying.replay_report import replayed
 from lumen.insight.replay.entries import RecordedEntry
 from lumen.journal.journal_file import read_journal
 from lumen.journal.journal_folder import JournalFolder
@@ -30,9 +27,12 @@ from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.runtime.loop import Observer
-from lumen.runtime.runtime import Runtime
-from lumen.runtime.watcher import SWITCH_INTERVAL
+from lumen.run.loop import Observer
+from lumen.run.rehearsal import rehearse
+from lumen.run.replaying.other_files import against
+from lumen.run.replaying.replay_report import replayed
+from lumen.run.runtime import Runtime
+from lumen.run.watcher import SWITCH_INTERVAL
 
 ROOT = Path(__file__).parents[1]
 EVENTS_PER_SECOND = 200

@@ -30,8 +30,8 @@ from lumen.modules.ears.recogniser import Recogniser
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.shared_recogniser import shared_sphinx
 from lumen.modules.ears.voice_activity import VoiceActivity
-from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
+from lumen.run.sound import Sound
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.waiting import Collector

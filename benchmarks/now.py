@@ -13,11 +13,11 @@ from time import process_time
 from typing import Any
 
 import lumen
-from lumen.app.doings import Doings
-from lumen.app.exhibition import Exhibition
-from lumen.app.now import NowView, moment
 from lumen.language.projects import Project
-from lumen.runtime.approvals import Approvals
+from lumen.run.approvals import Approvals
+from lumen.run.doings import Doings
+from lumen.run.exhibition import Exhibition
+from lumen.run.now import NowView, moment
 from lumen.statechart import Machine, initial
 
 RUNS, SIZE = 31, 1500

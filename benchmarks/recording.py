@@ -18,14 +18,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.setup import set_up
 from lumen.formats.recordings.reading import read_recording
 from lumen.formats.recordings.recorded import RecordedMessage
 from lumen.language.retention import RecordingSettings
-from lumen.runtime.loop import TICK_PERIOD
+from lumen.run.exhibition import Exhibition
+from lumen.run.loop import TICK_PERIOD
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.setup import set_up
 
 ROOT = Path(__file__).parents[1]
 SETTLED = 3.0

@@ -26,23 +26,23 @@ from editing import Colleague, project
 from tests.guarded import PIPE, Guarded
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.narrator import Narrator
-from lumen.app.parts.part import Part
-from lumen.app.plan import Plan
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader, ReloadOptions
-from lumen.app.reload.report import ReloadReport
-from lumen.app.reload.saved_files import RecordsPart, ReloadPart
-from lumen.app.setup import Setup
 from lumen.bus import connect
 from lumen.clock.simulated import SimulatedClock
 from lumen.language.events import Event
 from lumen.language.stories import Visitor
 from lumen.project.home import Home
 from lumen.robot.recording import RecordingRobot
-from lumen.runtime.loop import TICK_PERIOD
-from lumen.runtime.watcher import SHORT_QUIET_FRACTION
+from lumen.run.exhibition import Exhibition
+from lumen.run.loop import TICK_PERIOD
+from lumen.run.narrator import Narrator
+from lumen.run.parts.part import Part
+from lumen.run.plan import Plan
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.reloader import Reloader, ReloadOptions
+from lumen.run.reload.report import ReloadReport
+from lumen.run.reload.saved_files import RecordsPart, ReloadPart
+from lumen.run.setup import Setup
+from lumen.run.watcher import SHORT_QUIET_FRACTION
 from lumen.upkeep.garbage import GcScheduler
 
 RATE = 200

@@ -18,10 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.rehearsal import rehearse
-from lumen.app.setup import Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.language.commands import Walk
 from lumen.language.projects import Project
@@ -30,6 +26,10 @@ from lumen.language.stories import Visitor
 from lumen.ports import Image, Perform, RobotCommand, Sense
 from lumen.robots.simulation import SimulatedRobot, available
 from lumen.robots.simulation.world import CONTROL_PERIOD, World
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.rehearsal import rehearse
+from lumen.run.setup import Setup
 
 ROOT = Path(__file__).parent.parent
 SECONDS = 20.0

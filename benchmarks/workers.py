@@ -21,12 +21,12 @@ from tests.cpu_time import cpu_time
 from tests.workers.clusters import dask_cluster
 
 import lumen
-from lumen.app.lint.physics import play_case
-from lumen.app.workers.work_kit import WorkKit, models_in
-from lumen.app.workers.workers import Workers, cores, workers_of
 from lumen.language.imperfections import Imperfections
 from lumen.project.files import read_files
 from lumen.rules.physics.cases import cases
+from lumen.run.linting.physics import play_case
+from lumen.run.workers.work_kit import WorkKit, models_in
+from lumen.run.workers.workers import Workers, cores, workers_of
 
 ROOT = Path(__file__).parents[1]
 

@@ -23,9 +23,6 @@ import numpy as np
 import yaml
 
 import lumen
-from lumen.app.workers.tasks import engine
-from lumen.app.workers.work_kit import UnpackedKit, WorkKit, models_in, name_of
-from lumen.app.workers.workers import Workers, workers_of
 from lumen.errors import LumenError
 from lumen.language.commands import Posture
 from lumen.language.robots import Body
@@ -37,6 +34,9 @@ from lumen.project.lending import MODELS
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.model_terms import Variation
 from lumen.robots.simulation.world import CONTROL_PERIOD
+from lumen.run.workers.tasks import engine
+from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in, name_of
+from lumen.run.workers.workers import Workers, workers_of
 
 CACHE = Path(__file__).parent.parent / ".cache" / "search_passage"
 

@@ -43,7 +43,7 @@ def _forget() -> None:
     The process that waits to judge files knows the features of its own start, so it ends.
     """
     invalidate_caches()
-    if idle := sys.modules.get("lumen.app.reload.idle_process"):
+    if idle := sys.modules.get("lumen.run.reload.idle_process"):
         idle.end_idle()
     for name, module in list(sys.modules.items()):
         if name.partition(".")[0] == "lumen":

@@ -3,12 +3,12 @@
 import sys
 from typing import TextIO
 
-from lumen.app.exhibition import Exhibition
-from lumen.app.narrator import Narrator
-from lumen.app.plan import Plan
-from lumen.app.setup import Setup
 from lumen.language.projects import Project
 from lumen.language.stories import Story
+from lumen.run.exhibition import Exhibition
+from lumen.run.narrator import Narrator
+from lumen.run.plan import Plan
+from lumen.run.setup import Setup
 
 
 class Printed(Narrator):

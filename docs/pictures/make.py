@@ -25,9 +25,6 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.setup import Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
 from lumen.fuzzy import Controller
@@ -40,6 +37,9 @@ from lumen.ports import Perform, Sense
 from lumen.project.lending import model_files
 from lumen.robots.simulation import SimulatedRobot, available
 from lumen.robots.simulation.rendering import RenderQuality, RenderState, SceneRenderer
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.setup import Setup
 
 HERE = Path(__file__).parent
 MID_DANCE = 7.0

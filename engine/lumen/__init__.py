@@ -8,9 +8,6 @@ from typing import TYPE_CHECKING
 from lumen.upkeep.lazy_names import lazy
 
 if TYPE_CHECKING:
-    from lumen.app.exhibition import Exhibition
-    from lumen.app.opening import open
-    from lumen.app.recalling import why, why_not
     from lumen.errors import (
         BadCommandError,
         BadMessageError,
@@ -45,6 +42,9 @@ if TYPE_CHECKING:
     from lumen.language.projects import Project
     from lumen.lint import check
     from lumen.project import load
+    from lumen.run.exhibition import Exhibition
+    from lumen.run.opening import open
+    from lumen.run.recalling import why, why_not
 
 __version__ = "0.1.0"
 
@@ -89,9 +89,9 @@ __all__ = [
 ]
 
 _HOMES = {
-    "lumen.app.exhibition": ("Exhibition",),
-    "lumen.app.opening": ("open",),
-    "lumen.app.recalling": ("why", "why_not"),
+    "lumen.run.exhibition": ("Exhibition",),
+    "lumen.run.opening": ("open",),
+    "lumen.run.recalling": ("why", "why_not"),
     "lumen.errors": (
         "BadCommandError",
         "BadMessageError",

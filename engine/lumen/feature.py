@@ -72,7 +72,7 @@ class RobotOption(NamedTuple):
 class RobotRow(NamedTuple):
     """A robot that performs an exhibition: `lumen run --robot NAME`, `lumen.open(robot="NAME")`.
 
-    `set_up` is the import string of a function from a `RobotRequest` to a `Setup` (both in `lumen.app.setup`); empty if
+    `set_up` is the import string of a function from a `RobotRequest` to a `Setup` (both in `lumen.run.setup`); empty if
     the robot is in a process of its own. `set_up_house` is for several robots at once: from a mapping of requests by
     the robots' names to one of setups; if it is empty, `set_up` is called for each. `real_time`: its time can't be
     hurried. `bounded`: it keeps within the limits and speeds of its body itself; Lumen does that for others.
@@ -116,7 +116,7 @@ class BusRow(NamedTuple):
 class ModuleRow(NamedTuple):
     """A module: a program on the bus beside the behaviour, such as the eyes.
 
-    `module` is the import string of a subclass of `lumen.modules.module.Module`. `description` and `options` (a JSON
+    `module` is the import string of a subclass of `lumen.run.module.Module`. `description` and `options` (a JSON
     Schema for each option) describe the module's settings in lumen.yaml; schemas/lumen.schema.json has those of
     Lumen's own modules.
     """

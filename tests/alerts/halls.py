@@ -8,13 +8,6 @@ from typing import Any
 import lumen
 from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
-from lumen.app.compose import compose
-from lumen.app.exhibition import Exhibition
-from lumen.app.node import Node
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.startup import startup_project
-from lumen.app.setup import Setup
 from lumen.bus.memory import MemoryBus
 from lumen.clock.real import RealClock
 from lumen.clock.simulated import SimulatedClock
@@ -24,6 +17,13 @@ from lumen.language.projects import Project
 from lumen.ports import Clock
 from lumen.project.files import read_files
 from lumen.robot.recording import RecordingRobot
+from lumen.run.compose import compose
+from lumen.run.exhibition import Exhibition
+from lumen.run.node import Node
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.recovery.startup import startup_project
+from lumen.run.setup import Setup
 from tests import ROOT
 from tests.alerts.servers import Web
 from tests.nodes import Printed

@@ -8,16 +8,15 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app import claiming, node, services
 from lumen.app.alerts import disk
-from lumen.app.parts import alerting
-from lumen.app.recovery.run_directory import RunDirectory
 from lumen.cli.main import main
 from lumen.errors import BusUnreachableError
 from lumen.language.alerts import KINDS, Alerts
 from lumen.language.events import Event
 from lumen.project.home import Home
-from lumen.runtime import presence
+from lumen.run import claiming, node, presence, services
+from lumen.run.parts import alerting
+from lumen.run.recovery.run_directory import RunDirectory
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web
 from tests.waiting import until
@@ -331,7 +330,7 @@ def test_a_story_is_no_trouble_and_nobody_is_told_of_what_was_typed_wrong(
         raise BusUnreachableError("no broker")
 
     assert main(["run", str(hall.folder), "--only", "robbot"]) == 2
-    monkeypatch.setattr("lumen.app.run_start.startup_project", fail)
+    monkeypatch.setattr("lumen.run.run_start.startup_project", fail)
     assert main(["run", str(hall.folder), "--story", "x"]) == 2
     assert hall.web.bodies == []
     capsys.readouterr()

@@ -3,11 +3,11 @@
 from pathlib import Path
 from typing import Any
 
-from lumen.app.answering import AnsweringThread
 from lumen.bus.memory import MemoryBus
 from lumen.journal.journal_folder import JournalFolder
 from lumen.journal.journal_writer import JournalWriter
 from lumen.ports import Message
+from lumen.run.answering import AnsweringThread
 from tests.waiting import until
 
 

@@ -9,14 +9,14 @@ from unittest.mock import Mock
 import pytest
 
 import lumen
-from lumen.app.decisions import Decisions
-from lumen.app.exhibition import Exhibition
-from lumen.app.reload.records import RunRecords
 from lumen.bus import Bus, connect
 from lumen.bus.checking import SchemaCheck
 from lumen.language.events import Event
 from lumen.project.home import Home
-from lumen.runtime.approvals import Approvals
+from lumen.run.approvals import Approvals
+from lumen.run.decisions import Decisions
+from lumen.run.exhibition import Exhibition
+from lumen.run.reload.records import RunRecords
 from tests import ROOT
 from tests.app.test_now import Asker, asker
 

@@ -5,19 +5,19 @@ from collections.abc import Sequence
 import pytest
 
 import lumen
-from lumen.app import compose as composing
-from lumen.app.compose import begin, claim, compose, ordered, part_rows, start
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.parts.brain import BrainPart
-from lumen.app.parts.part import Part
-from lumen.app.parts.robot import RobotPart
-from lumen.app.plan import Plan
-from lumen.app.services import Services
-from lumen.app.setup import set_up
 from lumen.clock.real import RealClock
 from lumen.errors import UsageError
 from lumen.feature import Feature, PartRow, Phase, wrong_rows
 from lumen.language.events import Event
+from lumen.run import compose as composing
+from lumen.run.compose import begin, claim, compose, ordered, part_rows, start
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.parts.brain import BrainPart
+from lumen.run.parts.part import Part
+from lumen.run.parts.robot import RobotPart
+from lumen.run.plan import Plan
+from lumen.run.services import Services
+from lumen.run.setup import set_up
 from tests import ROOT
 from tests.exhibits import project
 from tests.tables import for_each

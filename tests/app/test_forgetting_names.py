@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.forgetting import files
-from lumen.app.forgetting.files import forget_in
-from lumen.app.forgetting.report import Forgetting, ForgottenPlace
-from lumen.app.parts.forgetting import FORGETTING_SPACING, MAX_PENDING_NAMES, ForgettingPart
 from lumen.bus import connect
 from lumen.language.people import PersonName
 from lumen.project.home import Home
-from lumen.runtime.snapshot_store import SNAPSHOT_FILE
+from lumen.run.forgetting import files
+from lumen.run.forgetting.files import forget_in
+from lumen.run.forgetting.report import Forgetting, ForgottenPlace
+from lumen.run.parts.forgetting import FORGETTING_SPACING, MAX_PENDING_NAMES, ForgettingPart
+from lumen.run.snapshot_store import SNAPSHOT_FILE
 from tests.exhibits import project
 
 KEY = "lumen.NAO.persistence.forgotten"

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app import forking
-from lumen.app.exhibition import Exhibition
 from lumen.bus import connect
 from lumen.language.events import Event
+from lumen.run import forking
+from lumen.run.exhibition import Exhibition
 from tests.app.test_now import Asker, asker
 from tests.waiting import HANG
 

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from lumen.app.narrator import Narrator
 from lumen.language.commands import BodyCommand, Look, Play, Start
 from lumen.language.events import Event
+from lumen.run.narrator import Narrator
 from lumen.statechart import Machine
 from tests.tables import for_each
 

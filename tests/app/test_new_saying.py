@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 import yaml
 
-from lumen.app.new_saying import DAY_FILE, HEADER, with_saying, write_saying
 from lumen.cli.main import main
 from lumen.errors import UsageError
 from lumen.language.sayings import Saying
+from lumen.run.new_saying import DAY_FILE, HEADER, with_saying, write_saying
 from tests.explaining.guide import guide_in
 from tests.tables import for_each
 

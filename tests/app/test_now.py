@@ -9,14 +9,14 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.asking import operator_key
-from lumen.app.doings import Doings
-from lumen.app.exhibition import Exhibition
-from lumen.app.raised_events import person_in
 from lumen.bus import Bus, connect
 from lumen.language.commands import Look, Play, Say, Start
 from lumen.language.events import Event
 from lumen.ports import Message
+from lumen.run.asking import operator_key
+from lumen.run.doings import Doings
+from lumen.run.exhibition import Exhibition
+from lumen.run.raised_events import person_in
 from lumen.statechart.direct_entry import entered_directly
 from tests import ROOT
 from tests.tables import for_each

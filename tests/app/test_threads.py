@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from lumen.app.setup import set_up
 from lumen.bus import Message, connect
 from lumen.language.commands import Rest
+from lumen.run.setup import set_up
 from lumen.upkeep import threads
 from lumen.upkeep.drops import MAX_KEYS, OTHERS, TELL_PERIOD, DropLog, ReasonLog
 from lumen.upkeep.threads import MAX_FAULTS, MessageGuard, ThreadWatch, WatchedThread

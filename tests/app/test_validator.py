@@ -12,18 +12,18 @@ from types import SimpleNamespace
 import pytest
 
 import lumen
-from lumen.app.rehearsal import Rehearsal
-from lumen.app.reload import validation_worker
-from lumen.app.reload.validation_process import failure
-from lumen.app.reload.validation_worker import Loaded, ValidationWorker
-from lumen.app.reload.validator import BundleValidator
-from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.language.projects import Project
 from lumen.language.stories import Expect, Story, StoryPause, StoryStep
 from lumen.lint import check_files
 from lumen.project.files import read_files
-from lumen.runtime.watcher import SavedFiles
+from lumen.run.rehearsal import Rehearsal
+from lumen.run.reload import validation_worker
+from lumen.run.reload.validation_process import failure
+from lumen.run.reload.validation_worker import Loaded, ValidationWorker
+from lumen.run.reload.validator import BundleValidator
+from lumen.run.reload.visits_check import VisitsCheck
+from lumen.run.watcher import SavedFiles
 from tests import ROOT
 from tests.waiting import until
 

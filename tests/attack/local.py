@@ -3,11 +3,11 @@
 import socket
 from random import Random
 
-from lumen.app.reload.requests import COMMAND
 from lumen.bus.local import LocalAddress
 from lumen.bus.local.frames import CLIENT, frame, nonce, proof, unframed
 from lumen.errors import BusError
 from lumen.project.home import ADDRESS_FILE, Home
+from lumen.run.reload.requests import COMMAND
 from tests.attack import files, messages
 from tests.attack.attacks import Attack, Kind
 from tests.attack.sound import sound

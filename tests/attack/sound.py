@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from lumen.app.reload.requests import COMMAND, STATUS
 from lumen.bus.local.server import FLUSH_MARK
 from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.files import read_files
+from lumen.run.reload.requests import COMMAND, STATUS
 from tests import ROOT
 from tests.attack.targets import SPOKEN
 

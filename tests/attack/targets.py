@@ -8,13 +8,13 @@ from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lumen.app.asking import ask
-from lumen.app.reaching import Reached, reach_exhibition
-from lumen.app.reload.requests import COMMAND
 from lumen.errors import BusError
 from lumen.project.files import read_files
 from lumen.project.home import ADDRESS_FILE, Home
-from lumen.runtime.journal import Journal
+from lumen.run.asking import ask
+from lumen.run.reaching import Reached, reach_exhibition
+from lumen.run.reload.requests import COMMAND
+from lumen.run.reload_journal import Journal
 from tests import ROOT
 from tests.guarded import DEVNULL, STDOUT, Guarded, TimeoutExpired, temporary_folder
 from tests.waiting import HANG, Collector, until

@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.setup import set_up
 from lumen.bus import connect
 from lumen.errors import BadMessageError
 from lumen.language.commands import Rest
 from lumen.robot.command_receiver import CommandReceiver
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.setup import set_up
 from lumen.upkeep.threads import ThreadWatch
 from tests.attack.messages import BODIES, FRAMES, HostileMessage, Stranger, encoded, frame, message
 from tests.exhibits import project

@@ -16,7 +16,6 @@ from hypothesis import strategies as st
 from PIL import Image as Picture
 
 import lumen
-from lumen.app.setup import set_up
 from lumen.bus import connect, publisher
 from lumen.bus.validated import validated
 from lumen.buses.packing import packed, unpacked
@@ -26,6 +25,7 @@ from lumen.ports import Image, Reading, Sense
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.sense_codec import encode_reading, image_body
 from lumen.robot.server import RobotServer
+from lumen.run.setup import set_up
 from tests.rabbitmq import RabbitMQ
 from tests.tables import for_each
 from tests.waiting import HANG, Collector, until

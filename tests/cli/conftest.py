@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.recovery.run_directory import RunDirectory
 from lumen.bus import Bus, connect
+from lumen.run.exhibition import Exhibition
+from lumen.run.recovery.run_directory import RunDirectory
 from tests.tour.conftest import copy, project
 
 __all__ = ["copy", "project"]

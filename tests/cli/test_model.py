@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
 from lumen.cli.main import main
 from lumen.cli.person import person
+from lumen.run.exhibition import Exhibition
 
 ANSWERS = '  answers: {model: {url: "http://127.0.0.1:9/v1/chat/completions", name: none}}'
 

@@ -8,14 +8,14 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.setup import Setup
 from lumen.cli.transcript import Transcript
 from lumen.clock.simulated import SimulatedClock
 from lumen.insight.migration import MigrationPlan
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.robot.recording import RecordingRobot
+from lumen.run.exhibition import Exhibition
+from lumen.run.setup import Setup
 from tests.nodes import whole
 
 HEAD = ["HeadYaw", "HeadPitch"]

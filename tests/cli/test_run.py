@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.setup import Setup
 from lumen.cli.main import main
 from lumen.clock.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.robot.recording import RecordingRobot
+from lumen.run.setup import Setup
 from tests.guarded import PIPE, Guarded, run_guarded
 from tests.nodes import whole
 from tests.rabbitmq import RabbitMQ

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
 from lumen.cli.main import main
 from lumen.cli.person import person
+from lumen.run.exhibition import Exhibition
 from tests.cli.conftest import Terminal
 from tests.waiting import until
 

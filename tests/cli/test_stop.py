@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
 from lumen.bus import Bus
 from lumen.cli import stop
 from lumen.cli.main import main
 from lumen.cli.person import person
+from lumen.run.exhibition import Exhibition
 from tests.cli.conftest import Terminal
 from tests.waiting import until
 

@@ -9,11 +9,11 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.recovery.run_directory import RunDirectory
 from lumen.bus import Bus, connect
 from lumen.bus.validated import validated
 from lumen.cli.main import main
 from lumen.language.projects import Project
+from lumen.run.recovery.run_directory import RunDirectory
 from tests import ROOT
 from tests.exhibits import project
 from tests.rabbitmq import RabbitMQ

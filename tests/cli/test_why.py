@@ -9,14 +9,14 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.answering import reply
-from lumen.app.exhibition import Exhibition
 from lumen.cli.answers import why_lines, why_not_lines
 from lumen.cli.main import main
 from lumen.cli.moments import moment
 from lumen.errors import UsageError
 from lumen.journal.journal_writer import JournalWriter
 from lumen.language.people import PersonName
+from lumen.run.answering import reply
+from lumen.run.exhibition import Exhibition
 from tests.tables import for_each
 
 LINK = {"kind", "text", "at", "file", "line", "id", "values"}

@@ -7,16 +7,16 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app import node as naps
-from lumen.app.exhibition import Exhibition
-from lumen.app.house import House
-from lumen.app.parts.part import Part
-from lumen.app.plan import Plan
-from lumen.app.setup import Setup, set_up, set_up_house
 from lumen.clock import bell
 from lumen.clock.real import RealClock
 from lumen.language.events import Event
-from lumen.runtime.loop import TICK_PERIOD
+from lumen.run import node as naps
+from lumen.run.exhibition import Exhibition
+from lumen.run.house import House
+from lumen.run.loop import TICK_PERIOD
+from lumen.run.parts.part import Part
+from lumen.run.plan import Plan
+from lumen.run.setup import Setup, set_up, set_up_house
 
 NAMES = ("ana", "ben")
 MAIN = """

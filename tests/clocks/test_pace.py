@@ -4,11 +4,6 @@ from random import Random
 
 import pytest
 
-from lumen.app.compose import compose
-from lumen.app.node import Node
-from lumen.app.pace import PaceWatch
-from lumen.app.plan import Plan
-from lumen.app.setup import Setup, set_up_with
 from lumen.bus import connect
 from lumen.bus.memory import MemoryBus
 from lumen.bus.validated import validated
@@ -17,8 +12,13 @@ from lumen.clock.pace import WINDOW
 from lumen.clock.simulated import MAX_ARREARS, SimulatedClock
 from lumen.language.events import Event
 from lumen.robot.recording import RecordingRobot
-from lumen.runtime.loop import BRAIN_LOST_AFTER, TICK_PERIOD, BehaviorLoop
-from lumen.runtime.presence import Presence
+from lumen.run.compose import compose
+from lumen.run.loop import BRAIN_LOST_AFTER, TICK_PERIOD, BehaviorLoop
+from lumen.run.node import Node
+from lumen.run.pace import PaceWatch
+from lumen.run.plan import Plan
+from lumen.run.presence import Presence
+from lumen.run.setup import Setup, set_up_with
 from lumen.statechart import Machine
 from tests.exhibits import project
 from tests.nodes import Printed, whole

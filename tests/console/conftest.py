@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.startup import startup_project
-from lumen.app.setup import set_up
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.recovery.startup import startup_project
+from lumen.run.setup import set_up
 from tests.console.chromium import Chromium
 from tests.console.house import House
 from tests.console.pages import Browser, Served

@@ -8,9 +8,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
-from lumen.app.reaching import Reached, reach_exhibition
 from lumen.errors import BusError
+from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.reaching import Reached, reach_exhibition
 from tests.console.pages import Browser
 from tests.guarded import DEVNULL, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ, _free_ports

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
-from lumen.app.reaching import Reached, reach_exhibition
 from lumen.console.serving import Console
+from lumen.run.reaching import Reached, reach_exhibition
 from tests.waiting import HANG
 
 JSON = {"Content-Type": "application/json"}

@@ -9,8 +9,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from lumen.app.parts import console
 from lumen.app.parts.console import ConsolePart
+from lumen.run.parts import console
 from tests.console.pages import Browser
 from tests.waiting import until
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.reaching import Reached
 from lumen.bus.memory import MemoryBus
 from lumen.console.people import Role
 from lumen.console.serving import Console
+from lumen.run.reaching import Reached
 from tests.console.languages import english_on
 from tests.console.pages import Browser
 from tests.console.viewer import Viewer

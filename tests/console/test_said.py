@@ -12,13 +12,13 @@ import pytest
 import yaml
 from selenium.webdriver.common.keys import Keys
 
-from lumen.app.new_saying import DAY_FILE
 from lumen.console.day import Day, day_of
 from lumen.console.kept_days import KeptDays
 from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry, entry_data
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.project.standalone import machine_from_dict
+from lumen.run.new_saying import DAY_FILE
 from lumen.statechart import initial, serialize
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Served

@@ -8,7 +8,7 @@ import pytest
 import lumen
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.runtime.runtime import Runtime
+from lumen.run.runtime import Runtime
 from lumen.statechart import Machine, Step
 from tests.tables import for_each
 

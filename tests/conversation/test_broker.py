@@ -10,7 +10,7 @@ from lumen.language.commands import Ask
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.modules.answers import Answers
-from lumen.runtime.questions import Questions
+from lumen.run.questions import Questions
 from tests.conversation.conftest import with_model
 from tests.conversation.fake_model import FakeModel, fake_model, says
 from tests.rabbitmq import RabbitMQ

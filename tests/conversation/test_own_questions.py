@@ -13,7 +13,7 @@ from lumen.cli.main import main
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Ask
 from lumen.language.knowledge import Passage, QuestionSet
-from lumen.runtime.questions import Questions
+from lumen.run.questions import Questions
 from tests import ROOT
 
 PASSAGES = {

@@ -7,15 +7,15 @@ from typing import Any
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.setup import set_up
 from lumen.bus import connect
 from lumen.language.command_data import command_data
 from lumen.language.commands import Ask, Say, Start
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.modules.answers import Answers
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.setup import set_up
 from lumen.statechart import Step
 from tests.conversation.conftest import with_model
 from tests.waiting import until

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from lumen.app.model_switch import SILENCED_FILE, UNREADABLE, ModelSwitch
 from lumen.bus import connect
 from lumen.language.projects import Project
-from lumen.runtime.questions import Questions
+from lumen.run.model_switch import SILENCED_FILE, UNREADABLE, ModelSwitch
+from lumen.run.questions import Questions
 from tests.conversation.conftest import with_model
 
 

@@ -8,7 +8,6 @@ import pytest
 import yaml
 
 import lumen
-from lumen.app.new_passage import write_passage
 from lumen.console.day import day_of
 from lumen.errors import UsageError
 from lumen.insight.replay.entries import JournalInput
@@ -17,6 +16,7 @@ from lumen.language.commands import Ask, Start
 from lumen.language.events import Event
 from lumen.lint import check_files
 from lumen.project.files import read_files
+from lumen.run.new_passage import write_passage
 from tests.tables import for_each
 
 

@@ -4,7 +4,6 @@ from typing import Any
 
 import pytest
 
-from lumen.app.ignoring import IgnoredEvents
 from lumen.expressions import Scope, names
 from lumen.insight.explaining.answers import why, why_not
 from lumen.insight.explaining.changes import StepSituation
@@ -14,6 +13,7 @@ from lumen.insight.explaining.pressing import refusal_of
 from lumen.insight.exploration.expression_uses import of_transition
 from lumen.language.buttons import Button
 from lumen.language.events import Event
+from lumen.run.ignoring import IgnoredEvents
 from lumen.statechart import Machine, initial, step
 from lumen.talk.sample_sentences import of_phrase, of_row
 from tests.explaining.test_chains import Play

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from lumen.app.ignoring import BURST, IgnoredEvents
 from lumen.insight.explaining.ignored_events import ignored
 from lumen.language.events import Event
+from lumen.run.ignoring import BURST, IgnoredEvents
 from lumen.statechart import Machine, initial, step
 from tests.tables import for_each
 

@@ -2,16 +2,16 @@
 
 from typing import Any
 
-from lumen.app.causes import why
 from lumen.console.day import understood
-from lumen.formats.captions import caption
 from lumen.formats.diagrams.transition_rows import rows_of
 from lumen.insight.changes.machines import machine_changes
 from lumen.insight.explaining.words import of_transition
 from lumen.insight.replay.entries import JournalInput
 from lumen.insight.replay.replaying import ReplayedStep
 from lumen.language.events import Event
-from lumen.runtime.coverage import described
+from lumen.run.captions import caption
+from lumen.run.coverage import described
+from lumen.run.entry_causes import why
 from lumen.statechart import Machine, initial, step
 from tests.tables import for_each
 

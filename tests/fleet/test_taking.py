@@ -5,17 +5,17 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
 from lumen.app.fleet.bundle import messages_of
 from lumen.app.fleet.memory import memory_file
 from lumen.app.fleet.signing import Signer, generate
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.setup import set_up
 from lumen.bus.memory import MemoryBus
 from lumen.project import load
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import home_of
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.setup import set_up
 from tests.fleet.houses import ROBOT, changed, ordered, project
 from tests.waiting import Collector, until
 

@@ -9,20 +9,20 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
 from lumen.app.fleet.brokers import CENTRE
 from lumen.app.fleet.bundle import messages_of
 from lumen.app.fleet.installing import finish
 from lumen.app.fleet.part import FleetPart
 from lumen.app.fleet.serving import ServedCentre
 from lumen.app.fleet.signing import Signer, generate
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.startup import startup_project
-from lumen.app.setup import set_up
 from lumen.bus import connect
 from lumen.interpreters.fleet.rollout import allowed
 from lumen.project.files import fingerprint, read_files
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.recovery.startup import startup_project
+from lumen.run.setup import set_up
 from tests.fleet.brokers import HOUSES, FleetBrokers
 from tests.fleet.houses import changed, project
 

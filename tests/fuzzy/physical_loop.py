@@ -13,8 +13,8 @@ from lumen.language.stories import Visitor
 from lumen.motion.projection import centring
 from lumen.robot.server import RobotServer
 from lumen.robots.simulation import SimulatedRobot
-from lumen.runtime.perception import FaceDetector
-from lumen.runtime.tracking import LocalTracking
+from lumen.run.perception import FaceDetector
+from lumen.run.tracking import LocalTracking
 from tests.fuzzy.closed_loop import Pose, Run
 
 TICK = 0.02

@@ -6,16 +6,16 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.exploring import explored
-from lumen.app.rehearsal import rehearse
-from lumen.app.setup import set_up
 from lumen.bus.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.clock.virtual import VirtualClock
 from lumen.insight.migration import MigrationPlan
 from lumen.language.commands import Start, Track, Volume
 from lumen.robot.recording import RecordingRobot
-from lumen.runtime.loop import BehaviorLoop, Observer
+from lumen.run.exploring import explored
+from lumen.run.loop import BehaviorLoop, Observer
+from lumen.run.rehearsal import rehearse
+from lumen.run.setup import set_up
 from lumen.statechart import Step, step
 
 FILES = {

@@ -7,7 +7,7 @@ import pytest
 import search_gait
 import yaml
 
-from lumen.app.workers.workers import Workers
+from lumen.run.workers.workers import Workers
 
 FILE = "name: Other\nunits: {angle: deg, length: cm}\njoints: {}\n"
 

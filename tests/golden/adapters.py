@@ -7,11 +7,6 @@ from typing import Any, NamedTuple
 from unittest.mock import patch
 
 import lumen
-from lumen.app.recovery.previous_run import recover
-from lumen.app.rehearsal import rehearse
-from lumen.app.reload.records import RunRecords
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import takes
 from lumen.bus.local import LocalBusServer
 from lumen.bus.local.address import LocalAddress
 from lumen.bus.local.client import LocalBusClient
@@ -30,7 +25,12 @@ from lumen.ports import Live, Perform, Sense
 from lumen.project.home import Home
 from lumen.robot.life_layer import LifeLayer
 from lumen.robot.recording import RecordingRobot
-from lumen.runtime.resuming import FreshStart, Resumption, resume
+from lumen.run.recovery.previous_run import recover
+from lumen.run.rehearsal import rehearse
+from lumen.run.reload.records import RunRecords
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import takes
+from lumen.run.resuming import FreshStart, Resumption, resume
 from lumen.statechart import deserialize, serialize
 from tests.golden.texts import in_one_line
 

@@ -13,13 +13,13 @@ from pathlib import Path
 from types import FunctionType, MethodType
 from typing import Any
 
-from lumen.app.node import Node
-from lumen.app.parts.part import Part
-from lumen.app.rehearsal import Rehearsal, rehearse
-from lumen.app.setup import set_up
-from lumen.app.stories import stories_of
 from lumen.bus.validated import ValidatedBus
 from lumen.language.projects import Project
+from lumen.run.chosen_stories import stories_of
+from lumen.run.node import Node
+from lumen.run.parts.part import Part
+from lumen.run.rehearsal import Rehearsal, rehearse
+from lumen.run.setup import set_up
 
 NAMES: dict[str, str] = {}
 """Of a class that has another name by now: that in the recordings."""
@@ -77,7 +77,7 @@ SERVICES = {
 }
 """Services that several parts share."""
 PROGRAMS = {
-    "lumen.app.reload.validation_process": "(the process that judges files)",
+    "lumen.run.reload.validation_process": "(the process that judges files)",
     "lumen.console.job": "(the console's job)",
 }
 """Modules that run as programs."""

@@ -19,16 +19,16 @@ from unittest.mock import patch
 
 import lumen
 import lumen.bus
-from lumen.app import rehearsal
-from lumen.app.compose import compose
-from lumen.app.plan import Plan
-from lumen.app.services import Services
 from lumen.cli.main import main
 from lumen.language.machines import MachineDefinition
 from lumen.project.files import read_files
 from lumen.project.home import Home
-from lumen.runtime.loop import Observer
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run import rehearsal
+from lumen.run.compose import compose
+from lumen.run.loop import Observer
+from lumen.run.plan import Plan
+from lumen.run.services import Services
+from lumen.run.snapshot_store import SnapshotStore
 from lumen.statechart import Step, deserialize, serialize
 from lumen.statechart.direct_entry import entered_directly
 from tests.golden.golden import HERE, PROJECTS

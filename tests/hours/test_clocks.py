@@ -10,8 +10,8 @@ from lumen.errors import SnapshotError, UsageError
 from lumen.insight.exploration import explore
 from lumen.insight.migration import MigrationPlan, migrate
 from lumen.language.events import Event
-from lumen.runtime.resuming import resume
-from lumen.runtime.wall_clock_watch import WallClockWatch
+from lumen.run.resuming import resume
+from lumen.run.wall_clock_watch import WallClockWatch
 from lumen.statechart import Interpreter, Machine, Snapshot, deserialize, elapse, initial, serialize, step
 from tests.tables import for_each
 

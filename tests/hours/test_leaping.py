@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.node import Node
-from lumen.app.rehearsal import rehearse
 from lumen.language.projects import Project
 from lumen.project import load
+from lumen.run.node import Node
+from lumen.run.rehearsal import rehearse
 from tests.tour.conftest import copy, project
 
 __all__ = ["copy", "project"]

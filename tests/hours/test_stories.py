@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.rehearsal import Rehearsal, rehearse
 from lumen.errors import ProjectError
 from lumen.project import load
+from lumen.run.rehearsal import Rehearsal, rehearse
 from tests.tour.conftest import copy
 
 __all__ = ["copy"]
@@ -81,8 +81,8 @@ def test_a_story_begins_once(copy: Path) -> None:
 
 
 def test_every_caption_says_the_time(copy: Path) -> None:
-    from lumen.app.causes import _trigger as told
-    from lumen.formats.captions import caption
+    from lumen.run.captions import caption
+    from lumen.run.entry_causes import _trigger as told
     from lumen.statechart import initial
 
     (copy / "behaviors" / "door.yaml").write_text(DOOR, "utf-8")

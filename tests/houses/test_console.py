@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.house import House
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.setup import set_up_house
+from lumen.run.exhibition import Exhibition
+from lumen.run.house import House
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.setup import set_up_house
 from tests.console.pages import Served
 from tests.console.viewer import Viewer
 from tests.waiting import HANG, until

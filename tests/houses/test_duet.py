@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.house import House
-from lumen.app.plan import Plan
-from lumen.app.setup import set_up_house
 from lumen.cli.main import main
 from lumen.lint import check
 from lumen.ports import Bus, Message
+from lumen.run.exhibition import Exhibition
+from lumen.run.house import House
+from lumen.run.plan import Plan
+from lumen.run.setup import set_up_house
 from tests import ROOT
 from tests.waiting import Collector
 

@@ -9,7 +9,7 @@ from lumen.bus import connect
 from lumen.modules.ears.recogniser import Hypothesis
 from lumen.modules.ears.shared_recogniser import shared_sphinx
 from lumen.modules.ears.sphinx import Sphinx
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 from tests.houses.test_over_rabbitmq import Hall
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from lumen.app import claiming, node
 from lumen.cli.main import main
+from lumen.run import claiming, node
 from tests.guarded import DEVNULL, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay

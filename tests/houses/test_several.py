@@ -8,17 +8,17 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.house import House
-from lumen.app.one_robot import one_robot, robots_of
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.startup import startup_project
-from lumen.app.setup import set_up_house
 from lumen.cli.main import main
 from lumen.errors import LumenError, RobotModelError, UsageError
 from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.project.home import home_of
+from lumen.run.exhibition import Exhibition
+from lumen.run.house import House
+from lumen.run.one_robot import one_robot, robots_of
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.recovery.startup import startup_project
+from lumen.run.setup import set_up_house
 from lumen.statechart import Step
 
 NAMES = ("ana", "ben")

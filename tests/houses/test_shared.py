@@ -7,15 +7,15 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.house import House
 from lumen.insight.migration import MigrationPlan, plan
 from lumen.language.commands import Say, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.lint import check
 from lumen.ports import Bus
-from lumen.runtime.shared_board import RETELL_PERIOD
+from lumen.run.exhibition import Exhibition
+from lumen.run.house import House
+from lumen.run.shared_board import RETELL_PERIOD
 from tests.houses.test_several import opened
 from tests.waiting import Collector
 

@@ -95,7 +95,7 @@ class Refuse(MetaPathFinder):
 
 sys.meta_path.insert(0, Refuse())
 import lumen
-from lumen.app.setup import set_up
+from lumen.run.setup import set_up
 from lumen.language.commands import Posture
 robot = set_up("simulation", lumen.load(), "max").robot
 robot.start("sit", Posture("Sit", 1.0))

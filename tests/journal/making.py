@@ -19,8 +19,8 @@ from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.nanoseconds import to_the_nanosecond
 from lumen.language.projects import Project
-from lumen.runtime.resuming import Resumption, resume
-from lumen.runtime.runtime import Runtime
+from lumen.run.resuming import Resumption, resume
+from lumen.run.runtime import Runtime
 from lumen.statechart import Step, deserialize, due, serialize
 from tests import ROOT
 

@@ -6,9 +6,6 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.asking import operator_key
-from lumen.app.exhibition import Exhibition
-from lumen.app.journal_pages import MAX_PAGE_BYTES, journal_page
 from lumen.insight.replay.entries import entry_data
 from lumen.journal import journal_writer
 from lumen.journal.journal_file import read_journal
@@ -17,6 +14,9 @@ from lumen.journal.journal_tail import JournalTail
 from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
 from lumen.language.people import PersonName
+from lumen.run.asking import operator_key
+from lumen.run.exhibition import Exhibition
+from lumen.run.journal_pages import MAX_PAGE_BYTES, journal_page
 from lumen.statechart import Step, initial, step
 from tests.journal.test_writing import MACHINE, PROJECT, Disk, steps, tell
 from tests.tour.conftest import copy

@@ -7,13 +7,13 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.setup import Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.insight.migration import MigrationPlan
 from lumen.language.stories import Visitor
 from lumen.ports import Live, RobotCommand
 from lumen.robot.recording import RecordingRobot
+from lumen.run.exhibition import Exhibition
+from lumen.run.setup import Setup
 from tests import ROOT
 from tests.nodes import whole
 

@@ -3,14 +3,14 @@
 import pytest
 
 import lumen
-from lumen.app.rehearsal import rehearse
-from lumen.app.setup import Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.language.life import STILL
 from lumen.language.machines import MachineDefinition
 from lumen.motion.life import style_name
 from lumen.ports import Live, RobotCommand, Sense
 from lumen.robot.recording import RecordingRobot
+from lumen.run.rehearsal import rehearse
+from lumen.run.setup import Setup
 from lumen.statechart import Machine
 from tests import ROOT
 from tests.tables import for_each

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from lumen.app.lint.targets import LintTarget
 from lumen.lint import check_files
 from lumen.lint.new_language import with_language
 from lumen.lint.patterns import BAD_PATTERN, DEAD_SLOT, FOREIGN_PATTERN
@@ -13,6 +12,7 @@ from lumen.lint.unused import UNUSED_PHRASES
 from lumen.project.building import draft
 from lumen.project.common_words import COMMON_FILE, common_words
 from lumen.project.files import read_files
+from lumen.run.linting.targets import LintTarget
 
 ROOT = Path(__file__).parent / "hearing"
 

@@ -10,10 +10,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from lumen.app.lint import kept_findings
 from lumen.cli.main import main
 from lumen.lint import traps
 from lumen.project import engine_files, looks
+from lumen.run.linting import kept_findings
 from tests import ROOT
 from tests.guarded import PIPE, run_guarded
 

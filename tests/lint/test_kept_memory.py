@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.lint.kept_memory import MUCH, keep_memory, recall_memory
 from lumen.lint import check_files
 from lumen.project import looks, memoization
 from lumen.project.files import read_files
+from lumen.run.linting.kept_memory import MUCH, keep_memory, recall_memory
 
 BASE = Path(__file__).parent / "base"
 TOUR = "behaviors/tour.yaml"

@@ -6,21 +6,21 @@ from pathlib import Path
 from typing import Any
 
 import lumen
-from lumen.app.rehearsal import Rehearsal
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader, ReloadOptions
-from lumen.app.reload.requests import COMMAND, STATUS
-from lumen.app.reload.saved_files import ReloadPart
-from lumen.app.reload.validation_process import failure
-from lumen.app.reload.validation_worker import Loaded
-from lumen.app.reload.visits_check import VisitsCheck, check_visits
-from lumen.app.setup import Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.lint import check_files
 from lumen.project.home import Home
 from lumen.robot.recording import RecordingRobot
+from lumen.run.rehearsal import Rehearsal
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.reloader import Reloader, ReloadOptions
+from lumen.run.reload.requests import COMMAND, STATUS
+from lumen.run.reload.saved_files import ReloadPart
+from lumen.run.reload.validation_process import failure
+from lumen.run.reload.validation_worker import Loaded
+from lumen.run.reload.visits_check import VisitsCheck, check_visits
+from lumen.run.setup import Setup
 from tests.nodes import Printed, whole
 from tests.waiting import HANG, Collector, until
 

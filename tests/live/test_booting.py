@@ -7,15 +7,15 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.node import Node
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.startup import startup_project
 from lumen.cli.main import main
 from lumen.errors import BusError
 from lumen.project.crash_counter import MAX_CRASHES, MAX_KNOWN_BUNDLES, CrashCounter
 from lumen.project.files import read_files
 from lumen.project.home import Home, home_of
-from lumen.runtime.journal import Journal
+from lumen.run.node import Node
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.recovery.startup import startup_project
+from lumen.run.reload_journal import Journal
 from tests.live.shows import Live
 
 pytestmark = pytest.mark.rest  # dear

@@ -11,7 +11,7 @@ from lumen.bus import connect
 from lumen.buses.consumer import Consumer
 from lumen.language.commands import Say
 from lumen.language.events import Event
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
 from lumen.statechart import Step
 from lumen.statechart.direct_entry import entered_directly
 from tests.live.conftest import PATIENT, wait_for_visitors

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app import reaching
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.startup import startup_project
-from lumen.app.reload import validation_worker
-from lumen.app.reload.validation_worker import ValidationWorker, load_apart
 from lumen.errors import FatalFilesError
 from lumen.project import kept_contents
 from lumen.project.files import fingerprint, read_files
+from lumen.run import reaching
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.recovery.startup import startup_project
+from lumen.run.reload import validation_worker
+from lumen.run.reload.validation_worker import ValidationWorker, load_apart
 from tests.live.shows import Live
 
 pytestmark = pytest.mark.rest  # dear
@@ -24,7 +24,7 @@ SORRY = 'en: "I am sorry, I did not understand that."'
 FATAL, PARDON = 'en: "FATAL"', 'en: "Come again, please?"'
 READER = """
 import os, signal
-from lumen.app.reload import validation_process as process
+from lumen.run.reload import validation_process as process
 
 def check_files(root, files, usual=process.check_files):
     if any(b"FATAL" in content for content in files.values()):

@@ -7,7 +7,7 @@ import pytest
 from lumen.errors import BusError, LumenError
 from lumen.insight.migration import MigrationDelay, MigrationPlan
 from lumen.language.events import Event
-from lumen.runtime import runtime
+from lumen.run import runtime
 from tests.live.shows import Here, Live
 
 SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'

@@ -23,7 +23,7 @@ from lumen.cli.main import main
 from lumen.errors import BusError
 from lumen.journal.frames import unpack
 from lumen.journal.journal_file import JOURNAL_SUFFIX
-from lumen.runtime.journal import Journal
+from lumen.run.reload_journal import Journal
 from tests import ROOT
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web
@@ -181,7 +181,7 @@ def test_who_stands_there_is_forgotten_by_an_exhibition_that_runs(
         until(lambda: {"snapshot.json", "posts.jsonl"} <= set(found(copy, "İpek")))
         with monkeypatch.context() as patient:
             patient.setattr("lumen.cli.memory.ANSWER_TIMEOUT", HANG)
-            patient.setattr("lumen.app.forgetting.files.PATIENCE", HANG)
+            patient.setattr("lumen.run.forgetting.files.PATIENCE", HANG)
             assert main(["memory", "forget", "ipek", "--project", str(copy)]) == 0
         told = capsys.readouterr().out
         assert "STILL THERE" not in told

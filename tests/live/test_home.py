@@ -9,8 +9,8 @@ import pytest
 from lumen.errors import UsageError
 from lumen.project.crash_counter import CrashCounter
 from lumen.project.home import Home, home_of
-from lumen.runtime import snapshot_store
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run import snapshot_store
+from lumen.run.snapshot_store import SnapshotStore
 
 
 @pytest.mark.parametrize("name", ["door.json", "door.json.new", "lock"])

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.reload import idle_process
-from lumen.app.reload.idle_process import end_idle, take
-from lumen.app.reload.validation_worker import COMMAND, ValidationWorker, load_apart
 from lumen.project.files import read_files
+from lumen.run.reload import idle_process
+from lumen.run.reload.idle_process import end_idle, take
+from lumen.run.reload.validation_worker import COMMAND, ValidationWorker, load_apart
 from lumen.upkeep import judge_process
 from tests.waiting import until
 

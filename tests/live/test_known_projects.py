@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import pytest
 
-from lumen.app.reload import known_projects
-from lumen.app.reload.idle_process import end_idle
-from lumen.app.reload.validation_worker import ValidationWorker, load_apart
 from lumen.language.projects import Project
 from lumen.project.files import read_files
+from lumen.run.reload import known_projects
+from lumen.run.reload.idle_process import end_idle
+from lumen.run.reload.validation_worker import ValidationWorker, load_apart
 from lumen.upkeep import cache_folder, judge_process
 from tests.live.conftest import trimmed
 from tests.tour.conftest import copied

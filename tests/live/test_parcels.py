@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.reload.delta import LATE, DeltaDecoder, DeltaEncoder
-from lumen.app.reload.validation_process import failure
-from lumen.app.reload.validation_worker import ValidationWorker
 from lumen.lint import check_files
 from lumen.project.files import read_files
+from lumen.run.reload.delta import LATE, DeltaDecoder, DeltaEncoder
+from lumen.run.reload.validation_process import failure
+from lumen.run.reload.validation_worker import ValidationWorker
 
 TOUR = "behaviors/tour.yaml"
 SORRY, PARDON = 'en: "I am sorry, I did not understand that."', 'en: "Come again, please?"'

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.recovery.recording import record_inputs
 from lumen.insight.replay.entries import JournalJump, RecordedEntry
 from lumen.insight.replay.replaying import ReplayedStep, replay
 from lumen.journal.journal_file import read_journal
@@ -12,7 +11,8 @@ from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
 from lumen.language.machines import MachineDefinition
 from lumen.lint import check_files
 from lumen.project.files import read_files
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run.recovery.recording import record_inputs
+from lumen.run.snapshot_store import SnapshotStore
 from tests.live.shows import Live
 
 FINE = "en: [I am glad to hear that.,"

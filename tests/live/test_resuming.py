@@ -12,15 +12,15 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.recovery.previous_run import LATELY
-from lumen.app.recovery.run_directory import RunDirectory
 from lumen.cli.main import main
 from lumen.language.commands import Track
 from lumen.project.files import read_files
 from lumen.project.home import ADDRESS_FILE, Home, home_of
-from lumen.runtime.journal import MAX_JOURNAL_BYTES, Journal
-from lumen.runtime.resuming import LOST_COMMAND_REASON, FreshStart, Resumption, resume
-from lumen.runtime.snapshot_store import ALIVE_FILE, SNAPSHOT_FILE, SnapshotStore
+from lumen.run.recovery.previous_run import LATELY
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.reload_journal import MAX_JOURNAL_BYTES, Journal
+from lumen.run.resuming import LOST_COMMAND_REASON, FreshStart, Resumption, resume
+from lumen.run.snapshot_store import ALIVE_FILE, SNAPSHOT_FILE, SnapshotStore
 from lumen.statechart import serialize
 from tests.guarded import PIPE, Guarded
 from tests.live.shows import Live

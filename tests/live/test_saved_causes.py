@@ -6,10 +6,10 @@ from shutil import copytree
 import pytest
 
 import lumen
-from lumen.app.replaying.journals import chosen
-from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.insight.replay.replaying import replay
 from lumen.language.causes import VISITOR, Cause
+from lumen.run.replaying.journals import chosen
+from lumen.run.replaying.kept_bundles import KeptBundles
 from tests import ROOT
 from tests.live.shows import Live
 from tests.waiting import Collector

@@ -12,11 +12,11 @@ import imageio_ffmpeg
 import numpy as np
 import pytest
 
-from lumen.app.loudspeaker import PLAYERS, Loudspeaker
 from lumen.language.commands import PlaySound
-from lumen.modules.audio_track import RATE, AudioTrack
-from lumen.modules.sound import Sound, save
 from lumen.project.sounds import sound_duration
+from lumen.run.audio_track import RATE, AudioTrack
+from lumen.run.loudspeaker import PLAYERS, Loudspeaker
+from lumen.run.sound import Sound, save
 from tests.guarded import run_guarded
 from tests.tables import for_each
 from tests.waiting import until

@@ -12,11 +12,11 @@ from types import CodeType
 
 import pytest
 
-from lumen.app.reload.reloader import Reloader
-from lumen.app.reload.validator import Validation
 from lumen.project.common_words import COMMON_FILE
 from lumen.project.files import read_files
-from lumen.runtime.watcher import SavedFiles
+from lumen.run.reload.reloader import Reloader
+from lumen.run.reload.validator import Validation
+from lumen.run.watcher import SavedFiles
 from tests.live.faults import failing, name, steps
 from tests.live.shows import Live
 

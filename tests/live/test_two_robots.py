@@ -7,10 +7,10 @@ from itertools import count
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.setup import set_up
 from lumen.language.projects import Project
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.setup import set_up
 from lumen.statechart import Step
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector

@@ -8,10 +8,6 @@ from types import SimpleNamespace
 import pytest
 
 import lumen
-from lumen.app.reload import validation_worker, visits_check
-from lumen.app.reload.visits_check import VisitsCheck, check_visits
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.latest_visits import latest_first
 from lumen.insight.replay.entries import JournalInput, JournalJump
 from lumen.insight.replay.replaying import replay
 from lumen.journal.frames import FramePacker
@@ -20,6 +16,10 @@ from lumen.journal.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER
 from lumen.journal.redaction import redact
 from lumen.language.people import PersonName
 from lumen.project.home import home_of
+from lumen.run.reload import validation_worker, visits_check
+from lumen.run.reload.visits_check import VisitsCheck, check_visits
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.latest_visits import latest_first
 from lumen.statechart import serialize
 from tests import ROOT
 from tests.live.shows import Live
@@ -207,7 +207,7 @@ def test_other_files_that_change_no_visit_are_taken(folder: Path) -> None:
 
 DIES = """
 import os
-from lumen.app.reload import validation_process, visits_check
+from lumen.run.reload import validation_process, visits_check
 visits_check.check_visits = lambda *_: {ends}
 validation_process.main()
 """

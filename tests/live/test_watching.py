@@ -13,7 +13,7 @@ import pytest
 
 from lumen.project.files import Unreadable, fingerprint, read_files
 from lumen.project.project_folders import FOLDERS, ProjectFolder
-from lumen.runtime.watcher import FileWatcher, SavedFiles, WatchedFiles, watched_folders
+from lumen.run.watcher import FileWatcher, SavedFiles, WatchedFiles, watched_folders
 from tests.waiting import until
 
 QUIET = 0.1
@@ -40,7 +40,7 @@ class Clock:
 @pytest.fixture(autouse=True)
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     found = Clock()
-    monkeypatch.setattr("lumen.runtime.watcher.time", found)
+    monkeypatch.setattr("lumen.run.watcher.time", found)
     return found
 
 
@@ -309,7 +309,7 @@ class Judged(Watched):
 
 @pytest.fixture
 def judged(tmp_path: Path, clock: Clock, monkeypatch: pytest.MonkeyPatch) -> Iterator[Judged]:
-    monkeypatch.setattr("lumen.runtime.watcher.SHORT_QUIET_FRACTION", 0.0)
+    monkeypatch.setattr("lumen.run.watcher.SHORT_QUIET_FRACTION", 0.0)
     one = Judged(fill(tmp_path / "show"), clock)
     yield one
     one.watcher.close()

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.lint import outcome_cache
 from lumen.project import engine_files
+from lumen.run.linting import outcome_cache
 
 DECIDE = ("lumen.motion.gait", "lumen.motion.life", "lumen.robot.executor", "lumen.rules.physics.trial")
 """Modules that decide whether a motion falls, at different depths."""

@@ -9,11 +9,11 @@ from typing import get_type_hints
 import pytest
 
 import lumen
-from lumen.app.reload.delta import DeltaDecoder, DeltaEncoder
 from lumen.feature import resolve, table
 from lumen.insight.changes import changes, live
 from lumen.language.alerts import DEFAULT_INTERVAL, Alerts, Program
 from lumen.language.projects import Project
+from lumen.run.reload.delta import DeltaDecoder, DeltaEncoder
 from tests import ROOT
 from tests.tables import for_each
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
 from lumen.cli.main import main
+from lumen.run.exhibition import Exhibition
 from tests.cli.conftest import bus, copy, exhibition, project
 from tests.lsp.client import Client
 

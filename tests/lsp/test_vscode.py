@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
+from lumen.run.exhibition import Exhibition
 from tests import ROOT
 from tests.cli.conftest import bus, copy, exhibition, project
 from tests.fetched import fetched

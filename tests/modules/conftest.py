@@ -10,7 +10,7 @@ import lumen
 from lumen.bus import Bus, connect
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
-from lumen.modules.module import Module
+from lumen.run.module import Module
 from tests.waiting import Collector
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from lumen.bus import Bus, connect
 from lumen.language.projects import Project
-from lumen.runtime.presence import Peer, Presence
+from lumen.run.presence import Peer, Presence
 from tests import ROOT
 from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded, run_guarded
 from tests.rabbitmq import RabbitMQ

@@ -19,8 +19,8 @@ from lumen.modules.ears.expected import expected, heard_names
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.spelling import pronounced
 from lumen.modules.ears.sphinx import MAX_MODELS, Sphinx
-from lumen.modules.sound import Sound, sound_of
 from lumen.modules.voice import espeak
+from lumen.run.sound import Sound, sound_of
 from tests.modules.conftest import Stand
 from tests.tables import for_each
 

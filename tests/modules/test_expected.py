@@ -15,7 +15,7 @@ from lumen.modules.ears import Ears
 from lumen.modules.ears.active_states import LOST_AFTER, ActiveStates
 from lumen.modules.ears.expected import MAX_SENTENCES, STORY_WEIGHT, HeardName, expected, heard_names
 from lumen.modules.ears.recogniser import Hypothesis
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 from lumen.statechart.nesting import active_names
 from lumen.talk.speech import TABLES, WORD_LISTS
 from tests.modules.conftest import Stand, with_options

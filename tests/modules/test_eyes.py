@@ -14,11 +14,6 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from lumen.app.exhibition import Exhibition
-from lumen.app.making.modules import ModulesPlan
-from lumen.app.plan import Plan
-from lumen.app.rehearsal import RehearsalTrace
-from lumen.app.setup import Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import ModuleError
 from lumen.language.modules import module_names
@@ -29,6 +24,11 @@ from lumen.modules.eyes.detector import PersonDetector
 from lumen.modules.eyes.gallery import FaceGallery
 from lumen.ports import Sense
 from lumen.robots.simulation import SimulatedRobot
+from lumen.run.exhibition import Exhibition
+from lumen.run.making.modules import ModulesPlan
+from lumen.run.plan import Plan
+from lumen.run.rehearsal import RehearsalTrace
+from lumen.run.setup import Setup
 from tests.modules.conftest import Stand, with_options
 
 Make = Callable[..., Stand]

@@ -5,12 +5,12 @@ from dataclasses import replace
 import pytest
 
 import lumen
-from lumen.app.parts.module import ModulePart
 from lumen.bus import connect
 from lumen.bus.aliases import aliases_of
 from lumen.bus.validated import by_key, validated
 from lumen.language.modules import EYES, ModuleSettings
 from lumen.language.projects import Project
+from lumen.run.parts.module import ModulePart
 from tests.modules.test_eyes import Pixels, body, photographed  # noqa: F401  a photograph of a face
 from tests.waiting import Collector, until
 

@@ -9,8 +9,8 @@ import pytest
 from lumen.modules.ears import Ears, Recogniser
 from lumen.modules.ears.own_voice import ECHO, LONGEST, OwnVoice
 from lumen.modules.ears.voice_activity import VoiceActivity
-from lumen.modules.sound import Sound
 from lumen.modules.voice import espeak
+from lumen.run.sound import Sound
 from tests.modules.conftest import Stand, with_options
 from tests.tables import for_each
 

@@ -7,17 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.setup import Setup
 from lumen.app.voice import Speaker, voiced
 from lumen.cli.main import main
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import ModuleError, UsageError
 from lumen.language.commands import Say, Volume
 from lumen.language.projects import Project
-from lumen.modules.sound import Sound, sound_of, wav
 from lumen.modules.voice import Espeak, Voice, espeak
 from lumen.robot.none import NoRobot
 from lumen.robots.simulation import SimulatedRobot
+from lumen.run.setup import Setup
+from lumen.run.sound import Sound, sound_of, wav
 from tests.modules.conftest import Stand
 from tests.tables import for_each
 

@@ -13,7 +13,7 @@ import pytest
 from lumen.errors import ModuleError
 from lumen.modules.ears import Ears, Hypothesis
 from lumen.modules.ears.whisper import FILES, Whisper
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 from tests.modules.conftest import Stand, with_options
 
 SOUND = Sound(8_000, b"\x00\x40" * 4_000)

@@ -8,17 +8,17 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.setup import Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.language.commands import Command, PlaySound, Say, Start
 from lumen.language.events import CUE, Event
 from lumen.language.projects import Project
-from lumen.modules.sound import Sound, save
 from lumen.ports import Perform
 from lumen.robot.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
-from lumen.runtime.loop import Observer
+from lumen.run.exhibition import Exhibition
+from lumen.run.loop import Observer
+from lumen.run.setup import Setup
+from lumen.run.sound import Sound, save
 from tests import ROOT
 from tests.motions.making import made, nao
 from tests.nodes import whole

@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.lint.outcome_cache import OutcomeCache
 from lumen.cli.main import main
 from lumen.project.chosen_model import MODEL_VARIABLE
 from lumen.rules.physics import DONE, FELL, Case, CaseResult, Outcome
 from lumen.rules.physics.cases import cases
 from lumen.rules.physics.verdict import findings
+from lumen.run.linting.outcome_cache import OutcomeCache
 from tests import ROOT
 from tests.motions.making import SHIPPED
 

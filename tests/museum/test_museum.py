@@ -7,9 +7,6 @@ from math import dist
 import pytest
 
 import lumen
-from lumen.app.exploring import explored
-from lumen.app.rehearsal import rehearse
-from lumen.app.setup import Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.language.commands import Command, Publish, Start, Volume
 from lumen.language.events import Event
@@ -19,7 +16,10 @@ from lumen.lint import check_files
 from lumen.project.files import read_files
 from lumen.project.lending import model_files
 from lumen.robots.simulation import SimulatedRobot
-from lumen.runtime.loop import Observer
+from lumen.run.exploring import explored
+from lumen.run.loop import Observer
+from lumen.run.rehearsal import rehearse
+from lumen.run.setup import Setup
 from lumen.statechart import Step
 from tests import ROOT
 from tests.scanning import matching

@@ -9,7 +9,6 @@ from random import Random
 from types import FrameType
 from typing import NamedTuple
 
-from lumen.app.rehearsal import rehearse
 from lumen.language.commands import Command, Play, Start
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
@@ -17,7 +16,8 @@ from lumen.language.stories import Story
 from lumen.lint import check_files
 from lumen.lint.codes import codes
 from lumen.project.document import Document
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
+from lumen.run.rehearsal import rehearse
 from lumen.statechart import Step
 
 PATIENCE = 60.0

@@ -13,7 +13,7 @@ from lumen.language.robots import Body as RobotBody
 from lumen.motion.dead_reckoning import turned
 from lumen.ports import Joints, Robot, Sense, Whereabouts
 from lumen.robots.simulation.odometry import DRIFT_AFTER_SITTING
-from lumen.runtime.navigator import Navigator
+from lumen.run.navigator import Navigator
 from tests.seams.test_robot import ROBOTS, Body
 from tests.simulation.conftest import body
 from tests.simulation.walks import any_robot, truth

@@ -12,7 +12,7 @@ from lumen.language.commands import Walk
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.robot.recording import RecordingRobot
-from lumen.runtime.loop import BehaviorLoop, Observer
+from lumen.run.loop import BehaviorLoop, Observer
 from lumen.statechart import Machine, Step, deserialize, serialize
 from tests.exhibits import BODY, project
 

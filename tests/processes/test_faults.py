@@ -11,12 +11,12 @@ import pika
 import pytest
 
 import lumen
-from lumen.app.parts import guard
 from lumen.bus import connect
 from lumen.cli.main import main
 from lumen.language.commands import Rest
 from lumen.ports import Perform
-from lumen.runtime.snapshot_store import SNAPSHOT_FILE
+from lumen.run.parts import guard
+from lumen.run.snapshot_store import SNAPSHOT_FILE
 from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded
 from tests.processes.troupe import SPEED, Member, Troupe, alone, deeds
 from tests.rabbitmq import RabbitMQ
@@ -67,7 +67,7 @@ PATIENCE = 120.0
 PATIENT = f"""
 import sys
 from lumen.cli.main import main
-from lumen.runtime import loop
+from lumen.run import loop
 loop.BRAIN_LOST_AFTER = {PATIENCE}
 sys.exit(main(sys.argv[1:]))
 """

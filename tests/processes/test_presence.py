@@ -8,8 +8,6 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.parts.guard import BrainGuard
-from lumen.app.parts.motion import MotionPart
 from lumen.bus import Bus, BusError, connect
 from lumen.bus.validated import validated
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Track
@@ -18,8 +16,10 @@ from lumen.ports import Aim, Message, Perform
 from lumen.project.packaged import shipped_root
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.remote import RemoteRobot
-from lumen.runtime.delegated_tracking import DelegatedTracking, motion_key
-from lumen.runtime.presence import LOST_AFTER, MAX_PEERS, Presence
+from lumen.run.delegated_tracking import DelegatedTracking, motion_key
+from lumen.run.parts.guard import BrainGuard
+from lumen.run.parts.motion import MotionPart
+from lumen.run.presence import LOST_AFTER, MAX_PEERS, Presence
 from tests.exhibits import BODY, JOINTS, messages, project
 from tests.nodes import Printed
 

@@ -5,15 +5,15 @@ from typing import Any
 
 import pytest
 
-from lumen.app import node
-from lumen.app.asking import OPERATOR_ANSWERS, operator_key
-from lumen.app.parts.hosted_robot import HostedRobotPart
 from lumen.errors import UsageError
 from lumen.language.commands import Posture, Rest, Say
 from lumen.language.motions import MotionDefinition
 from lumen.ports import Perform
 from lumen.project.home import home_of
-from lumen.runtime.snapshot_store import SNAPSHOT_FILE
+from lumen.run import node
+from lumen.run.asking import OPERATOR_ANSWERS, operator_key
+from lumen.run.parts.hosted_robot import HostedRobotPart
+from lumen.run.snapshot_store import SNAPSHOT_FILE
 from tests.processes.troupe import Troupe, alone, deeds
 from tests.relay import Relay
 from tests.waiting import HANG, Collector

@@ -13,19 +13,19 @@ from pathlib import Path
 from typing import Any
 
 import lumen
-from lumen.app.compose import compose
-from lumen.app.making.modules import ModulesPlan
-from lumen.app.parts.remote_brain import RemoteBrainPart
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.setup import Setup, set_up
 from lumen.bus import Bus, connect
 from lumen.bus.validated import validated
 from lumen.clock.real import RealClock
 from lumen.ports import Clock
 from lumen.project.home import home_of
 from lumen.robot.recording import RecordingRobot
-from lumen.runtime.presence import BRAIN, ROBOT_PART
+from lumen.run.compose import compose
+from lumen.run.making.modules import ModulesPlan
+from lumen.run.parts.remote_brain import RemoteBrainPart
+from lumen.run.plan import Plan
+from lumen.run.presence import BRAIN, ROBOT_PART
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.setup import Setup, set_up
 from tests.nodes import Printed, whole
 from tests.waiting import Collector, source_of, until
 

@@ -4,11 +4,11 @@ from pathlib import Path
 
 import orjson
 
-from lumen.app.forgetting.files import forget_in
-from lumen.app.forgetting.report import Forgetting
 from lumen.app.recording.recordings_folder import RecordingsFolder
 from lumen.formats.recordings.reading import read_recording
 from lumen.formats.recordings.recorded import RecordedMessage
+from lumen.run.forgetting.files import forget_in
+from lumen.run.forgetting.report import Forgetting
 from tests.recording.making import bodies, encoded, picture, said, write
 
 

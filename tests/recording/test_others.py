@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.setup import set_up
 from lumen.formats.recordings.foxglove import form_class
 from lumen.formats.recordings.rewriting import recover
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.setup import set_up
 from tests import ROOT
 from tests.fetched import fetched
 from tests.guarded import run_guarded

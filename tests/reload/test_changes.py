@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.versions import version
 from lumen.cli.main import main
 from lumen.errors import UsageError
 from lumen.insight.changes import Change, Risk, changes, live, risk, summary
@@ -20,7 +19,8 @@ from lumen.project import load, revisions
 from lumen.project.files import read_files
 from lumen.project.home import Home, home_of
 from lumen.project.revisions import files_at
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run.snapshot_store import SnapshotStore
+from lumen.run.versions import version
 from lumen.statechart import Machine, initial, step
 from tests import ROOT
 from tests.guarded import run_guarded

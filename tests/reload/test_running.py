@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import pytest
 
-from lumen.app.setup import Setup
 from lumen.bus.memory import MemoryBus
 from lumen.clock.simulated import SimulatedClock
 from lumen.insight.migration import MigrationDelay, MigrationPlan
@@ -18,8 +17,9 @@ from lumen.language.stories import Visitor
 from lumen.project import load
 from lumen.robot.recording import RecordingRobot
 from lumen.robots.simulation import SimulatedRobot
-from lumen.runtime.approvals import Approvals
-from lumen.runtime.loop import TICK_PERIOD, BehaviorLoop, Observer
+from lumen.run.approvals import Approvals
+from lumen.run.loop import TICK_PERIOD, BehaviorLoop, Observer
+from lumen.run.setup import Setup
 from lumen.statechart import Machine, Snapshot, Step
 from tests import ROOT, exhibits
 from tests.nodes import whole

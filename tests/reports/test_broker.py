@@ -18,7 +18,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen import load
-from lumen.app import node
 from lumen.app.fleet.broker_check import check_broker
 from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.bus import connect
@@ -34,6 +33,7 @@ from lumen.language.fleet import Fleet, FleetHouse
 from lumen.lint import check_files
 from lumen.ports import BlockableBus, UsesBroker
 from lumen.project.files import read_files
+from lumen.run import node
 from tests import ROOT
 from tests.guarded import run_guarded
 from tests.rabbitmq import RabbitMQ

@@ -10,14 +10,6 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.compose import begin
-from lumen.app.exhibition import Exhibition
-from lumen.app.parts.brain import BrainPart
-from lumen.app.parts.remote_brain import RemoteHold
-from lumen.app.plan import Plan
-from lumen.app.rehearsal import RehearsalTrace, rehearse
-from lumen.app.services import Services
-from lumen.app.setup import set_up
 from lumen.bus.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.console.entry_words import OTHERS, text_of
@@ -27,9 +19,17 @@ from lumen.ports import Message, Perform
 from lumen.robot.command_reports import CommandRecord, CommandReports
 from lumen.robot.person_hold import StoppedBy
 from lumen.robots.simulation.robot import SimulatedRobot
-from lumen.runtime.trace_publisher import TracePublisher
-from lumen.runtime.trace_subscriber import TraceSubscriber
-from lumen.runtime.troubles import RunTrouble
+from lumen.run.compose import begin
+from lumen.run.exhibition import Exhibition
+from lumen.run.parts.brain import BrainPart
+from lumen.run.parts.remote_brain import RemoteHold
+from lumen.run.plan import Plan
+from lumen.run.rehearsal import RehearsalTrace, rehearse
+from lumen.run.services import Services
+from lumen.run.setup import set_up
+from lumen.run.trace_publisher import TracePublisher
+from lumen.run.trace_subscriber import TraceSubscriber
+from lumen.run.troubles import RunTrouble
 from lumen.statechart import Step
 from tests import exhibits
 from tests.tables import for_each

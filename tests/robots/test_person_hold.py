@@ -6,12 +6,12 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.parts.kept_hold import KeptHold, forget_hold
 from lumen.language.commands import Leds, Look, Posture, Rest, Say, Wake, Walk
 from lumen.language.events import Event
 from lumen.ports import Aim, RobotCommand
 from lumen.robot.command_receiver import CommandListener
 from lumen.robot.person_hold import HoldListener, PersonHold
+from lumen.run.parts.kept_hold import KeptHold, forget_hold
 from tests.server.stand import Stand
 from tests.tables import for_each
 from tests.waiting import Collector

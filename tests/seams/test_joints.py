@@ -12,7 +12,6 @@ import pytest
 
 import lumen
 from lumen import Exhibition
-from lumen.app.setup import set_up_with
 from lumen.bus.memory import MemoryBus
 from lumen.language.commands import Language, Look, Posture
 from lumen.language.events import Event
@@ -27,6 +26,7 @@ from lumen.robot.bounded_robot import BoundedRobot, ability
 from lumen.robot.command_codec import decode_command, encode_command
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.remote import RemoteRobot
+from lumen.run.setup import set_up_with
 from lumen.statechart import VirtualClock
 from tests import ROOT
 from tests.tables import for_each

@@ -12,7 +12,7 @@ from lumen.language.projects import Project
 from lumen.ports import Aim, Joints, Perform, RobotCommand, Sense, Sonar
 from lumen.project.chosen_model import MODEL_VARIABLE
 from lumen.robot.recording import RecordingRobot
-from lumen.runtime.performer import LEFT_OUT, Performer
+from lumen.run.performer import LEFT_OUT, Performer
 from tests import ROOT
 from tests.seams.test_robot import Remote, live
 from tests.tour.conftest import copied

@@ -59,8 +59,8 @@ from lumen.robot.command_codec import decode_command, encode_command
 from lumen.robot.command_table import COMMANDS, row_of
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.sense_codec import decode_reading, encode_reading
-from lumen.runtime.trace_publisher import TracePublisher
-from lumen.runtime.trace_subscriber import TraceSubscriber
+from lumen.run.trace_publisher import TracePublisher
+from lumen.run.trace_subscriber import TraceSubscriber
 from lumen.statechart import Machine
 from tests import ROOT
 from tests.exhibits import BODY, project

@@ -11,11 +11,11 @@ from lumen.errors import BusError
 from lumen.language.commands import Posture, Rest, Say
 from lumen.language.events import Event
 from lumen.language.motions import MotionDefinition
-from lumen.modules.sound import Sound, sound_of
 from lumen.ports import Aim, Message, Perform
 from lumen.robot.command_table import speech_duration
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.server import RobotServer
+from lumen.run.sound import Sound, sound_of
 from tests.exhibits import project
 from tests.server.stand import PATIENT, PROJECT, Caller, Stand, without
 from tests.waiting import Collector

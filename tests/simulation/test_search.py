@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 from search_passage import KeptCosts, Text, Trial, cost, cost_of
 
-from lumen.app.workers.work_kit import WorkKit, models_in
-from lumen.app.workers.workers import Workers
 from lumen.language.robots import Body
 from lumen.motion import Motion
 from lumen.project.files import read_files
+from lumen.run.workers.work_kit import WorkKit, models_in
+from lumen.run.workers.workers import Workers
 from tests.scanning import matching
 from tests.simulation.conftest import MODELS
 from tests.tables import for_each

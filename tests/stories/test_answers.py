@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.replaying.journals import chosen
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import with_machines
-from lumen.app.storytelling.story_text import story_text
-from lumen.app.storytelling.visit_story import visit_story
 from lumen.cli.main import main
 from lumen.insight.replay.visits import visits
+from lumen.run.replaying.journals import chosen
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import with_machines
+from lumen.run.storytelling.story_text import story_text
+from lumen.run.storytelling.visit_story import visit_story
 
 SETTINGS = """
 lumen: 1

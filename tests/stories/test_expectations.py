@@ -8,7 +8,7 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.language.stories import Expect
-from lumen.runtime.story_observations import StoryObservations
+from lumen.run.story_observations import StoryObservations
 
 KNOCK = "  - event: {name: knock, data: {who: Ani}}\n"
 

@@ -8,8 +8,8 @@ import pytest
 from lumen.language.events import Event
 from lumen.lint import check_files
 from lumen.project.files import read_files
-from lumen.runtime.story import StoryPlayer
-from lumen.runtime.story_observations import expects_fall
+from lumen.run.story import StoryPlayer
+from lumen.run.story_observations import expects_fall
 from tests import ROOT
 
 

@@ -12,12 +12,6 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.rehearsal import rehearse
-from lumen.app.replaying.journals import chosen
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import with_machines
-from lumen.app.storytelling.story_text import story_text
-from lumen.app.storytelling.visit_story import renaming, visit_story
 from lumen.cli.main import main
 from lumen.insight.replay.visits import RecordedVisit, visits
 from lumen.journal.redaction import redact
@@ -27,6 +21,12 @@ from lumen.language.stories import Expect, Speak
 from lumen.lint import check_files
 from lumen.project.files import read_files
 from lumen.project.project_folders import PROJECT_FOLDERS
+from lumen.run.rehearsal import rehearse
+from lumen.run.replaying.journals import chosen
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import with_machines
+from lumen.run.storytelling.story_text import story_text
+from lumen.run.storytelling.visit_story import renaming, visit_story
 from tests import ROOT
 
 pytestmark = pytest.mark.rest  # dear

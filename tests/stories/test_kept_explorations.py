@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.exploring import explored
-from lumen.app.kept_explorations import MAX_KEPT, KeptExplorations
 from lumen.cli.main import main
+from lumen.run.exploring import explored
+from lumen.run.kept_explorations import MAX_KEPT, KeptExplorations
 
 
 @pytest.fixture

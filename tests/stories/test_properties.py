@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-from lumen.app.exploring import explored
-from lumen.app.rehearsal import rehearse
 from lumen.cli.main import main
 from lumen.insight.exploration import explore
 from lumen.project import load
+from lumen.run.exploring import explored
+from lumen.run.rehearsal import rehearse
 from lumen.statechart import Machine
 from tests.stories.test_exploration import GO
 

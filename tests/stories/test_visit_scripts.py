@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from lumen.app.storytelling.visit_script import broken
 from lumen.insight.replay.entries import JournalInput
 from lumen.insight.replay.visits import RecordedVisit
 from lumen.language.events import Event
+from lumen.run.storytelling.visit_script import broken
 from tests.tables import for_each
 
 SAY, PLAY = {"Say": {"text": "Hello"}}, {"Play": {"motion": "wave"}}

@@ -11,14 +11,14 @@ import pytest
 from written_distribution import on_path, write_distribution
 
 from lumen import distributions, feature
-from lumen.app.lint import outcome_cache
-from lumen.app.workers import tasks
 from lumen.cli.main import main
 from lumen.feature import BUILT_IN, Feature, features, resolve, wrong_rows
 from lumen.lint import check_files
 from lumen.project import engine_files
 from lumen.project.files import read_files
 from lumen.project.packaged import PACKAGE
+from lumen.run.linting import outcome_cache
+from lumen.run.workers import tasks
 from tests import ROOT
 from tests.guarded import run_guarded
 from tests.stranger.installing import Installed

@@ -7,11 +7,6 @@ from types import SimpleNamespace
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
-from lumen.app.making.modules import ModulesPlan
-from lumen.app.parts.module_factory import make_module
-from lumen.app.plan import Plan
-from lumen.app.setup import set_up, set_up_house
 from lumen.app.voice import speaker
 from lumen.cli.main import main
 from lumen.errors import ExpressionError, LumenError, UsageError
@@ -28,7 +23,12 @@ from lumen.project.files import read_files
 from lumen.project.schema import load_schema
 from lumen.robot.bounded_robot import BoundedRobot
 from lumen.robot.remote import RemoteRobot
-from lumen.runtime.presence import all_parts, unique_parts
+from lumen.run.exhibition import Exhibition
+from lumen.run.making.modules import ModulesPlan
+from lumen.run.parts.module_factory import make_module
+from lumen.run.plan import Plan
+from lumen.run.presence import all_parts, unique_parts
+from lumen.run.setup import set_up, set_up_house
 from tests import ROOT
 from tests.lsp.test_services import place
 from tests.stranger.installing import Installed, Lumen

@@ -5,15 +5,15 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.exhibition import Exhibition
-from lumen.app.making.modules import ModulesPlan
-from lumen.app.parts.module_factory import make_module
-from lumen.app.plan import Plan
-from lumen.app.rehearsal import RehearsalTrace
-from lumen.app.setup import set_up
 from lumen.bus import connect
 from lumen.cli.main import main
 from lumen.project import load
+from lumen.run.exhibition import Exhibition
+from lumen.run.making.modules import ModulesPlan
+from lumen.run.parts.module_factory import make_module
+from lumen.run.plan import Plan
+from lumen.run.rehearsal import RehearsalTrace
+from lumen.run.setup import set_up
 from tests import ROOT
 from tests.stranger.installing import Installed
 from tests.waiting import HANG
@@ -24,8 +24,8 @@ from lumen.feature import *
 FEATURE = Feature(name="faulty", {row})
 """
 ROBOT = """\
-from lumen.app.rehearsal import RehearsalTrace
-from lumen.app.setup import set_up_with
+from lumen.run.rehearsal import RehearsalTrace
+from lumen.run.setup import set_up_with
 
 
 class Robot:
@@ -54,7 +54,7 @@ FAULTS = {
         "robots={'bot': RobotRow('faulty_code:make')}",
         "def make(request): return 7",
         "run --robot bot",
-        "`faulty_code:make` returned 7 instead of a `lumen.app.setup.Setup`",
+        "`faulty_code:make` returned 7 instead of a `lumen.run.setup.Setup`",
     ),
     "robot that raises": (
         "robots={'bot': RobotRow('faulty_code:make')}",
@@ -229,14 +229,14 @@ def test_faulty_code_ends_with_a_sentence_that_names_its_package(
     assert told.startswith(f"lumen {verb}: the installed package `faulty` 1.2 is faulty: {fault}")
 
 
-MODULE = "from lumen.modules.module import Module\n\n\nclass Mood(Module):\n    "
+MODULE = "from lumen.run.module import Module\n\n\nclass Mood(Module):\n    "
 CURVES = """
 from lumen.formats.gestures.joint_curves import CurvePoint
 from lumen.language.diagnostics import Place
 """
 ROW = "modules={'mood': ModuleRow('faulty_code:Mood')}"
 MODULES = {
-    "is no module": ("class Mood: pass", "is no subclass of `lumen.modules.module.Module`"),
+    "is no module": ("class Mood: pass", "is no subclass of `lumen.run.module.Module`"),
     "can't be made": (f"{MODULE}def __init__(self, *given): 1 / 0", "raised ZeroDivisionError"),
     "can't begin": (f"{MODULE}def begin(self): 1 / 0", "raised ZeroDivisionError"),
     "is left out by its own error": (

@@ -8,8 +8,6 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.forgetting.added import FeatureForgetter
-from lumen.app.setup import set_up
 from lumen.app.voice import AddedVoice
 from lumen.bus import connect
 from lumen.errors import ExpressionError, LumenError, Refused
@@ -23,6 +21,8 @@ from lumen.project.files import read_files
 from lumen.robot.command_table import speech_duration
 from lumen.robot.remote import RemoteRobot
 from lumen.robot.sense_codec import decode_reading, encode_reading
+from lumen.run.forgetting.added import FeatureForgetter
+from lumen.run.setup import set_up
 from tests import ROOT
 from tests.stranger.installing import Installed
 
@@ -157,7 +157,7 @@ def test_a_wrong_reading_of_a_robot_names_its_package(
     reading: Any, fault: str, bounded: bool, installed: Installed
 ) -> None:
     row = f"robots={{'bot': RobotRow('faulty_code:make', bounded={bounded})}}"
-    code = "from lumen.app.setup import set_up_with\nfrom lumen.robots.none import NoRobot\nROBOT = NoRobot()\n"
+    code = "from lumen.app.setup import set_up_with\nfrom lumen.robot.none import NoRobot\nROBOT = NoRobot()\n"
     installed.write("faulty", MANIFEST.format(row=row), faulty_code=f"{code}def make(r): return set_up_with(ROBOT)")
     resolve("faulty_code:ROBOT").read = lambda sense: reading
     robot = set_up("bot", lumen.load(ROOT / "examples/minimal"), "max").robot

@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.forgetting.added import FeatureForgetter
-from lumen.app.forgetting.report import OF_A_PACKAGE, out_of_reach
 from lumen.feature import resolve
 from lumen.language.people import PersonName
 from lumen.language.stories import Visitor
 from lumen.lint import check_files
 from lumen.project.files import read_files
+from lumen.run.forgetting.added import FeatureForgetter
+from lumen.run.forgetting.report import OF_A_PACKAGE, out_of_reach
 from tests import ROOT
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web

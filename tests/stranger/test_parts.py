@@ -10,12 +10,7 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.exhibition import Exhibition
 from lumen.app.parts.alerting import AlertPart
-from lumen.app.parts.part import Part
-from lumen.app.plan import Plan
-from lumen.app.rehearsal import RehearsalTrace
-from lumen.app.setup import set_up
 from lumen.bus.memory import MemoryBus
 from lumen.bus.validated import validated
 from lumen.errors import UsageError
@@ -23,6 +18,11 @@ from lumen.feature import resolve
 from lumen.language.events import Event
 from lumen.lint import check_files
 from lumen.project.files import read_files
+from lumen.run.exhibition import Exhibition
+from lumen.run.parts.part import Part
+from lumen.run.plan import Plan
+from lumen.run.rehearsal import RehearsalTrace
+from lumen.run.setup import set_up
 from tests import ROOT
 from tests.stranger.installing import Installed
 from tests.tables import for_each
@@ -33,18 +33,18 @@ from lumen.feature import Feature, PartRow, Phase
 FEATURE = Feature(name="counter", parts=(PartRow("counter", Phase.WATCH, "counting_part:make"),))
 """
 COUNTER = """
-from lumen.app.parts.part import Part
-from lumen.app.exhibition import Exhibition
+from lumen.run.parts.part import Part
+from lumen.run.exhibition import Exhibition
 from lumen.app.parts.alerting import AlertPart
-from lumen.app.parts.part import Part
-from lumen.app.plan import Plan
-from lumen.app.rehearsal import RehearsalTrace
-from lumen.app.setup import set_up
+from lumen.run.parts.part import Part
+from lumen.run.plan import Plan
+from lumen.run.rehearsal import RehearsalTrace
+from lumen.run.setup import set_up
 from lumen.bus.memory import MemoryBus
 from lumen.bus.validated import validated
 from lumen.errors import UsageError
 from lumen.feature import resolve
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
 
 class Counter(Part, Observer):
     watches = True

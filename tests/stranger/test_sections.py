@@ -10,9 +10,6 @@ from unittest.mock import patch
 import pytest
 
 from lumen.app.fleet.house_keys import at_home
-from lumen.app.reload.delta import DeltaDecoder, DeltaEncoder
-from lumen.app.reload.idle_process import end_idle
-from lumen.app.reload.validation_worker import ValidationWorker
 from lumen.cli.main import main
 from lumen.feature import resolve
 from lumen.insight.changes import changes, live
@@ -23,6 +20,9 @@ from lumen.lsp.completion import complete
 from lumen.lsp.hover import hover
 from lumen.project import memoization
 from lumen.project.files import read_files
+from lumen.run.reload.delta import DeltaDecoder, DeltaEncoder
+from lumen.run.reload.idle_process import end_idle
+from lumen.run.reload.validation_worker import ValidationWorker
 from tests import ROOT
 from tests.stranger.installing import SOURCES, Installed
 from tests.tables import for_each

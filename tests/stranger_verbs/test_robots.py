@@ -21,8 +21,8 @@ from lumen.robot.recording import RecordingRobot
 from lumen.robot.remote import RemoteRobot
 from lumen.robot.server import RobotServer
 from lumen.robot.skill_runner import SkillRunner
-from lumen.runtime.trace_publisher import TracePublisher
-from lumen.runtime.trace_subscriber import TraceSubscriber
+from lumen.run.trace_publisher import TracePublisher
+from lumen.run.trace_subscriber import TraceSubscriber
 from tests.exhibits import BODY, project
 from tests.robots.test_executor import Fake, names
 from tests.seams.test_joints import NAO, Obedient

@@ -4,8 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from lumen.app.rehearsal import rehearse
-from lumen.app.setup import Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.commands import Log as LogLine
@@ -13,7 +11,9 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Hall, Robot
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
+from lumen.run.rehearsal import rehearse
+from lumen.run.setup import Setup
 from lumen.statechart import Step
 from tests.tour.names import GUIDE
 

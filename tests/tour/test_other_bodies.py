@@ -3,10 +3,10 @@
 import pytest
 
 import lumen
-from lumen.app.rehearsal import rehearse
 from lumen.cli.main import main
 from lumen.language.diagnostics import has_errors
 from lumen.project.chosen_model import MODEL_VARIABLE
+from lumen.run.rehearsal import rehearse
 from tests import ROOT
 
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.exploring import explored
 from lumen.cli.main import main
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Expect, Story, StoryStep, Visitor
 from lumen.project.schedules import read_schedule
-from lumen.runtime.coverage import Coverage
+from lumen.run.coverage import Coverage
+from lumen.run.exploring import explored
 from tests import ROOT
 from tests.scanning import matching
 from tests.tables import for_each

@@ -5,10 +5,10 @@ import signal
 import time
 from pathlib import Path
 
-from lumen.app.lint.physics import play_case
-from lumen.app.workers.work_kit import UnpackedKit
 from lumen.language.imperfections import Imperfections
 from lumen.rules.physics import Outcome
+from lumen.run.linting.physics import play_case
+from lumen.run.workers.work_kit import UnpackedKit
 
 
 def square(kit: UnpackedKit, number: int) -> tuple[int, bytes]:

@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.lint.physics import play_case
-from lumen.app.workers.work_kit import WorkKit, models_in
-from lumen.app.workers.workers import Workers, workers_of
 from lumen.errors import WorkersError
 from lumen.extras import MissingExtraError
 from lumen.language.imperfections import Imperfections
 from lumen.project.files import read_files
 from lumen.rules.physics.cases import cases
+from lumen.run.linting.physics import play_case
+from lumen.run.workers.work_kit import WorkKit, models_in
+from lumen.run.workers.workers import Workers, workers_of
 from tests import ROOT
 from tests.workers.clusters import dask_cluster
 from tests.workers.small_tasks import play_or_die

@@ -6,13 +6,13 @@ from shutil import copytree
 import pytest
 
 import lumen
-from lumen.app.replaying import shared_replay as shared
-from lumen.app.replaying.journals import chosen
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import against
-from lumen.app.replaying.replay_report import ReplayReport, replayed
-from lumen.app.workers.workers import Workers
 from lumen.project.files import read_files
+from lumen.run.replaying import shared_replay as shared
+from lumen.run.replaying.journals import chosen
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import against
+from lumen.run.replaying.replay_report import ReplayReport, replayed
+from lumen.run.workers.workers import Workers
 from tests import ROOT
 
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.workers.local_pool import TERMINATED
-from lumen.app.workers.tasks import TaskHead, do_task, engine
-from lumen.app.workers.work_kit import WorkKit, name_of
-from lumen.app.workers.workers import Workers, cores, workers_of
 from lumen.cli.main import main
 from lumen.errors import UsageError, WorkersError
+from lumen.run.workers.local_pool import TERMINATED
+from lumen.run.workers.tasks import TaskHead, do_task, engine
+from lumen.run.workers.work_kit import WorkKit, name_of
+from lumen.run.workers.workers import Workers, cores, workers_of
 from tests import ROOT
 from tests.guarded import PIPE, Guarded
 from tests.house.test_guarded import left
@@ -83,8 +83,8 @@ def test_workers_that_die_again_are_an_error_in_words(tmp_path: Path, monkeypatc
 
 WAITING = """
 import sys
-from lumen.app.workers.work_kit import WorkKit
-from lumen.app.workers.workers import Workers
+from lumen.run.workers.work_kit import WorkKit
+from lumen.run.workers.workers import Workers
 from tests.workers.small_tasks import wait_for_ever
 
 if __name__ == "__main__":

@@ -6,8 +6,8 @@ import tempfile
 from pathlib import Path
 
 from lumen.errors import RobotFailedError
-from lumen.modules.audio_track import AudioTrack
-from lumen.modules.sound import save
+from lumen.run.audio_track import AudioTrack
+from lumen.run.sound import save
 from lumen.upkeep.private_folder import private_folder
 
 

@@ -10,19 +10,19 @@ from math import isfinite
 from pathlib import Path
 from typing import IO, Protocol, TypeVar, runtime_checkable
 
-from lumen.app.loudspeaker import player_here
-from lumen.app.setup import Setup
 from lumen.errors import ModuleError, UsageError
 from lumen.feature import Feature, distribution_of, owner, table
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.gestures import WordTime
-from lumen.modules.audio_track import AudioTrack
-from lumen.modules.sound import Sound, save
 from lumen.modules.voice import espeak
 from lumen.ports import Robot
 from lumen.project.broken_features import called, faults_reported, need_made, shown
 from lumen.robot.bounded_robot import ability
 from lumen.robot.command_table import speech_duration
+from lumen.run.audio_track import AudioTrack
+from lumen.run.loudspeaker import player_here
+from lumen.run.setup import Setup
+from lumen.run.sound import Sound, save
 
 T = TypeVar("T")
 _log = logging.getLogger(__name__)

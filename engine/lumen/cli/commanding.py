@@ -4,11 +4,11 @@ import argparse
 import sys
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask
-from lumen.app.resting import TAKEN
 from lumen.cli.formats import print_object
 from lumen.cli.reach import reach
 from lumen.ports import Bus
+from lumen.run.asking import OPERATOR_ANSWERS, ask
+from lumen.run.resting import TAKEN
 
 COMMAND_TIMEOUT = 30.0
 

@@ -6,12 +6,12 @@ import sys
 from collections.abc import Callable
 from functools import partial
 
-from lumen.app.reaching import reach_exhibition
 from lumen.cli.reach import configure_reach
 from lumen.extras import demand
 from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
 from lumen.project.building import main_settings
 from lumen.project.running_project import project_to_run
+from lumen.run.reaching import reach_exhibition
 from lumen.upkeep.heap import give_back
 from lumen.upkeep.threads import WatchedThread
 

@@ -5,16 +5,16 @@ import json
 from pathlib import Path
 from typing import Any
 
-from lumen.app.reload.migration_preview import MigrationOutcome, MigrationPreview, outcome_of, preview
-from lumen.app.replaying.journals import chosen
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import against
-from lumen.app.replaying.replay_report import ReplayReport
-from lumen.app.versions import LIVE, Version, version
 from lumen.cli.progress import progress
 from lumen.cli.replay_text import replay_lines
 from lumen.cli.terminal import coloured, paint
 from lumen.insight.changes import Change, Risk, changes, live, risk, summary
+from lumen.run.reload.migration_preview import MigrationOutcome, MigrationPreview, outcome_of, preview
+from lumen.run.replaying.journals import chosen
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import against
+from lumen.run.replaying.replay_report import ReplayReport
+from lumen.run.versions import LIVE, Version, version
 
 BOUND = 10_000
 COLOURS = {"refused": "red", "waits": "yellow", "moved": "blue", "kept": "green"}

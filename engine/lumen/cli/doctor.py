@@ -10,7 +10,6 @@ from contextlib import closing, suppress
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
-from lumen.app.attendance import RobotAttendance
 from lumen.bus import connect
 from lumen.bus.addresses import is_rabbitmq, within_process
 from lumen.bus.validated import by_key
@@ -26,7 +25,8 @@ from lumen.ports import Bus
 from lumen.project.files import read_files
 from lumen.project.own_project import own_project
 from lumen.robot.robot_routes import COMMAND_ROUTE
-from lumen.runtime.delegated_tracking import MOTION_ROUTE as MOTION
+from lumen.run.attendance import RobotAttendance
+from lumen.run.delegated_tracking import MOTION_ROUTE as MOTION
 
 LISTENING = 2.0
 SKEW = 1.0

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import lumen
-from lumen.app.lint.findings import Findings
 from lumen.cli.projects import shown_project
 from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
@@ -20,6 +19,7 @@ from lumen.project.broken_features import called, called_for_text, faulty, shown
 from lumen.project.document import Document
 from lumen.project.files import on_disk
 from lumen.project.yaml_reader import parse
+from lumen.run.linting.findings import Findings
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

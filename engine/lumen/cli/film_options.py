@@ -6,11 +6,11 @@ import re
 from pathlib import Path
 
 from lumen.app.film_progress import FilmProgress
-from lumen.app.rehearsal import rehearse
 from lumen.cli.streams import complain
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
+from lumen.run.rehearsal import rehearse
 
 
 def film_path(path: Path | None, robot: str) -> Path | None:

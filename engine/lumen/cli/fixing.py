@@ -5,14 +5,14 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from lumen.app.lint.findings import Findings
-from lumen.app.lint.targets import LintTarget, Wanted, checked
 from lumen.cli.render.terminal_text import clean, counted
 from lumen.cli.terminal import paint
 from lumen.errors import UsageError
 from lumen.language.text_lines import lines_of
 from lumen.lint.repairs import Repair, repaired
 from lumen.project.files import on_disk
+from lumen.run.linting.findings import Findings
+from lumen.run.linting.targets import LintTarget, Wanted, checked
 from lumen.upkeep.replacing import replace_file
 
 

@@ -9,7 +9,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask
 from lumen.app.fleet.broker_check import check_broker
 from lumen.app.fleet.brokers import CENTRE, write_settings
 from lumen.app.fleet.bundle import messages_of
@@ -17,7 +16,6 @@ from lumen.app.fleet.keys import ORDER
 from lumen.app.fleet.rabbitmqctl import USUAL, RabbitMQControl
 from lumen.app.fleet.serving import ServedCentre, fleet_in
 from lumen.app.fleet.signing import Signer, generate
-from lumen.app.versions import version
 from lumen.bus import Bus, connect
 from lumen.cli.fleet_text import fleet_lines, log_lines
 from lumen.cli.formats import configure_format, print_object
@@ -27,6 +25,8 @@ from lumen.language.counts import counted
 from lumen.lint import check_files
 from lumen.project.project_folders import FLEET_FILE
 from lumen.project.units import seconds
+from lumen.run.asking import OPERATOR_ANSWERS, ask
+from lumen.run.versions import version
 
 WHATS: Mapping[str, str] = {
     "keygen": "make the key that signs bundles",

@@ -4,8 +4,6 @@ import argparse
 import sys
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
-from lumen.app.reaching import Reached
 from lumen.cli.agreeing import agrees
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.person import person
@@ -13,6 +11,8 @@ from lumen.cli.reach import configure_reach, reach
 from lumen.errors import UsageError
 from lumen.language.events import HELD
 from lumen.language.operator_requests import GOTO
+from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.reaching import Reached
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -6,12 +6,6 @@ import time
 from collections.abc import Sequence
 from contextlib import ExitStack
 
-from lumen.app.house import House
-from lumen.app.parts.visitor import VisitorPart
-from lumen.app.plan import Plan
-from lumen.app.run_start import BegunRun
-from lumen.app.services import Services
-from lumen.app.setup import Setup, robot_options, set_up_house
 from lumen.bus.addresses import within_process
 from lumen.cli.imperfection_options import imperfections_of
 from lumen.cli.main import ready
@@ -25,7 +19,13 @@ from lumen.errors import LumenError, UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
-from lumen.runtime.presence import BRAIN, ROBOT_PART
+from lumen.run.house import House
+from lumen.run.parts.visitor import VisitorPart
+from lumen.run.plan import Plan
+from lumen.run.presence import BRAIN, ROBOT_PART
+from lumen.run.run_start import BegunRun
+from lumen.run.services import Services
+from lumen.run.setup import Setup, robot_options, set_up_house
 
 
 class HouseRun:

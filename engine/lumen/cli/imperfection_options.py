@@ -8,9 +8,9 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.imperfections import IMPERFECTIONS, PERFECT, Imperfections, only
 
 if TYPE_CHECKING:
-    from lumen.app.setup import Setup
     from lumen.language.projects import Project
     from lumen.language.stories import Story
+    from lumen.run.setup import Setup
 
 
 def configure_imperfections(parser: argparse.ArgumentParser) -> None:
@@ -36,7 +36,7 @@ def imperfections_of(text: str | None) -> Imperfections | None:
 
 def set_up_robot(options: argparse.Namespace, project: "Project", story: "Story | None") -> "Setup":
     """The robot that the options of `lumen run` ask for; raises UsageError where they do not go together."""
-    from lumen.app.setup import robot_options, set_up  # only who has a robot waits for it
+    from lumen.run.setup import robot_options, set_up  # only who has a robot waits for it
 
     lacking = imperfections_of(options.imperfections)
     if lacking and options.robot != "simulation":

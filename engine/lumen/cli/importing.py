@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from lumen.app.lint.findings import Findings
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.importing_robot import robot_body, write_beside
 from lumen.cli.progress import progress
@@ -37,6 +36,7 @@ from lumen.project.motions import build_motion
 from lumen.project.packaged import find_project
 from lumen.project.schema import check_schema
 from lumen.project.yaml_reader import parse
+from lumen.run.linting.findings import Findings
 from lumen.upkeep.garbage import gc_paused
 
 BEGINNINGS = {b"<": ".scxml", b"{": ".json"}

@@ -4,8 +4,6 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 
-from lumen.app.lint.findings import Findings
-from lumen.app.lint.targets import FindingsOf, LintTarget, Wanted, lint, lint_targets
 from lumen.cli.imperfection_options import configure_imperfections, imperfections_of
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.printing import show, verdict
@@ -14,6 +12,8 @@ from lumen.cli.terminal import coloured
 from lumen.cli.workers_option import configure_workers
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
+from lumen.run.linting.findings import Findings
+from lumen.run.linting.targets import FindingsOf, LintTarget, Wanted, lint, lint_targets
 from lumen.upkeep.garbage import gc_paused
 
 
@@ -70,9 +70,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
     """The findings with those of the motions in simulation; how they went is told beside what is for people."""
-    from lumen.app.lint.physics import ROBOTS, number_of_robots, played, summary
-    from lumen.app.workers.workers import workers_of
     from lumen.cli.progress import progress
+    from lumen.run.linting.physics import ROBOTS, number_of_robots, played, summary
+    from lumen.run.workers.workers import workers_of
 
     robots = ROBOTS if options.robots is None else number_of_robots(options.robots)
     workers, lacking = workers_of(options.workers), imperfections_of(options.imperfections)
@@ -97,7 +97,7 @@ def _judge(against: str | None, wanted: Wanted, *, kept: bool) -> FindingsOf:
             found = lint(what, wanted, files, kept=kept)
         if against is None:
             return found
-        from lumen.app.lint.reloading import compared
+        from lumen.run.linting.reloading import compared
 
         return compared(found, against, wanted)
 

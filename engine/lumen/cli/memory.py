@@ -6,11 +6,6 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask
-from lumen.app.forgetting.files import forget_in
-from lumen.app.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
-from lumen.app.one_robot import one_robot
-from lumen.app.reaching import reach_exhibition
 from lumen.bus.addresses import within_process
 from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_robot_name
@@ -26,6 +21,11 @@ from lumen.project.building import draft, main_settings
 from lumen.project.files import read_files
 from lumen.project.home import home_of
 from lumen.project.settings import Settings
+from lumen.run.asking import OPERATOR_ANSWERS, ask
+from lumen.run.forgetting.files import forget_in
+from lumen.run.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
+from lumen.run.one_robot import one_robot
+from lumen.run.reaching import reach_exhibition
 
 ANSWER_TIMEOUT = 2.0
 """How long the memory of a running exhibition has to answer [s]; where none answers, all others are told."""

@@ -2,13 +2,13 @@
 
 import argparse
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
-from lumen.app.resting import TAKEN
 from lumen.cli.commanding import told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, for_each_robot, reach
 from lumen.language.operator_requests import MODEL
+from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.resting import TAKEN
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -3,12 +3,12 @@
 import argparse
 from pathlib import Path
 
-from lumen.app.starting import STARTERS, start_project
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.project.building import main_settings
 from lumen.project.lending import shipped_models
+from lumen.run.starting import STARTERS, start_project
 
 ACTION = "OWNER/lumen@COMMIT"
 """Stands where the address of this repository and a commit of it are to be."""

@@ -5,11 +5,6 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from lumen.app.parts.robot import RobotPart
-from lumen.app.parts.visitor import VisitorPart
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.services import Services
-from lumen.app.setup import Setup
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_plan import leave, running
@@ -18,6 +13,11 @@ from lumen.cli.transcript import Transcript
 from lumen.clock.real import RealClock
 from lumen.language.projects import Project
 from lumen.language.stories import Leave, VisitorAction
+from lumen.run.parts.robot import RobotPart
+from lumen.run.parts.visitor import VisitorPart
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.services import Services
+from lumen.run.setup import Setup
 
 GREETING = (
     "You are the visitor: type what you say, or /help. Ctrl-D walks away; Ctrl-C makes the robot rest, and a second"

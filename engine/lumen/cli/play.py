@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from lumen.app.setup import SPEEDS, set_up
 from lumen.cli.film_options import configure_size, film_path, film_size
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.formats import configure_format, one_object
@@ -31,8 +30,9 @@ from lumen.project.draft import ProjectDraft, body_of
 from lumen.project.files import read_files
 from lumen.project.motions import build_motion
 from lumen.project.schema import check_schema
-from lumen.runtime.loop import TICK_PERIOD
-from lumen.runtime.troubles import trouble_of_answer
+from lumen.run.loop import TICK_PERIOD
+from lumen.run.setup import SPEEDS, set_up
+from lumen.run.troubles import trouble_of_answer
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -3,10 +3,10 @@
 import sys
 from collections.abc import Sequence
 
-from lumen.app.lint.findings import Findings
 from lumen.cli.streams import hush
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Severity
+from lumen.run.linting.findings import Findings
 
 
 def verdict(found: Sequence[Findings], *, strict: bool = False) -> int:

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator
 from datetime import datetime
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
-from lumen.app.recalling import answer_from_journal
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.moments import moment
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.operator_requests import OperatorRequest
+from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.recalling import answer_from_journal
 
 
 def configure_question(parser: argparse.ArgumentParser) -> None:

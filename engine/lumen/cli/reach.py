@@ -3,8 +3,8 @@
 import argparse
 from collections.abc import Callable
 
-from lumen.app.reaching import Reached, reach_exhibition, robots_meant
 from lumen.cli.projects import shown_project
+from lumen.run.reaching import Reached, reach_exhibition, robots_meant
 
 
 def configure_reach(parser: argparse.ArgumentParser) -> None:

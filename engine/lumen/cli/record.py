@@ -8,8 +8,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
-from lumen.app.reaching import Reached
 from lumen.app.recording.notes import bundle_files, journal_files, notes_of
 from lumen.app.recording.recorder import Recorder
 from lumen.app.recording.recordings_folder import SUFFIX, RecordingsFolder
@@ -34,7 +32,9 @@ from lumen.project.files import read_files
 from lumen.project.home import Home, home_of
 from lumen.project.running_project import project_to_run
 from lumen.project.units import seconds
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.reaching import Reached
+from lumen.run.snapshot_store import SnapshotStore
 
 LOOK = 0.1
 """How often it is looked whether the time is over, or the exhibition is gone [s]."""

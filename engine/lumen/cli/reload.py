@@ -4,9 +4,9 @@ import argparse
 import json
 from typing import Any
 
-from lumen.app.asking import ask
-from lumen.app.reload.requests import command_key, status_key
 from lumen.cli.reach import configure_reach, reach
+from lumen.run.asking import ask
+from lumen.run.reload.requests import command_key, status_key
 
 REQUESTS = {
     "status": "show which files are active, what is staged, and how the last reload ended",

@@ -5,16 +5,6 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import lumen
-from lumen.app.one_robot import one_robot
-from lumen.app.replaying.journals import ChosenJournal, chosen, listed, until
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import against
-from lumen.app.replaying.replay_report import ReplayReport, replayed
-from lumen.app.replaying.shared_replay import replay_kit, shared_against, shared_replay
-from lumen.app.replaying.show import show
-from lumen.app.setup import SPEEDS, set_up
-from lumen.app.versions import version
-from lumen.app.workers.workers import workers_of
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.progress import progress
 from lumen.cli.projects import shown_project
@@ -25,6 +15,16 @@ from lumen.cli.workers_option import configure_workers
 from lumen.insight.replay.entries import RecordedEntry
 from lumen.language.iso_time import local_time
 from lumen.project.chosen_robot import as_robot
+from lumen.run.one_robot import one_robot
+from lumen.run.replaying.journals import ChosenJournal, chosen, listed, until
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import against
+from lumen.run.replaying.replay_report import ReplayReport, replayed
+from lumen.run.replaying.shared_replay import replay_kit, shared_against, shared_replay
+from lumen.run.replaying.show import show
+from lumen.run.setup import SPEEDS, set_up
+from lumen.run.versions import version
+from lumen.run.workers.workers import workers_of
 
 SMALL = 1_000_000
 """A journal of fewer bytes is replayed before other processes have begun."""

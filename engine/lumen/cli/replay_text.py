@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from lumen.app.replaying.replay_report import ReplayReport
 from lumen.language.counts import counted
 from lumen.language.iso_time import local_time
+from lumen.run.replaying.replay_report import ReplayReport
 
 SHOWN = 10
 """How many differences are shown."""

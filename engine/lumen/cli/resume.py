@@ -3,7 +3,6 @@
 import argparse
 from typing import Any
 
-from lumen.app.resting import resume_body
 from lumen.cli.agreeing import agrees
 from lumen.cli.commanding import answered, told
 from lumen.cli.formats import configure_format
@@ -11,6 +10,7 @@ from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, for_each_robot, reach
 from lumen.errors import UsageError
 from lumen.language.iso_time import local_time, time_of
+from lumen.run.resting import resume_body
 
 RESUME_TIMEOUT = 10.0
 

@@ -6,18 +6,6 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 
-from lumen.app.compose import begin, claim
-from lumen.app.loudspeaker import Loudspeaker, Sounds
-from lumen.app.making.showing import FilmPlan
-from lumen.app.node import Node
-from lumen.app.one_robot import robots_of
-from lumen.app.plan import Plan
-from lumen.app.processes.choosing import parts_of
-from lumen.app.reload.reloader import MODES
-from lumen.app.run_start import BegunRun, started
-from lumen.app.services import Services
-from lumen.app.setup import SPEEDS, Setup, robot_names, robot_options
-from lumen.app.stories import home_of
 from lumen.bus.addresses import examples, within_process
 from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
 from lumen.cli.formats import configure_format, one_object
@@ -36,13 +24,25 @@ from lumen.errors import UsageError
 from lumen.feature import table
 from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.language.stories import Story
-from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Clock
 from lumen.project.broken_features import broken_features
 from lumen.project.home import home_of as home_of_run
 from lumen.project.running_project import is_substituted, project_to_run
 from lumen.robot.bounded_robot import ability
-from lumen.runtime.presence import BRAIN, ROBOT_PART, all_parts
+from lumen.run.audio_track import AudioTrack
+from lumen.run.chosen_stories import home_of
+from lumen.run.compose import begin, claim
+from lumen.run.loudspeaker import Loudspeaker, Sounds
+from lumen.run.making.showing import FilmPlan
+from lumen.run.node import Node
+from lumen.run.one_robot import robots_of
+from lumen.run.plan import Plan
+from lumen.run.presence import BRAIN, ROBOT_PART, all_parts
+from lumen.run.processes.choosing import parts_of
+from lumen.run.reload.reloader import MODES
+from lumen.run.run_start import BegunRun, started
+from lumen.run.services import Services
+from lumen.run.setup import SPEEDS, Setup, robot_names, robot_options
 from lumen.upkeep.heap import give_back
 
 PROCESS_GREETING = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"

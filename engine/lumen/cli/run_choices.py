@@ -5,14 +5,14 @@ from pathlib import Path
 
 from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
-from lumen.app.narrator import Narrator
-from lumen.app.stories import stories_of
 from lumen.errors import UsageError
 from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.project.units import seconds
+from lumen.run.chosen_stories import stories_of
+from lumen.run.narrator import Narrator
 
 
 def alert_desk(project: Project, parts: Sequence[str], narrator: Narrator) -> AlertDesk:

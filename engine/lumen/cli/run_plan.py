@@ -6,14 +6,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.app.compose import compose
-from lumen.app.making.modules import ModulesPlan
-from lumen.app.narrator import Narrator
-from lumen.app.plan import Plan
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.run_start import WHOLE
-from lumen.app.services import Services
-from lumen.app.setup import Setup
 from lumen.cli.run_choices import alert_desk, language_of
 from lumen.errors import BusUnreachableError
 from lumen.language.console_settings import ConsoleSettings
@@ -21,6 +13,14 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.project.home import home_of
+from lumen.run.compose import compose
+from lumen.run.making.modules import ModulesPlan
+from lumen.run.narrator import Narrator
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.run_start import WHOLE
+from lumen.run.services import Services
+from lumen.run.setup import Setup
 
 
 @dataclass(frozen=True, slots=True)

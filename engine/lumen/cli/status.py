@@ -6,16 +6,16 @@ from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from lumen.app.asking import FIRST_ANSWER_TIMEOUT, OPERATOR_ANSWERS, ask, operator_key
-from lumen.app.one_robot import one_robot, robots_of
-from lumen.app.reaching import reach_exhibition
-from lumen.app.recovery.last_run import last_run
 from lumen.cli.printing import clock_time
 from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_reach
 from lumen.errors import BusError
 from lumen.language.events import HELD
 from lumen.language.operator_requests import STATUS
+from lumen.run.asking import FIRST_ANSWER_TIMEOUT, OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.one_robot import one_robot, robots_of
+from lumen.run.reaching import reach_exhibition
+from lumen.run.recovery.last_run import last_run
 
 AMONG_OTHERS = 5.0
 """How long the answer of one robot of several may take [s]."""

@@ -2,12 +2,12 @@
 
 import argparse
 
-from lumen.app.resting import STOP_TIMEOUT, no_robot, rest_body, stop_behavior
 from lumen.cli.commanding import answered, told
 from lumen.cli.formats import configure_format
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, names_meant, reach
 from lumen.errors import BusError, BusUnreachableError
+from lumen.run.resting import STOP_TIMEOUT, no_robot, rest_body, stop_behavior
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -4,17 +4,17 @@ import argparse
 from pathlib import Path
 
 import lumen
-from lumen.app.one_robot import one_robot
-from lumen.app.replaying.journals import chosen
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.storytelling.chosen_visit import chosen_visit
-from lumen.app.storytelling.story_text import story_text
-from lumen.app.storytelling.visit_story import renaming, visit_story
 from lumen.cli.formats import configure_format, print_object
 from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_robot_name
 from lumen.cli.writing import write_file, write_result
 from lumen.errors import UsageError
+from lumen.run.one_robot import one_robot
+from lumen.run.replaying.journals import chosen
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.storytelling.chosen_visit import chosen_visit
+from lumen.run.storytelling.story_text import story_text
+from lumen.run.storytelling.visit_story import renaming, visit_story
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -7,11 +7,6 @@ from contextlib import nullcontext
 from pathlib import Path
 
 import lumen
-from lumen.app.exploring import Explored, explored
-from lumen.app.kept_explorations import KeptExplorations
-from lumen.app.rehearsal import Rehearsal, rehearse
-from lumen.app.stories import home_of, tests_of
-from lumen.app.verdict import JudgedSaying, Verdict
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import progress
 from lumen.cli.terminal import coloured
@@ -27,7 +22,12 @@ from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
 from lumen.project.own_project import own_project
 from lumen.project.project_folders import MAIN_FILE
-from lumen.runtime.coverage import Coverage
+from lumen.run.chosen_stories import home_of, tests_of
+from lumen.run.coverage import Coverage
+from lumen.run.exploring import Explored, explored
+from lumen.run.kept_explorations import KeptExplorations
+from lumen.run.rehearsal import Rehearsal, rehearse
+from lumen.run.verdict import JudgedSaying, Verdict
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -10,7 +10,6 @@ from contextlib import closing
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from lumen.app.asking import OPERATOR_ANSWERS
 from lumen.bus.bodies import encode
 from lumen.bus.validated import by_key, validated
 from lumen.cli.progress import progress
@@ -26,6 +25,7 @@ from lumen.project.files import read_files
 from lumen.project.project_folders import MAIN_FILE
 from lumen.project.running_project import running_project
 from lumen.project.units import seconds
+from lumen.run.asking import OPERATOR_ANSWERS
 
 TOPIC_VERBS = {
     "list": "list the routes, and count the messages on them",

@@ -6,10 +6,10 @@ import textwrap
 from collections.abc import Callable
 from typing import TextIO
 
-from lumen.app.narrator import Narrator
 from lumen.cli.streams import hush
 from lumen.cli.terminal import coloured, paint
 from lumen.language.machines import MachineDefinition
+from lumen.run.narrator import Narrator
 
 INDENT = 18
 

@@ -5,13 +5,13 @@ import sys
 from collections.abc import Callable, Sequence
 from io import TextIOWrapper
 
-from lumen.app.narrator import Narrator
-from lumen.app.parts.part import Part
-from lumen.app.parts.visitor import VisitorPart
-from lumen.app.services import Services
 from lumen.cli.typed_commands import TypedCommands
 from lumen.language.events import Event
 from lumen.language.stories import Arrive, Leave, Speak, Visitor
+from lumen.run.narrator import Narrator
+from lumen.run.parts.part import Part
+from lumen.run.parts.visitor import VisitorPart
+from lumen.run.services import Services
 from lumen.upkeep.threads import WatchedThread
 
 FAREWELL = 5.0

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Any
 
-from lumen.app.narrator import Narrator
-from lumen.app.resting import rest_body, resume_body
 from lumen.cli.person import person
 from lumen.errors import BusError, UsageError
 from lumen.language.causes import OPERATOR
@@ -12,8 +10,10 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.durations import seconds
 from lumen.language.stories import Approve, Press, TouchSensor
 from lumen.robot.robot_routes import STOP_ROUTE, publish_on
-from lumen.runtime.story import StoryEnvironment
-from lumen.runtime.visitor import VisitorActor
+from lumen.run.narrator import Narrator
+from lumen.run.resting import rest_body, resume_body
+from lumen.run.story import StoryEnvironment
+from lumen.run.visitor import VisitorActor
 
 TAP = 0.5
 """The time for which a hand stays if none is typed [s]."""

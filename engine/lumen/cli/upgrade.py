@@ -5,7 +5,6 @@ import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from lumen.app.lint.targets import checked
 from lumen.cli.fixing import diff, write
 from lumen.cli.render.terminal_text import clean, counted
 from lumen.cli.terminal import coloured
@@ -16,6 +15,7 @@ from lumen.lint.robot_keys import old_keys, with_robot_keys
 from lumen.lint.upgrading import Rewriting, upgraded
 from lumen.project.files import read_files
 from lumen.project.own_project import own_project
+from lumen.run.linting.targets import checked
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

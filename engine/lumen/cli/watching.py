@@ -6,12 +6,12 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 
-from lumen.app.lint.findings import Findings
-from lumen.app.lint.targets import FindingsOf, LintTarget
 from lumen.cli.printing import show, verdict
 from lumen.cli.render import render
 from lumen.cli.terminal import coloured, paint
-from lumen.runtime.watcher import FileWatcher, SavedFiles
+from lumen.run.linting.findings import Findings
+from lumen.run.linting.targets import FindingsOf, LintTarget
+from lumen.run.watcher import FileWatcher, SavedFiles
 from lumen.upkeep.garbage import GcScheduler, gc_paused
 
 QUIET = 0.01

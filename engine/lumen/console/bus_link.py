@@ -5,10 +5,10 @@ import threading
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from lumen.app.asking import OPERATOR_ANSWERS
-from lumen.app.reaching import Reached
 from lumen.errors import BusError
 from lumen.ports import Bus, EndsWithExhibition, MessageHandler, ReturningBus, UsesBroker
+from lumen.run.asking import OPERATOR_ANSWERS
+from lumen.run.reaching import Reached
 from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.2

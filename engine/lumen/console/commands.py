@@ -8,7 +8,6 @@ from typing import Any
 
 import orjson
 
-from lumen.app.resting import STOP_TIMEOUT, no_robot, stop_behavior
 from lumen.console.exchanges import Exchange
 from lumen.console.known_robot import KnownRobot
 from lumen.console.orders import REST, Fields, Order, order_of
@@ -18,7 +17,8 @@ from lumen.console.streams import Streams
 from lumen.console.watch import Watch
 from lumen.errors import BusError, BusUnreachableError
 from lumen.language.operator_requests import NOTE
-from lumen.runtime.presence import ROBOT_PART
+from lumen.run.presence import ROBOT_PART
+from lumen.run.resting import STOP_TIMEOUT, no_robot, stop_behavior
 
 SENT_TIMEOUT = 0.8
 """How long a bus may take to have a message [s]; then it counts as not sent."""

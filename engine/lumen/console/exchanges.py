@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from lumen.app.asking import OPERATOR_ANSWERS
 from lumen.console.bus_link import BusLink
 from lumen.errors import BusClosedError, BusUnreachableError
 from lumen.language.causes import MessageOrigin
 from lumen.ports import Message
+from lumen.run.asking import OPERATOR_ANSWERS
 
 ECHO = {"console": "echo"}
 """Sent to ourselves behind a message: when it is back the bus has both, for it keeps their order."""

@@ -16,10 +16,6 @@ from typing import Any
 
 import orjson
 
-from lumen.app.recalling import answer_from_journal
-from lumen.app.replaying.journals import chosen
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import against
 from lumen.console.day_csv import day_csv
 from lumen.console.job_promises import JOB_TIME, NOTHING
 from lumen.console.kept_days import KeptDays
@@ -27,6 +23,10 @@ from lumen.errors import LumenError
 from lumen.language.sayings import Saying
 from lumen.lint import check_files
 from lumen.project.files import read_files
+from lumen.run.recalling import answer_from_journal
+from lumen.run.replaying.journals import chosen
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import against
 from lumen.upkeep.judge_process import MAX_MEMORY, AnswerPipe, answering, limit_time
 
 TOO_LONG_AGO = "too long ago"
@@ -69,7 +69,7 @@ def saying(
     pipe: AnswerPipe, root: Path, robot: str, behavior: str, state: str, row: str, language: str, text: str
 ) -> Iterator[bytes]:
     """Add a sentence of a visitor to the sayings, with the row that should have taken it."""
-    from lumen.app.new_saying import write_saying
+    from lumen.run.new_saying import write_saying
 
     yield orjson.dumps({"file": write_saying(root, Saying(behavior, state, row, language, text), robot).as_posix()})
 

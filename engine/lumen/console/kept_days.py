@@ -5,8 +5,6 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Any
 
-from lumen.app.one_robot import one_robot
-from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.console.day import Day, day_of
 from lumen.errors import JournalError
 from lumen.insight.replay.entries import RecordedEntry, read_entry
@@ -19,6 +17,8 @@ from lumen.lint import check_files
 from lumen.project.building import knowledge_parts, sayings_parts
 from lumen.project.files import read_files
 from lumen.project.home import home_of
+from lumen.run.one_robot import one_robot
+from lumen.run.replaying.kept_bundles import KeptBundles
 
 WINDOW = 86_400.0 * 1.5
 """How long before the end of a day a file may have begun that holds something of it [s]."""

@@ -10,7 +10,7 @@ from lumen.console.entry_ring import EntryRing
 from lumen.console.spoken_names import SpokenNames
 from lumen.language.iso_time import iso_time, time_of
 from lumen.language.numbers import is_number
-from lumen.runtime.presence import HERE, LEAVES, LOST_AFTER
+from lumen.run.presence import HERE, LEAVES, LOST_AFTER
 
 SILENT_AFTER = 2.5
 """How long an exhibition may say nothing until it counts as away [s]."""

@@ -3,11 +3,11 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from lumen.app.resting import rest_body, resume_body
 from lumen.console.people import Role
 from lumen.console.robot_keys import RobotKeys
 from lumen.errors import UsageError
 from lumen.language.operator_requests import APPROVE, AUTONOMY, EVENT, GOTO, MARK, MODEL, OperatorRequest
+from lumen.run.resting import rest_body, resume_body
 
 MAX_TEXT = 1_000
 MAX_NAME = 200

@@ -8,7 +8,6 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from lumen.app.new_passage import write_passage
 from lumen.console.entry_words import told_of
 from lumen.console.job_promises import NOTHING
 from lumen.console.jobs import Jobs
@@ -18,6 +17,7 @@ from lumen.console.people import Role
 from lumen.console.requests import NO_STORE, DeniedError, Reception, as_json
 from lumen.errors import BusError, UsageError
 from lumen.language.operator_requests import FORK, WHY, WHY_NOT, OperatorRequest
+from lumen.run.new_passage import write_passage
 
 QUESTION_TIMEOUT = 20.0
 """How long an exhibition may take for a question about the past [s]."""

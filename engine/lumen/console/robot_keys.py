@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from lumen.app.asking import operator_key
-from lumen.app.reaching import Reached
-from lumen.app.reload.requests import STATUS, command_key
 from lumen.language.routing_keys import CONFIG_STATUS, DEFAULT_ALIASES, DEFAULT_KEYS, default_key, key_of_robot
 from lumen.project.building import main_settings
 from lumen.robot.robot_routes import COMMAND_ROUTE, STOP_ROUTE
+from lumen.run.asking import operator_key
+from lumen.run.reaching import Reached
+from lumen.run.reload.requests import STATUS, command_key
 
 PRESENCE, IMAGE = "presence", "image"
 SENSES = ("battery", "sonar", "joint")

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import uvicorn
 
-from lumen.app.reaching import Reached
 from lumen.console.access import Access, secret_in
 from lumen.console.connections import KnownConnection
 from lumen.console.gate import LOOPBACK, Gate
@@ -19,6 +18,7 @@ from lumen.console.people import Role
 from lumen.console.site import Site
 from lumen.console.watch import Watch
 from lumen.errors import UsageError
+from lumen.run.reaching import Reached
 
 END_TIMEOUT = 1
 """How long what is under way may take when it is to end [s]."""

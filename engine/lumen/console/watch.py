@@ -7,7 +7,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from lumen.app.reaching import Reached
 from lumen.console.bus_link import BusLink
 from lumen.console.changes import Changes
 from lumen.console.entry_clock import ToldPage
@@ -18,6 +17,7 @@ from lumen.errors import BusError
 from lumen.language.operator_requests import JOURNAL, NOW, STATUS
 from lumen.language.routing_keys import DEFAULT_ALIASES
 from lumen.ports import Message
+from lumen.run.reaching import Reached
 
 PERIOD = 0.25
 """How often an exhibition is asked while somebody looks [s]."""

@@ -2,7 +2,7 @@
 
 from lumen.feature import Feature, PartRow, Phase, Section, Subcommand
 
-MAKING = "lumen.app.making"
+MAKING = "lumen.run.making"
 TYPED = "lumen.cli.typed:typed_visitor"
 
 FEATURE = Feature(

@@ -5,8 +5,8 @@ from lumen.feature import Feature, RobotRow
 FEATURE = Feature(
     name="robots",
     robots={
-        "recording": RobotRow("lumen.app.robots.recorded:set_up", bounded=True),
+        "recording": RobotRow("lumen.run.robots.recorded:set_up", bounded=True),
         "remote": RobotRow(),
-        "none": RobotRow("lumen.app.robots.absent:set_up", real_time=True, bounded=True),
+        "none": RobotRow("lumen.run.robots.absent:set_up", real_time=True, bounded=True),
     },
 )

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from lumen.formats.captions import caption, invocation
 from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
+from lumen.run.captions import caption, invocation
 
 _HEAD = """\
 digraph {

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterator
 
-from lumen.formats.captions import caption, invocation
 from lumen.language.machines import Invoke, MachineDefinition, State, StateKind, Transition
+from lumen.run.captions import caption, invocation
 
 _SPECIAL = re.compile(r"[^\w .,!?()=+*/&|\'\[\]…-]|--+|\b_+")
 

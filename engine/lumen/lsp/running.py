@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from threading import Event
 
-from lumen.app.asking import OPERATOR_ANSWERS, ask, operator_key
-from lumen.app.reaching import Reached, reach_exhibition, runs_here
 from lumen.errors import LumenError
 from lumen.language.operator_requests import STATUS
+from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.reaching import Reached, reach_exhibition, runs_here
 
 ASK_EVERY, ANSWER_TIMEOUT = 1.0, 2.0
 """How often a running exhibition is asked for its states, and how long it may take to answer [s]."""

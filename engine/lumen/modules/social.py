@@ -12,9 +12,9 @@ from lumen.language.iso_time import iso_time
 from lumen.language.modules import SOCIAL
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
-from lumen.modules.module import Module
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.project.json_lines import forget_lines
+from lumen.run.module import Module
 from lumen.upkeep.private_folder import private_folder
 
 POSTS_FILE = "posts.jsonl"

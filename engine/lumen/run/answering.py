@@ -8,13 +8,13 @@ from datetime import datetime
 from functools import partial
 from typing import Any
 
-from lumen.app.journal_pages import journal_page
 from lumen.errors import BusError, LumenError, UsageError
 from lumen.insight.explaining import RecordedStep
 from lumen.journal.journal_writer import JournalWriter
 from lumen.language.iso_time import time_of
 from lumen.language.operator_requests import JOURNAL, WHY
 from lumen.ports import Bus, Message
+from lumen.run.journal_pages import journal_page
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 

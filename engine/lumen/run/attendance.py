@@ -6,7 +6,7 @@ from contextlib import suppress
 from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
-from lumen.runtime.presence import HERE, PRESENCE_PERIOD, PRESENCE_ROUTE, ROBOT_PART
+from lumen.run.presence import HERE, PRESENCE_PERIOD, PRESENCE_ROUTE, ROBOT_PART
 
 PRESENCE_TIMEOUT = 4 * PRESENCE_PERIOD
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 
 RATE = 44_100
 """Of the track [1/s]."""

@@ -7,7 +7,7 @@ from lumen.bus.validated import ValidatedBus
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.projects import Project
 from lumen.ports import BlockableBus, Bus
-from lumen.runtime.presence import PRESENCE_ROUTE, Presence, unique_parts, where_it_runs
+from lumen.run.presence import PRESENCE_ROUTE, Presence, unique_parts, where_it_runs
 
 CLAIM_DURATION = 0.8
 """How long a process asks whether somebody is already what it wants to be [s]."""

@@ -6,14 +6,14 @@ from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from functools import cache
 
-from lumen.app.claiming import CLAIM_INTERVAL
-from lumen.app.parts.added import AddedPart
-from lumen.app.parts.part import Part
-from lumen.app.plan import Plan
-from lumen.app.services import Services
 from lumen.errors import LumenError
 from lumen.feature import Feature, PartRow, distribution_of, resolve, rows
 from lumen.project.broken_features import blamed
+from lumen.run.claiming import CLAIM_INTERVAL
+from lumen.run.parts.added import AddedPart
+from lumen.run.parts.part import Part
+from lumen.run.plan import Plan
+from lumen.run.services import Services
 
 _log = logging.getLogger(__name__)
 

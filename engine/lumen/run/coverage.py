@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.language.projects import Project
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
 from lumen.statechart import Step
 from lumen.statechart.nesting import behavior_of
 

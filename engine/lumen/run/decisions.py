@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
-from lumen.app.narrator import Narrator
 from lumen.language.approvals import Autonomy
-from lumen.runtime.approvals import Approvals, HeldEvent
+from lumen.run.approvals import Approvals, HeldEvent
+from lumen.run.narrator import Narrator
 
 HOW = {"waits": "waits for GO", "goes": "goes", "stays": "stays"}
 

@@ -9,7 +9,7 @@ from lumen.language.commands import Track
 from lumen.language.projects import Project
 from lumen.language.routing_keys import default_key
 from lumen.ports import Bus, Perform
-from lumen.runtime.tracking import LocalTracking
+from lumen.run.tracking import LocalTracking
 
 MOTION_ROUTE = "motion"
 MOTION_TTL = 2.0

@@ -12,8 +12,8 @@ from lumen.language.projects import Project
 from lumen.language.verbs import verb_of
 from lumen.ports import Message
 from lumen.robot.command_table import speech_duration
-from lumen.runtime.loop import Observer
-from lumen.runtime.visitor import SPEECH_ROUTE
+from lumen.run.loop import Observer
+from lumen.run.visitor import SPEECH_ROUTE
 from lumen.statechart import Snapshot, Step
 from lumen.statechart.nesting import active_names, entered_names
 

@@ -5,26 +5,26 @@ from dataclasses import replace
 from types import TracebackType
 from typing import Any, Self
 
-from lumen.app.answering import answer
-from lumen.app.compose import compose, start
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.parts.brain import BrainPart
-from lumen.app.parts.operating import OperatorPart
-from lumen.app.parts.robot import RobotPart
-from lumen.app.parts.visitor import VisitorPart
-from lumen.app.plan import Plan
-from lumen.app.reload.reloader import Reloader
-from lumen.app.reload.report import ReloadReport
 from lumen.errors import UsageError
 from lumen.insight.explaining import RecordedStep
 from lumen.language.causes import PROGRAM, MessageOrigin
 from lumen.language.commands import Say
 from lumen.language.operator_requests import WHY, WHY_NOT
 from lumen.language.projects import Project
-from lumen.runtime.loop import BehaviorLoop, Observer
-from lumen.runtime.sending import send
-from lumen.runtime.story import StoryPlayer
-from lumen.runtime.visitor import VisitorActor
+from lumen.run.answering import answer
+from lumen.run.compose import compose, start
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.loop import BehaviorLoop, Observer
+from lumen.run.parts.brain import BrainPart
+from lumen.run.parts.operating import OperatorPart
+from lumen.run.parts.robot import RobotPart
+from lumen.run.parts.visitor import VisitorPart
+from lumen.run.plan import Plan
+from lumen.run.reload.reloader import Reloader
+from lumen.run.reload.report import ReloadReport
+from lumen.run.sending import send
+from lumen.run.story import StoryPlayer
+from lumen.run.visitor import VisitorActor
 from lumen.statechart import Step
 
 

@@ -14,9 +14,9 @@ from lumen.language.diagnostics import Place
 from lumen.language.events import robot_events
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.runtime.coverage import Gap, described
-from lumen.runtime.story_time import story_epoch
-from lumen.runtime.visitor import SPEECH_ROUTE
+from lumen.run.coverage import Gap, described
+from lumen.run.story_time import story_epoch
+from lumen.run.visitor import SPEECH_ROUTE
 
 HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
 ROBOT_TIMEOUT = "2min"

@@ -6,9 +6,6 @@ from pathlib import Path
 from time import monotonic
 from typing import Any
 
-from lumen.app.answering import moment_of
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import takes
 from lumen.errors import JournalError, LumenError, ProjectError, UsageError
 from lumen.insight.changes import live
 from lumen.insight.replay.entries import JournalJump, RecordedEntry
@@ -21,6 +18,9 @@ from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.files import read_files
+from lumen.run.answering import moment_of
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import takes
 
 PATIENCE = 3.0
 """How long an answer may take [s]."""

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 from contextlib import ExitStack, closing
 from math import inf
 
-from lumen.app.compose import start
-from lumen.app.living import live
-from lumen.app.services import Services
 from lumen.errors import LumenError
+from lumen.run.compose import start
+from lumen.run.living import live
+from lumen.run.services import Services
 from lumen.upkeep.garbage import GcScheduler
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from lumen.insight.explaining.ignored_events import FalseGuard, IgnoredEvent, ignored
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
-from lumen.runtime.visitor import SPEECH_ROUTE
+from lumen.run.visitor import SPEECH_ROUTE
 from lumen.statechart import Step
 
 _TIME = re.compile(r"(after|at)\.(.+)\.[^.]*")

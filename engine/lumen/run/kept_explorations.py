@@ -6,13 +6,13 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from lumen.app.exploring import Explored, ExploredFinding
-from lumen.app.workers.tasks import engine
-from lumen.app.workers.work_kit import name_of
 from lumen.language.diagnostics import Place
 from lumen.language.projects import Project
 from lumen.project.home import Home, home_of
-from lumen.runtime.coverage import Gap
+from lumen.run.coverage import Gap
+from lumen.run.exploring import Explored, ExploredFinding
+from lumen.run.workers.tasks import engine
+from lumen.run.workers.work_kit import name_of
 from lumen.upkeep.private_folder import private_folder
 
 FOLDER = "explored"

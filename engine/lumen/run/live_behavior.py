@@ -4,19 +4,19 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
-from lumen.app.local_timezone import local_timezone
-from lumen.app.setup import Setup
 from lumen.insight.migration import MigrationPlan, MigrationVerdict
 from lumen.insight.replay.entries import JumpKind
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, HasSpeed, RobotCommand
-from lumen.runtime.loop import BehaviorLoop
-from lumen.runtime.story import staged
-from lumen.runtime.story_time import story_epoch
-from lumen.runtime.trace_publisher import TracePublisher
-from lumen.runtime.wall_clock_watch import WallClockWatch
+from lumen.run.local_timezone import local_timezone
+from lumen.run.loop import BehaviorLoop
+from lumen.run.setup import Setup
+from lumen.run.story import staged
+from lumen.run.story_time import story_epoch
+from lumen.run.trace_publisher import TracePublisher
+from lumen.run.wall_clock_watch import WallClockWatch
 from lumen.statechart.compiled_machine import prepare
 
 

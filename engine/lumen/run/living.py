@@ -5,7 +5,7 @@ from collections.abc import Callable
 from math import inf
 from typing import Protocol
 
-from lumen.runtime.watcher import SWITCH_INTERVAL
+from lumen.run.watcher import SWITCH_INTERVAL
 
 ROUNDING = 1e-6
 """How far the sum of many ticks may be off [s]."""

@@ -14,19 +14,19 @@ from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, St
 from lumen.language.events import CUE, RECORDED, Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, Clock, Robot, RobotCommand
-from lumen.runtime.causes import caused
-from lumen.runtime.cues import MotionCues
-from lumen.runtime.inbox import Inbox
-from lumen.runtime.life import LifeDirector
-from lumen.runtime.performer import Performer
-from lumen.runtime.questions import Questions
-from lumen.runtime.regulation import Regulation
-from lumen.runtime.resuming import Resumption
-from lumen.runtime.runtime import Runtime
-from lumen.runtime.shared_board import SharedBoard
-from lumen.runtime.tracking import LocalTracking, TrackingService
-from lumen.runtime.troubles import RunTrouble, trouble_of_answer, troubles_of_step
-from lumen.runtime.wall_clock_watch import WallClockWatch
+from lumen.run.cues import MotionCues
+from lumen.run.event_causes import caused
+from lumen.run.inbox import Inbox
+from lumen.run.life import LifeDirector
+from lumen.run.performer import Performer
+from lumen.run.questions import Questions
+from lumen.run.regulation import Regulation
+from lumen.run.resuming import Resumption
+from lumen.run.runtime import Runtime
+from lumen.run.shared_board import SharedBoard
+from lumen.run.tracking import LocalTracking, TrackingService
+from lumen.run.troubles import RunTrouble, trouble_of_answer, troubles_of_step
+from lumen.run.wall_clock_watch import WallClockWatch
 from lumen.statechart import Step, due
 from lumen.statechart.offers import offers
 

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 from lumen.language.commands import PlaySound
-from lumen.modules.audio_track import AudioTrack
-from lumen.modules.sound import Sound
 from lumen.project.files import on_disk
+from lumen.run.audio_track import AudioTrack
+from lumen.run.sound import Sound
 
 PLAYERS = (("aplay", "-q"), ("paplay",), ("afplay",), ("pw-play",))
 """Programs that play a WAV file, the first that there is."""

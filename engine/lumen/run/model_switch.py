@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from lumen.app.raised_events import refusal
 from lumen.language.modules import ANSWERS
 from lumen.language.projects import Project
 from lumen.project.home import Home
-from lumen.runtime.questions import Questions
+from lumen.run.questions import Questions
+from lumen.run.raised_events import refusal
 
 SILENCED_FILE = "model-silenced.json"
 UNREADABLE = f"a person whom {SILENCED_FILE} does not name"

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from typing import Protocol
 
-from lumen.app.causes import innermost, reason_of, why
-from lumen.app.ignoring import IgnoredEvents
 from lumen.language.commands import Ask, BodyCommand, Command, Log, Publish, Say, Start, Tell
 from lumen.language.counts import counted
 from lumen.language.events import CUE, HELD, RECORDED, Event
@@ -23,9 +21,11 @@ from lumen.language.stories import (
     VisitorAction,
 )
 from lumen.language.verbs import verb_of
-from lumen.runtime.loop import Observer
-from lumen.runtime.performer import LEFT_OUT
-from lumen.runtime.troubles import RunTrouble, wanted
+from lumen.run.entry_causes import innermost, reason_of, why
+from lumen.run.ignoring import IgnoredEvents
+from lumen.run.loop import Observer
+from lumen.run.performer import LEFT_OUT
+from lumen.run.troubles import RunTrouble, wanted
 from lumen.statechart import Step, finished
 from lumen.statechart.nesting import flattened_steps
 

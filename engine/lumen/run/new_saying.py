@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from lumen.app.new_passage import check_language, one_line
 from lumen.errors import UsageError
 from lumen.language.diagnostics import NodePath, Place, Severity
 from lumen.language.folders import SAYINGS_FOLDER
@@ -20,6 +19,7 @@ from lumen.project.document import Document
 from lumen.project.document_report import DocumentReport
 from lumen.project.files import Unreadable, read_files
 from lumen.project.yaml_reader import parse
+from lumen.run.new_passage import check_language, one_line
 from lumen.upkeep.replacing import replace_file
 
 DAY_FILE = f"{SAYINGS_FOLDER}/day.yaml"

@@ -6,12 +6,6 @@ from contextlib import AbstractContextManager, ExitStack, closing
 from dataclasses import dataclass
 from math import ceil, inf
 
-from lumen.app.claiming import CLAIM_DURATION, refuse_rivals, refuse_silence
-from lumen.app.living import ROUNDING, live
-from lumen.app.nap import Nap
-from lumen.app.narrator import Narrator
-from lumen.app.pace import PaceWatch
-from lumen.app.parts.part import Part
 from lumen.bus.validated import ValidatedBus
 from lumen.clock.following import FollowingClock
 from lumen.errors import UsageError
@@ -20,9 +14,15 @@ from lumen.language.nanoseconds import to_the_nanosecond
 from lumen.language.projects import Project
 from lumen.ports import Clock, CountsDrops, Dozes
 from lumen.robot.robot_routes import COMMAND_ROUTE
-from lumen.runtime.loop import TICK_PERIOD
-from lumen.runtime.presence import HERE, ROBOT_PART, Presence, where_it_runs
-from lumen.runtime.trace_publisher import TRACE_ROUTE
+from lumen.run.claiming import CLAIM_DURATION, refuse_rivals, refuse_silence
+from lumen.run.living import ROUNDING, live
+from lumen.run.loop import TICK_PERIOD
+from lumen.run.nap import Nap
+from lumen.run.narrator import Narrator
+from lumen.run.pace import PaceWatch
+from lumen.run.parts.part import Part
+from lumen.run.presence import HERE, ROBOT_PART, Presence, where_it_runs
+from lumen.run.trace_publisher import TRACE_ROUTE
 from lumen.upkeep.garbage import GcScheduler
 from lumen.upkeep.threads import ThreadWatch, WatchedThread
 

@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
-from lumen.app.doings import Doings, Spoken, UnderWay
 from lumen.insight.explaining.names import machines_in
 from lumen.insight.explaining.outlook import GuardTruth, Running, WayOut, running, ways_out
 from lumen.insight.explaining.pressing import ShownButton, shown_buttons
@@ -13,7 +12,8 @@ from lumen.language.events import robot_events
 from lumen.language.iso_time import iso_time
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.projects import Project
-from lumen.runtime.approvals import Approvals, HeldEvent
+from lumen.run.approvals import Approvals, HeldEvent
+from lumen.run.doings import Doings, Spoken, UnderWay
 from lumen.statechart import Snapshot
 
 Status = dict[str, Any]

@@ -2,16 +2,16 @@
 
 from pathlib import Path
 
-from lumen.app.exhibition import Exhibition
-from lumen.app.plan import Plan
-from lumen.app.setup import Setup, runs_in_real_time, set_up, set_up_with
-from lumen.app.stories import stories_of
 from lumen.errors import UsageError
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, Clock, Robot
 from lumen.project import load
 from lumen.robot.bounded_robot import BoundedRobot
+from lumen.run.chosen_stories import stories_of
+from lumen.run.exhibition import Exhibition
+from lumen.run.plan import Plan
+from lumen.run.setup import Setup, runs_in_real_time, set_up, set_up_with
 from lumen.upkeep.arguments import need_methods
 
 

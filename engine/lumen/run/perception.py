@@ -5,7 +5,7 @@ from collections import deque
 
 from lumen.language.projects import Project
 from lumen.ports import Bus, Hall
-from lumen.runtime.sending import send
+from lumen.run.sending import send
 
 _log = logging.getLogger(__name__)
 

@@ -31,9 +31,9 @@ from lumen.language.routing_keys import TOLD, key_of_robot
 from lumen.language.skills import lack_of, tracked, tracking_lack
 from lumen.ports import Bus, Perform, Robot, RobotCommand
 from lumen.project.sounds import sound_duration
-from lumen.runtime.navigator import Navigator
-from lumen.runtime.questions import Questions
-from lumen.runtime.sending import send
+from lumen.run.navigator import Navigator
+from lumen.run.questions import Questions
+from lumen.run.sending import send
 
 LEFT_OUT = "left_out"
 """The field of an answer that says what the body lacks for a command, which was left out."""

@@ -4,13 +4,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.app.narrator import Narrator
-from lumen.app.setup import Setup
 from lumen.bus.addresses import within_process
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, Clock
-from lumen.runtime.presence import BRAIN
+from lumen.run.narrator import Narrator
+from lumen.run.presence import BRAIN
+from lumen.run.setup import Setup
 
 
 @dataclass(frozen=True, slots=True)

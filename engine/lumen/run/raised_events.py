@@ -3,14 +3,14 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from lumen.app.event_data import EventData
 from lumen.insight.explaining.pressing import pressed, takes
 from lumen.language.causes import UNNAMED_PROGRAM, Cause
 from lumen.language.events import Event
 from lumen.language.operator_requests import MAX_NAME, PRESS
 from lumen.language.shared import SHARED_EVENT
 from lumen.ports import Message
-from lumen.runtime.loop import BehaviorLoop, Observer
+from lumen.run.event_data import EventData
+from lumen.run.loop import BehaviorLoop, Observer
 from lumen.statechart import Step
 
 _INTERNAL = ("done.", "error.", "cancelled.", "lost.", SHARED_EVENT)

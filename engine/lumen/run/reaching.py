@@ -4,7 +4,6 @@ import os
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lumen.app.one_robot import one_robot, robots_of
 from lumen.bus import connect
 from lumen.bus.addresses import within_process
 from lumen.bus.local import LocalAddress, LocalBusClient
@@ -17,6 +16,7 @@ from lumen.project.home import ADDRESS_FILE, Home, homes, homes_of
 from lumen.project.running_project import running_project
 from lumen.project.settings import Settings
 from lumen.robot.robot_routes import COMMAND_ROUTE, STOP_ROUTE
+from lumen.run.one_robot import one_robot, robots_of
 
 
 class Reached(NamedTuple):

@@ -4,9 +4,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from lumen.app.answering import answer
-from lumen.app.one_robot import one_robot
-from lumen.app.replaying.kept_bundles import KeptBundles
 from lumen.errors import JournalError, UsageError
 from lumen.insight.explaining import RecordedStep
 from lumen.insight.replay.entries import JournalJump, RecordedEntry
@@ -18,6 +15,9 @@ from lumen.language.operator_requests import WHY, WHY_NOT
 from lumen.language.projects import Project
 from lumen.project.home import home_of
 from lumen.project.running_project import running_project
+from lumen.run.answering import answer
+from lumen.run.one_robot import one_robot
+from lumen.run.replaying.kept_bundles import KeptBundles
 from lumen.statechart import Snapshot, Step
 
 NOT_ASKED = "no running exhibition was asked"

@@ -8,19 +8,19 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from lumen.app.compose import compose, start
-from lumen.app.narrator import Narrator
-from lumen.app.parts.visitor import VisitorPart
-from lumen.app.plan import Plan
-from lumen.app.setup import Setup, set_up
 from lumen.errors import LumenError
 from lumen.language.diagnostics import Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.runtime.loop import Observer
-from lumen.runtime.story import StoryFailure, StoryPlayer
-from lumen.runtime.story_observations import UnmetExpectation
+from lumen.run.compose import compose, start
+from lumen.run.loop import Observer
+from lumen.run.narrator import Narrator
+from lumen.run.parts.visitor import VisitorPart
+from lumen.run.plan import Plan
+from lumen.run.setup import Setup, set_up
+from lumen.run.story import StoryFailure, StoryPlayer
+from lumen.run.story_observations import UnmetExpectation
 
 REMEMBERED = 12
 """How many lines of what happened last are told with a failure."""

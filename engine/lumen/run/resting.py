@@ -3,9 +3,9 @@
 from contextlib import suppress
 from typing import Any
 
-from lumen.app.reload.requests import COMMAND, command_key
 from lumen.errors import BusError
 from lumen.ports import Bus
+from lumen.run.reload.requests import COMMAND, command_key
 
 STOP_TIMEOUT = 10.0
 """How long the robot may take to rest, foot in the air and all [s]."""

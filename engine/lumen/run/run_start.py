@@ -8,15 +8,15 @@ from pathlib import Path
 from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
 from lumen.app.fleet.installing import finish as finish_installing
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.recovery.startup import startup_project
 from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotError, UsageError
 from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
 from lumen.project.building import main_settings
 from lumen.project.settings import Settings
-from lumen.runtime.presence import BRAIN, ROBOT_PART
+from lumen.run.presence import BRAIN, ROBOT_PART
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.recovery.startup import startup_project
 
 WHOLE = (ROBOT_PART, BRAIN)
 """The parts that an exhibition in one process has in any case."""

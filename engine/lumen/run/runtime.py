@@ -13,8 +13,8 @@ from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
-from lumen.runtime.approvals import Approvals
-from lumen.runtime.best_alternative import best_alternative
+from lumen.run.approvals import Approvals
+from lumen.run.best_alternative import best_alternative
 from lumen.statechart import Snapshot, Step, elapse, initial, step
 
 _log = logging.getLogger(__name__)

@@ -4,23 +4,23 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, TypeVar
 
-from lumen.app.claiming import presence_of
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.nap import Nap
-from lumen.app.narrator import Narrator
-from lumen.app.node import Node, NodeTime
-from lumen.app.parts.added import AddedPart
-from lumen.app.parts.part import Part
-from lumen.app.parts.robot import RobotPart
-from lumen.app.plan import Plan
-from lumen.app.setup import Setup
 from lumen.bus import connect
 from lumen.bus.validated import validated
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.runtime.loop import Observer
-from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
-from lumen.runtime.story import staged
+from lumen.run.claiming import presence_of
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.loop import Observer
+from lumen.run.nap import Nap
+from lumen.run.narrator import Narrator
+from lumen.run.node import Node, NodeTime
+from lumen.run.parts.added import AddedPart
+from lumen.run.parts.part import Part
+from lumen.run.parts.robot import RobotPart
+from lumen.run.plan import Plan
+from lumen.run.presence import BRAIN, MOTION, ROBOT_PART, Presence
+from lumen.run.setup import Setup
+from lumen.run.story import staged
 
 EXHIBITION = "exhibition"
 """The sender of the messages of an exhibition in one process."""

@@ -14,7 +14,7 @@ from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, Robot
 from lumen.project.broken_features import called, faulty, need_made, shown
 from lumen.robot.bounded_robot import BoundedRobot, ability
 from lumen.robot.checked_robot import CheckedRobot
-from lumen.runtime.tracking import TrackingService
+from lumen.run.tracking import TrackingService
 
 SPEEDS = ("1", "4", "max")
 NO_OPTIONS: Mapping[str, str] = {}
@@ -118,7 +118,7 @@ def _alone(kind: str, row: RobotRow, request: RobotRequest) -> Setup:
 def _check(feature: Feature, where: str, setup: Setup) -> None:
     """Raise LumenError if a robot's function returned no setup, or objects that lack a method."""
     if not isinstance(setup, Setup):
-        raise faulty(feature, f"`{where}` returned {shown(setup)} instead of a `lumen.app.setup.Setup`")
+        raise faulty(feature, f"`{where}` returned {shown(setup)} instead of a `lumen.run.setup.Setup`")
     need_made(feature, where, setup.robot, Robot, "a robot")
     need_made(feature, where, setup.clock, Clock, "a clock")
     if setup.hall is not None:

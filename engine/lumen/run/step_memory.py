@@ -7,7 +7,7 @@ from heapq import merge
 from lumen.insight.explaining import RecordedStep
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
 from lumen.statechart import Snapshot, Step
 
 MAX_STEPS = 4_000

@@ -31,13 +31,13 @@ from lumen.language.stories import (
     VisitorAction,
 )
 from lumen.ports import Bus
-from lumen.runtime.loop import Observer
-from lumen.runtime.sending import send
-from lumen.runtime.story_answers import QUESTION_WITHIN, answered
-from lumen.runtime.story_observations import StoryObservations, UnmetExpectation, expects_error, expects_fall, listed
-from lumen.runtime.story_time import story_moment
-from lumen.runtime.troubles import RunTrouble
-from lumen.runtime.visitor import VisitorActor
+from lumen.run.loop import Observer
+from lumen.run.sending import send
+from lumen.run.story_answers import QUESTION_WITHIN, answered
+from lumen.run.story_observations import StoryObservations, UnmetExpectation, expects_error, expects_fall, listed
+from lumen.run.story_time import story_moment
+from lumen.run.troubles import RunTrouble
+from lumen.run.visitor import VisitorActor
 from lumen.statechart import Step
 from lumen.statechart.nesting import active_names, entered_names
 from lumen.statechart.property_monitor import Violation, monitors

@@ -4,8 +4,8 @@ from lumen.errors import BusError
 from lumen.language.projects import Project
 from lumen.language.stories import AnswerQuestion
 from lumen.ports import Bus
-from lumen.runtime.questions import ANSWER_ROUTE
-from lumen.runtime.story_observations import UnmetExpectation
+from lumen.run.questions import ANSWER_ROUTE
+from lumen.run.story_observations import UnmetExpectation
 
 QUESTION_WITHIN = 30.0
 """How long `answers` waits for a question [s]."""

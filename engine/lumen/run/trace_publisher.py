@@ -13,9 +13,9 @@ from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.ports import Bus
-from lumen.runtime.approvals import HeldEvent
-from lumen.runtime.loop import Observer
-from lumen.runtime.troubles import RunTrouble
+from lumen.run.approvals import HeldEvent
+from lumen.run.loop import Observer
+from lumen.run.troubles import RunTrouble
 from lumen.statechart import Snapshot, Step
 from lumen.statechart.nesting import active_names, entered_names, flattened_steps
 

@@ -14,8 +14,8 @@ from lumen.language.operator_requests import APPROVE, AUTONOMY, PRESS
 from lumen.language.projects import Project
 from lumen.language.routing_keys import OPERATOR_REQUEST, key_of_robot
 from lumen.ports import Bus, Message
-from lumen.runtime.trace_publisher import TRACE_ROUTE
-from lumen.runtime.troubles import RunTrouble
+from lumen.run.trace_publisher import TRACE_ROUTE
+from lumen.run.troubles import RunTrouble
 from lumen.upkeep.threads import MessageGuard
 
 REQUEST_TTL = 5.0

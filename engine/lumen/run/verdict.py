@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from lumen.app.exploring import Explored
-from lumen.app.rehearsal import Rehearsal
 from lumen.insight.explaining.sayings import TriedSaying
 from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import Place
-from lumen.runtime.coverage import Coverage
+from lumen.run.coverage import Coverage
+from lumen.run.exploring import Explored
+from lumen.run.rehearsal import Rehearsal
 
 
 @dataclass(frozen=True)

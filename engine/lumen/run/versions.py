@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from lumen.app.one_robot import one_robot
 from lumen.errors import ProjectError, UsageError
 from lumen.language.projects import Project
 from lumen.lint import check_files
@@ -14,7 +13,8 @@ from lumen.project.files import read_files
 from lumen.project.home import Home, home_of
 from lumen.project.own_project import own_project
 from lumen.project.revisions import files_at
-from lumen.runtime.snapshot_store import SnapshotStore, StoredSnapshot
+from lumen.run.one_robot import one_robot
+from lumen.run.snapshot_store import SnapshotStore, StoredSnapshot
 from lumen.statechart import Snapshot, deserialize
 
 LIVE = "live"

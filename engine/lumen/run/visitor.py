@@ -8,7 +8,7 @@ from lumen.language.causes import VISITOR, MessageOrigin
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Bus, FeelsTouch, Hall, HearsVisitors
-from lumen.runtime.sending import send
+from lumen.run.sending import send
 
 _log = logging.getLogger(__name__)
 

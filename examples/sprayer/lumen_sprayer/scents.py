@@ -1,11 +1,11 @@
 """The scents that each visitor has smelled."""
 
-from lumen.app.parts.part import Part
-from lumen.app.services import Services
 from lumen.language.commands import Do, Start
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
+from lumen.run.parts.part import Part
+from lumen.run.services import Services
 from lumen.statechart import Step
 from lumen_sprayer.settings import Sprayer
 

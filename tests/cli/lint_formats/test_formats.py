@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 from jsonschema import Draft4Validator
 
-from lumen.app.lint.findings import Findings
 from lumen.cli.render import finding_formats, render
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
 from lumen.project.files import Unreadable
+from lumen.run.linting.findings import Findings
 from tests.fetched import fetched
 from tests.tables import for_each
 

@@ -12,7 +12,7 @@ from lumen.app.fleet.signing import BUNDLE, Signer, verified
 from lumen.errors import UsageError
 from lumen.project.files import MAX_PROJECT_BYTES, belongs, fingerprint
 from lumen.project.project_folders import FLEET_FILE
-from lumen.runtime.snapshot_store import DAMAGED_BUNDLE
+from lumen.run.snapshot_store import DAMAGED_BUNDLE
 
 HASH = re.compile(r"[0-9a-f]{64}")
 EPOCH = (1980, 1, 1, 0, 0, 0)

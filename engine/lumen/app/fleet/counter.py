@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from fnmatch import fnmatchcase
 
 from lumen.language.fleet import FleetMeasure
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
 from lumen.statechart import Step
 
 

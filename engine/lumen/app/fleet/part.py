@@ -13,9 +13,6 @@ from lumen.app.fleet.counter import MeasureCounter
 from lumen.app.fleet.installing import all_have, bundle_folder, install, written
 from lumen.app.fleet.keys import bundle_key, desired_key, incident_key, numbers_key, presence_key
 from lumen.app.fleet.memory import keep, remember
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.parts.part import Part
-from lumen.app.reload.reloader import Reloader
 from lumen.bus.validated import ValidatedBus
 from lumen.errors import BusError
 from lumen.language.diagnostics import has_errors
@@ -25,7 +22,10 @@ from lumen.loading.fleet import read_fleet
 from lumen.ports import Message
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import Home
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.parts.part import Part
+from lumen.run.reload.reloader import Reloader
+from lumen.run.snapshot_store import SnapshotStore
 
 HOUSE_VARIABLE = "LUMEN_HOUSE"
 PERIOD = 10.0

@@ -7,17 +7,17 @@ from pathlib import Path
 from lumen.app.alerts.desk import AlertDesk
 from lumen.app.alerts.disk import DiskWatch
 from lumen.app.alerts.falls import FallWatch
-from lumen.app.parts.brain import ENGINE, RUN_BEFORE
-from lumen.app.parts.part import Part
 from lumen.bus.validated import ValidatedBus
 from lumen.language.alerts import Alerts
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import BlockableBus, UsesBroker
-from lumen.runtime.loop import Observer
-from lumen.runtime.presence import BRAIN, ROBOT_PART, Presence, unique_parts
-from lumen.runtime.resuming import FreshStart, Resumption
+from lumen.run.loop import Observer
+from lumen.run.parts.brain import ENGINE, RUN_BEFORE
+from lumen.run.parts.part import Part
+from lumen.run.presence import BRAIN, ROBOT_PART, Presence, unique_parts
+from lumen.run.resuming import FreshStart, Resumption
 from lumen.statechart import Step
 
 BROKER_PATIENCE = 5.0

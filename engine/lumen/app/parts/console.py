@@ -9,9 +9,9 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.app.parts.part import Part
 from lumen.bus.addresses import within_process
 from lumen.language.events import Event
+from lumen.run.parts.part import Part
 from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 

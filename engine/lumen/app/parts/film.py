@@ -5,15 +5,15 @@ from pathlib import Path
 
 from lumen.app.film_progress import FilmProgress
 from lumen.app.film_sound import add_sound
-from lumen.app.narrator import Narrator
-from lumen.app.parts.part import Part
 from lumen.errors import UsageError
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
 from lumen.language.stories import Arrive, Leave, Speak, VisitorAction
-from lumen.modules.audio_track import AudioTrack
 from lumen.ports import Robot
-from lumen.runtime.loop import Observer
+from lumen.run.audio_track import AudioTrack
+from lumen.run.loop import Observer
+from lumen.run.narrator import Narrator
+from lumen.run.parts.part import Part
 
 
 class FilmPart(Part, Observer):

@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.app.parts.part import Part
 from lumen.app.recording.notes import NOTES, bundle_files, journal_files, notes_of
 from lumen.app.recording.recorder import Recorder, RecordingTape
 from lumen.app.recording.recordings_folder import RecordingsFolder
@@ -23,6 +22,7 @@ from lumen.language.counts import counted
 from lumen.language.projects import Project
 from lumen.language.retention import RecordingSettings
 from lumen.project.home import home_of
+from lumen.run.parts.part import Part
 
 Telling = Callable[[str], None]
 

@@ -17,7 +17,7 @@ from lumen.language.iso_time import iso_time
 from lumen.language.projects import Project
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import Home, home_of
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run.snapshot_store import SnapshotStore
 
 NOTES = "lumen"
 """The name of the metadata that say which files ran; once more after each reload."""

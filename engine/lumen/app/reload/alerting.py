@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Sequence
 
-from lumen.app.parts.part import Part
-from lumen.app.reload.reloader import Reloader
-from lumen.app.reload.report import START, ReloadReport
 from lumen.language.diagnostics import Severity
 from lumen.language.events import Event
+from lumen.run.parts.part import Part
+from lumen.run.reload.reloader import Reloader
+from lumen.run.reload.report import START, ReloadReport
 
 
 class RefusalPart(Part):

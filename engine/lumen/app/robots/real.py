@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
-from lumen.app.setup import RobotRequest, Setup
 from lumen.clock.real import RealClock
 from lumen.errors import UsageError
 from lumen.robots.naoqi import NaoqiRobot, PhysicalHall
+from lumen.run.setup import RobotRequest, Setup
 
 NAO = "nao.local"
 

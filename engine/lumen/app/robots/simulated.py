@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
-from lumen.app.setup import RobotRequest, Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.project.lending import model_files
 from lumen.robots.simulation import SimulatedRobot, available
+from lumen.run.setup import RobotRequest, Setup
 
 
 def set_up(request: RobotRequest) -> Setup:

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import Protocol
 
-from lumen.app.lint.findings import Findings
 from lumen.feature import owner, table
 from lumen.project.broken_features import called_for_text
+from lumen.run.linting.findings import Findings
 
 
 class Renderer(Protocol):

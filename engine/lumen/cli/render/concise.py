@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from lumen.app.lint.findings import Findings
 from lumen.cli.render.terminal_text import SEVERITY_COLOURS, clean, summary
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Diagnostic
+from lumen.run.linting.findings import Findings
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:

@@ -7,10 +7,10 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from lumen.app.lint.findings import Findings
 from lumen.cli.render.concise import render as concise
 from lumen.cli.render.terminal_text import clean, counted, summary
 from lumen.language.diagnostics import Diagnostic, Severity
+from lumen.run.linting.findings import Findings
 
 _COMMANDS: Mapping[Severity, str] = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 

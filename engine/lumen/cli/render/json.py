@@ -3,7 +3,7 @@
 import json
 from collections.abc import Sequence
 
-from lumen.app.lint.findings import Findings
+from lumen.run.linting.findings import Findings
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
-from lumen.app.lint.findings import Findings
 from lumen.cli.junit_xml import JunitCase, JunitFailure, JunitSuite, junit_xml
 from lumen.language.diagnostics import Diagnostic, Severity
+from lumen.run.linting.findings import Findings
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:

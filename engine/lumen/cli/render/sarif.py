@@ -8,11 +8,11 @@ from typing import Any
 from urllib.parse import quote
 
 import lumen
-from lumen.app.lint.findings import Findings
 from lumen.language.diagnostics import Diagnostic, Place, Severity
 from lumen.lint.codes import codes
 from lumen.lint.fixes import Edit, fixes
 from lumen.lint.pages import page
+from lumen.run.linting.findings import Findings
 
 _LEVELS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "note"}
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

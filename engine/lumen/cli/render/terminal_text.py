@@ -3,9 +3,9 @@
 import unicodedata
 from collections.abc import Mapping, Sequence
 
-from lumen.app.lint.findings import Findings
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Severity
+from lumen.run.linting.findings import Findings
 
 SEVERITY_COLOURS: Mapping[Severity, str] = {Severity.ERROR: "red", Severity.WARNING: "yellow", Severity.INFO: "blue"}
 

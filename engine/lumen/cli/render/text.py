@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 
-from lumen.app.lint.findings import Findings
 from lumen.cli.render.terminal_text import SEVERITY_COLOURS, clean, summary, width
 from lumen.cli.terminal import paint
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.text_lines import lines_of
 from lumen.project.files import Unreadable
+from lumen.run.linting.findings import Findings
 
 MAX_EXCERPT_WIDTH = 140
 """Characters of a line that are shown; of a longer one those around the word."""

@@ -1,8 +1,8 @@
 """Verdicts for people and for machines: each format a small function from a verdict to text."""
 
-from lumen.app.verdict import Verdict
 from lumen.feature import owner, table
 from lumen.project.broken_features import called_for_text
+from lumen.run.verdict import Verdict
 
 
 def verdict_formats() -> tuple[str, ...]:

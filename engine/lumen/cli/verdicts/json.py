@@ -3,12 +3,12 @@
 import json
 from typing import Any
 
-from lumen.app.exploring import Explored
-from lumen.app.rehearsal import Rehearsal
-from lumen.app.verdict import JudgedSaying, Verdict
 from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import Place
-from lumen.runtime.coverage import Coverage
+from lumen.run.coverage import Coverage
+from lumen.run.exploring import Explored
+from lumen.run.rehearsal import Rehearsal
+from lumen.run.verdict import JudgedSaying, Verdict
 
 
 def render(verdict: Verdict) -> str:

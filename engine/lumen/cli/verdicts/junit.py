@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from lumen.app.exploring import Explored
-from lumen.app.rehearsal import Rehearsal
-from lumen.app.verdict import JudgedSaying, Verdict
 from lumen.cli.junit_xml import JunitCase, JunitFailure, JunitSuite, junit_xml
 from lumen.cli.verdicts import text
+from lumen.run.exploring import Explored
+from lumen.run.rehearsal import Rehearsal
+from lumen.run.verdict import JudgedSaying, Verdict
 
 
 def render(verdict: Verdict) -> str:

@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator
 
-from lumen.app.exploring import Explored
-from lumen.app.rehearsal import Rehearsal
-from lumen.app.verdict import JudgedSaying, Verdict
 from lumen.cli.printing import clock_time
 from lumen.cli.terminal import paint
 from lumen.interpreters.retrieval.ranking import QuestionTrial, WrongAnswer
-from lumen.runtime.coverage import Coverage
+from lumen.run.coverage import Coverage
+from lumen.run.exploring import Explored
+from lumen.run.rehearsal import Rehearsal
+from lumen.run.verdict import JudgedSaying, Verdict
 
 FINDING_KINDS = {
     "dead-end": "a dead end",

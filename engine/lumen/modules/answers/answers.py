@@ -17,8 +17,8 @@ from lumen.modules.answers.http_stream import answered
 from lumen.modules.answers.model_settings import ModelSettings, ServerSettings
 from lumen.modules.answers.prompt import request, tool_name
 from lumen.modules.answers.sentence_check import refusal, sentences
-from lumen.modules.module import Module
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.run.module import Module
 
 MAX_SENTENCES = 2
 """Of an answer that are said."""

@@ -17,9 +17,9 @@ from lumen.modules.ears.own_voice import OwnVoice, Utterance
 from lumen.modules.ears.recogniser import Hypothesis, Recogniser, hypotheses
 from lumen.modules.ears.shared_recogniser import shared_sphinx
 from lumen.modules.ears.voice_activity import VoiceActivity, voice_activity
-from lumen.modules.module import Module
-from lumen.modules.sound import Sound, sound_of
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.run.module import Module
+from lumen.run.sound import Sound, sound_of
 
 INTERRUPTS = ("stop",)
 """The phrases that are heard while the robot speaks, where `lumen.yaml` does not say which."""

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol, runtime_checkable
 
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 
 
 class Recogniser(Protocol):

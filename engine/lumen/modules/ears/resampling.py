@@ -1,6 +1,6 @@
 """Sounds at another rate."""
 
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 
 
 def resampled(sound: Sound, rate: int) -> Sound:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from weakref import WeakValueDictionary
 
 from lumen.modules.ears.recogniser import Hypothesis, RankingRecogniser
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 
 _lock = threading.Lock()
 _loaded: WeakValueDictionary[str, RankingRecogniser] = WeakValueDictionary()

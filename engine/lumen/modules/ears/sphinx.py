@@ -13,7 +13,7 @@ from lumen.modules.ears.bigrams import arpa
 from lumen.modules.ears.recogniser import Hypothesis, RankingRecogniser
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.spelling import pronounced
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 
 if TYPE_CHECKING:
     import numpy as np

@@ -3,7 +3,7 @@
 from typing import Any
 
 from lumen.modules.ears.resampling import resampled
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 
 SAMPLE_RATE = 16_000
 """What the network was made for [Hz]."""

@@ -11,7 +11,7 @@ from lumen.errors import ModuleError
 from lumen.modules.ears.recogniser import Hypothesis, RankingRecogniser
 from lumen.modules.ears.resampling import resampled
 from lumen.modules.ears.shared_recogniser import SharedRecogniser
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 
 INSTALL_WHISPER = "pip install 'lumen-robot[ears-whisper]'"
 SAMPLE_RATE = 16_000

@@ -16,8 +16,8 @@ from lumen.modules.eyes.gallery import MAX_PICTURES_PER_NAME, FaceGallery
 from lumen.modules.eyes.pictures import Frame, frame_of
 from lumen.modules.eyes.video import ROBOT_CAMERA, VideoSource
 from lumen.modules.eyes.window import Window
-from lumen.modules.module import DAY, KEEP_DAYS, Module
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.run.module import DAY, KEEP_DAYS, Module
 
 FACES_FILE = "faces.npz"
 LOOK_INTERVAL = 0.1

@@ -13,8 +13,8 @@ from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
 from lumen.modules.memory.store import Forgotten, JournalEntry, Store
 from lumen.modules.memory.visit import JournalEnd, Visit
-from lumen.modules.module import DAY, KEEP_DAYS, Module
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.run.module import DAY, KEEP_DAYS, Module
 
 DATABASE_FILE = "memory.db"
 """The key of the behaviour's context that holds the visitor's name, where `lumen.yaml` does not say."""

@@ -12,11 +12,11 @@ from lumen.language.modules import SHOW
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
 from lumen.language.show import MqttLink, Show, TopicMapping, may_come_from_devices
-from lumen.modules.module import Module
 from lumen.modules.show.device_link import DeviceLink
 from lumen.modules.show.health import LinkHealth
 from lumen.ports import Bus, Message, MessageHandler, UsesBroker
 from lumen.project.message_fields import SchemaField, message_fields
+from lumen.run.module import Module
 from lumen.upkeep.drops import Drops
 from lumen.upkeep.ratelimit import RateLimiter
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from lumen.errors import ModuleError
 from lumen.language.gestures import WordTime
-from lumen.modules.sound import Sound
+from lumen.run.sound import Sound
 
 INSTALL_VOICE = "pip install 'lumen-robot[voice]', or install the package espeak-ng"
 WORDS_PER_MINUTE = 175

@@ -7,9 +7,9 @@ from lumen.errors import ModuleError
 from lumen.language.iso_time import iso_time
 from lumen.language.modules import VOICE
 from lumen.language.projects import Project
-from lumen.modules.module import Module
 from lumen.modules.voice.espeak import espeak
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.run.module import Module
 
 
 class Voice(Module):

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.app.forgetting.report import Forgetting, ForgottenPlace
 from lumen.app.recording.recordings_folder import RecordingsFolder
 from lumen.app.recording.redaction import redacted
 from lumen.errors import JournalError, LumenError, ModuleError
@@ -24,7 +23,8 @@ from lumen.modules.memory import Store
 from lumen.modules.memory.memory import DATABASE_FILE
 from lumen.project.home import Home
 from lumen.project.json_lines import forget_lines, line_names
-from lumen.runtime.snapshot_store import DAMAGED_BUNDLE, SNAPSHOT_FILE
+from lumen.run.forgetting.report import Forgetting, ForgottenPlace
+from lumen.run.snapshot_store import DAMAGED_BUNDLE, SNAPSHOT_FILE
 
 DRAFT_AGE = 5.0
 """After how long a draft of a file is one that a crash has left behind [s]."""

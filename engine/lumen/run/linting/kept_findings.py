@@ -28,8 +28,8 @@ def known_or_checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic
     known = _read(folder.read(name))
     if known is not None:
         return known
-    from lumen.app.lint.kept_memory import keep_memory, recall_memory
     from lumen.lint import check_files
+    from lumen.run.linting.kept_memory import keep_memory, recall_memory
 
     recall_memory(root)
     looks = Looks()

@@ -6,10 +6,6 @@ from dataclasses import replace
 from math import inf
 from pathlib import Path
 
-from lumen.app.lint.findings import Findings
-from lumen.app.lint.outcome_cache import OutcomeCache
-from lumen.app.workers.work_kit import UnpackedKit, WorkKit, models_in
-from lumen.app.workers.workers import Workers
 from lumen.errors import UsageError
 from lumen.extras import demand
 from lumen.language.diagnostics import Diagnostic
@@ -20,6 +16,10 @@ from lumen.project.lending import model_files
 from lumen.rules.physics import CaseResult, Outcome, attempt
 from lumen.rules.physics.cases import cases
 from lumen.rules.physics.verdict import findings
+from lumen.run.linting.findings import Findings
+from lumen.run.linting.outcome_cache import OutcomeCache
+from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in
+from lumen.run.workers.workers import Workers
 
 ROBOTS = 20
 """How many robots beside the one of the model play each motion, where nobody says."""

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from lumen.app.lint.findings import Findings
-from lumen.app.reload.against import against
-from lumen.app.versions import version
 from lumen.language.diagnostics import Diagnostic
 from lumen.lint import check_files
+from lumen.run.linting.findings import Findings
+from lumen.run.reload.against import against
+from lumen.run.versions import version
 
 
 def compared(found: Findings, name: str, wanted: Callable[[Diagnostic], bool]) -> Findings:

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from lumen.app.lint.findings import Findings
-from lumen.app.lint.kept_findings import known_or_checked
 from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.project.common_words import own_files
@@ -15,6 +13,8 @@ from lumen.project.files import MAX_FILE_BYTES, belongs, composed, read_files
 from lumen.project.own_project import own_project
 from lumen.project.packaged import project_above
 from lumen.project.project_folders import MAIN_FILE
+from lumen.run.linting.findings import Findings
+from lumen.run.linting.kept_findings import known_or_checked
 
 Wanted = Callable[[Diagnostic], bool]
 STDIN = "-"

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumen.app.parts.module import ModulePart
-from lumen.app.parts.module_troubles import ModuleTroublesPart
-from lumen.app.parts.part import Part
-from lumen.app.parts.robot import RobotPart
-from lumen.app.services import Services
 from lumen.errors import LumenError
 from lumen.language.modules import EYES, module_names
-from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART
+from lumen.run.parts.module import ModulePart
+from lumen.run.parts.module_troubles import ModuleTroublesPart
+from lumen.run.parts.part import Part
+from lumen.run.parts.robot import RobotPart
+from lumen.run.presence import BRAIN, MOTION, ROBOT_PART
+from lumen.run.services import Services
 
 
 @dataclass(frozen=True, slots=True)

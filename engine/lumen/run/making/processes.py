@@ -2,20 +2,20 @@
 
 from pathlib import Path
 
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.making.serving import recovered
-from lumen.app.parts.hosted_robot import HostedRobotPart, stopped_there
-from lumen.app.parts.motion import MotionPart
-from lumen.app.parts.remote_brain import RemoteBody, RemoteBrainPart, RemoteHold
-from lumen.app.parts.visitor import RemoteVisitorPart
-from lumen.app.processes.bundles import BundleFollower
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.services import Services
 from lumen.language.projects import Project
 from lumen.motion.bounds import analyse
 from lumen.robot.person_hold import StoppedBy
-from lumen.runtime.presence import Presence
-from lumen.runtime.story import staged
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.making.serving import recovered
+from lumen.run.parts.hosted_robot import HostedRobotPart, stopped_there
+from lumen.run.parts.motion import MotionPart
+from lumen.run.parts.remote_brain import RemoteBody, RemoteBrainPart, RemoteHold
+from lumen.run.parts.visitor import RemoteVisitorPart
+from lumen.run.presence import Presence
+from lumen.run.processes.bundles import BundleFollower
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.services import Services
+from lumen.run.story import staged
 
 
 def follower(services: Services) -> BundleFollower:

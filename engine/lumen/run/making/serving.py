@@ -1,25 +1,25 @@
 """The parts that serve the behaviour: its journal, people to forget, saved files, and operators."""
 
-from lumen.app.forgetting.added import FeatureForgetter
 from lumen.app.parts.alerting import AlertPart
-from lumen.app.parts.forgetting import ForgettingPart
-from lumen.app.parts.hosted_robot import HostedRobotPart, stopped_there
-from lumen.app.parts.operating import OperatorPart, RunState
-from lumen.app.parts.part import Part
 from lumen.app.parts.recording import RecordingPart
-from lumen.app.parts.robot import RobotPart
-from lumen.app.recovery.recording import record_inputs
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader, ReloadOptions
-from lumen.app.reload.saved_files import RecordsPart, ReloadPart
-from lumen.app.services import Services
-from lumen.app.status import LastReload
 from lumen.journal.journal_writer import JournalWriter
 from lumen.motion.bounds import analyse
 from lumen.project.project_folders import FLEET_FILE
 from lumen.robot.person_hold import StoppedBy
-from lumen.runtime.resuming import FreshStart, Resumption
+from lumen.run.forgetting.added import FeatureForgetter
+from lumen.run.parts.forgetting import ForgettingPart
+from lumen.run.parts.hosted_robot import HostedRobotPart, stopped_there
+from lumen.run.parts.operating import OperatorPart, RunState
+from lumen.run.parts.part import Part
+from lumen.run.parts.robot import RobotPart
+from lumen.run.recovery.recording import record_inputs
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.reloader import Reloader, ReloadOptions
+from lumen.run.reload.saved_files import RecordsPart, ReloadPart
+from lumen.run.resuming import FreshStart, Resumption
+from lumen.run.services import Services
+from lumen.run.status import LastReload
 
 
 def journal(services: Services) -> None:

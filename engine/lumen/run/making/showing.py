@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lumen.app.film_progress import FilmProgress
-from lumen.app.making.serving import directory_of
 from lumen.app.parts.console import ConsolePart
 from lumen.app.parts.film import FilmPart
-from lumen.app.services import Services
-from lumen.modules.audio_track import AudioTrack
+from lumen.run.audio_track import AudioTrack
+from lumen.run.making.serving import directory_of
+from lumen.run.services import Services
 
 
 @dataclass(frozen=True, slots=True)

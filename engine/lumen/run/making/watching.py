@@ -3,16 +3,16 @@
 from pathlib import Path
 
 from lumen.app.alerts.desk import AlertDesk
-from lumen.app.making.serving import directory_of
 from lumen.app.parts.alerting import AlertPart
-from lumen.app.parts.hosted_robot import HostedRobotPart
 from lumen.app.parts.recording import RecordingPart
 from lumen.app.reload.alerting import RefusalPart
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader
-from lumen.app.services import Services
 from lumen.project.home import home_of
-from lumen.runtime.presence import BRAIN, ROBOT_PART
+from lumen.run.making.serving import directory_of
+from lumen.run.parts.hosted_robot import HostedRobotPart
+from lumen.run.presence import BRAIN, ROBOT_PART
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.reloader import Reloader
+from lumen.run.services import Services
 
 
 def recording(services: Services) -> RecordingPart:

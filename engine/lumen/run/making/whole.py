@@ -1,12 +1,5 @@
 """Visitor, robot and brain of an exhibition that is in one process."""
 
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.parts.brain import BrainPart
-from lumen.app.parts.foreign_commands import ForeignCommands
-from lumen.app.parts.kept_hold import KeptHold
-from lumen.app.parts.robot import RobotPart, RunBefore
-from lumen.app.parts.visitor import VisitorPart
-from lumen.app.services import Services
 from lumen.errors import UsageError
 from lumen.language.events import Event
 from lumen.language.stories import Story, TouchSensor
@@ -14,7 +7,14 @@ from lumen.ports import FeelsTouch, RobotCommand
 from lumen.project.home import home_of
 from lumen.robot.command_receiver import CommandListener
 from lumen.robot.deduplication_log import DEDUPLICATION_FILE
-from lumen.runtime.resuming import FreshStart, Resumption
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.parts.brain import BrainPart
+from lumen.run.parts.foreign_commands import ForeignCommands
+from lumen.run.parts.kept_hold import KeptHold
+from lumen.run.parts.robot import RobotPart, RunBefore
+from lumen.run.parts.visitor import VisitorPart
+from lumen.run.resuming import FreshStart, Resumption
+from lumen.run.services import Services
 
 
 def behavior(services: Services) -> None:
@@ -82,7 +82,7 @@ def brain(services: Services) -> BrainPart:
     """Make the part that steps the behaviour."""
 
     def recover() -> Resumption | FreshStart:
-        from lumen.app.making.serving import recovered  # rehearsals have no run before
+        from lumen.run.making.serving import recovered  # rehearsals have no run before
 
         return recovered(services)
 

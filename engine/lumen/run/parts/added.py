@@ -4,14 +4,14 @@ import logging
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, TypeVar
 
-from lumen.app.parts.part import Part
 from lumen.feature import Feature, PartRow, described, distribution_of
 from lumen.language.commands import Command, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.project.broken_features import faulty, shown
-from lumen.runtime.loop import Observer
-from lumen.runtime.troubles import RunTrouble
+from lumen.run.loop import Observer
+from lumen.run.parts.part import Part
+from lumen.run.troubles import RunTrouble
 from lumen.statechart import Step
 
 T = TypeVar("T")

@@ -2,16 +2,16 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from lumen.app.causes import innermost
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.narrator import Narrator
-from lumen.app.parts.part import Part
 from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.robot.person_hold import PersonHold
-from lumen.runtime.presence import BRAIN, Presence
-from lumen.runtime.resuming import FreshStart, Resumption
+from lumen.run.entry_causes import innermost
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.narrator import Narrator
+from lumen.run.parts.part import Part
+from lumen.run.presence import BRAIN, Presence
+from lumen.run.resuming import FreshStart, Resumption
 
 RUN_BEFORE, ENGINE = "the run before", "the engine"
 

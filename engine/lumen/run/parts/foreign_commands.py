@@ -3,12 +3,12 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from lumen.app.narrator import Narrator
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.verbs import verb_of
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand
 from lumen.robot.command_receiver import CommandListener
+from lumen.run.narrator import Narrator
 
 WHO = "command"
 

@@ -4,12 +4,12 @@ import logging
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from lumen.app.parts.part import Part
 from lumen.language.events import Event
 from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
 from lumen.language.routing_keys import default_key
 from lumen.ports import Bus, Message
+from lumen.run.parts.part import Part
 from lumen.upkeep.drops import DropLog
 
 ROUTE = "forgotten"

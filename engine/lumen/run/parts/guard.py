@@ -6,7 +6,7 @@ from lumen.errors import BusRefusedError
 from lumen.language.commands import Rest
 from lumen.language.events import Event
 from lumen.ports import Robot
-from lumen.runtime.presence import BRAIN, HERE, LEAVES, LOST_AFTER, ROBOT_PART, Peer, Presence, where_it_runs
+from lumen.run.presence import BRAIN, HERE, LEAVES, LOST_AFTER, ROBOT_PART, Peer, Presence, where_it_runs
 
 BRAIN_TIMEOUT = 5.0
 """How long a brain may be silent before its robot rests [s]."""

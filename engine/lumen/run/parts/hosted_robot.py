@@ -6,12 +6,6 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from lumen.app.narrator import Narrator
-from lumen.app.parts.foreign_commands import ForeignCommands, words
-from lumen.app.parts.guard import BrainGuard
-from lumen.app.parts.kept_hold import KeptHold, forget_hold
-from lumen.app.parts.robot import RobotPart, RunBefore, Urgency
-from lumen.app.setup import Setup
 from lumen.bus.validated import ValidatedBus
 from lumen.language.commands import Rest, Start
 from lumen.language.events import Event
@@ -22,8 +16,14 @@ from lumen.project.home import home_of
 from lumen.robot.deduplication_log import DEDUPLICATION_FILE
 from lumen.robot.person_hold import StoppedBy
 from lumen.robot.remote import RobotHost
-from lumen.runtime.journal import Journal
-from lumen.runtime.presence import BRAIN, ROBOT_PART, Presence
+from lumen.run.narrator import Narrator
+from lumen.run.parts.foreign_commands import ForeignCommands, words
+from lumen.run.parts.guard import BrainGuard
+from lumen.run.parts.kept_hold import KeptHold, forget_hold
+from lumen.run.parts.robot import RobotPart, RunBefore, Urgency
+from lumen.run.presence import BRAIN, ROBOT_PART, Presence
+from lumen.run.reload_journal import Journal
+from lumen.run.setup import Setup
 from lumen.upkeep.threads import WatchedThread
 
 

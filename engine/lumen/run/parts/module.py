@@ -5,19 +5,19 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from lumen.app.claiming import presence_of
-from lumen.app.parts.module_factory import make_module
-from lumen.app.parts.part import Part
 from lumen.feature import owner
 from lumen.language.counts import counted
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event
 from lumen.language.modules import EYES
 from lumen.language.projects import Project
-from lumen.modules.module import Module
 from lumen.ports import Bus
 from lumen.project.broken_features import faults_reported
-from lumen.runtime.presence import Presence
+from lumen.run.claiming import presence_of
+from lumen.run.module import Module
+from lumen.run.parts.module_factory import make_module
+from lumen.run.parts.part import Part
+from lumen.run.presence import Presence
 
 EYES_TIMEOUT = 60.0
 """How long a tick waits for the eyes at most [s], where the machine has much else to do."""

@@ -6,9 +6,9 @@ from pathlib import Path
 from lumen.errors import LumenError, UsageError
 from lumen.feature import owner, table
 from lumen.language.projects import Project
-from lumen.modules.module import Module
 from lumen.ports import Bus
 from lumen.project.broken_features import blaming, faulty, resolved, shown
+from lumen.run.module import Module
 
 
 def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Module:
@@ -23,7 +23,7 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
     feature, where = owner("modules", name), modules[name].module
     kind = resolved(feature, where)
     if not (isinstance(kind, type) and issubclass(kind, Module)):
-        raise faulty(feature, f"its module `{where}` is no subclass of `lumen.modules.module.Module`")
+        raise faulty(feature, f"its module `{where}` is no subclass of `lumen.run.module.Module`")
     with blaming(feature, where, LumenError):
         made = kind.make(project, bus, tell, folder)
     if not isinstance(made, Module):

@@ -3,11 +3,11 @@
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from lumen.app.parts.part import Part
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.routing_keys import default_key
 from lumen.ports import Bus, Message
+from lumen.run.parts.part import Part
 
 MAX_PENDING_TROUBLES = 100
 

@@ -5,17 +5,17 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from math import inf
 
-from lumen.app.narrator import Narrator
-from lumen.app.parts.part import Part
 from lumen.bus.validated import ValidatedBus
 from lumen.language.commands import Track
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Clock, Message, Perform
 from lumen.robot.remote import RemoteRobot
-from lumen.runtime.delegated_tracking import motion_key
-from lumen.runtime.presence import BRAIN, MOTION, ROBOT_PART, Presence
-from lumen.runtime.tracking import LocalTracking
+from lumen.run.delegated_tracking import motion_key
+from lumen.run.narrator import Narrator
+from lumen.run.parts.part import Part
+from lumen.run.presence import BRAIN, MOTION, ROBOT_PART, Presence
+from lumen.run.tracking import LocalTracking
 from lumen.upkeep.threads import MessageGuard
 
 WAITING = 1_000

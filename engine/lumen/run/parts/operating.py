@@ -8,19 +8,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from lumen.app.answering import AnsweringThread
-from lumen.app.asking import operator_key
-from lumen.app.decisions import DecisionRecords, Decisions
-from lumen.app.doings import Doings
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.model_switch import ModelSwitch
-from lumen.app.narrator import Narrator
-from lumen.app.now import NowView, PresentMoment, moment
-from lumen.app.parts.part import Part
-from lumen.app.raised_events import RaisedEvents, person_in, refusal
-from lumen.app.request_checks import RequestChecks
-from lumen.app.status import LastReload, status_of
-from lumen.app.step_memory import StepMemory
 from lumen.errors import BusError, LumenError
 from lumen.journal.journal_writer import JournalWriter
 from lumen.language.causes import Cause
@@ -45,7 +32,20 @@ from lumen.language.operator_requests import (
 from lumen.ports import Message, Sense
 from lumen.robot.person_hold import StoppedBy
 from lumen.robot.robot_routes import TEXT_ROUTE
-from lumen.runtime.loop import Observer
+from lumen.run.answering import AnsweringThread
+from lumen.run.asking import operator_key
+from lumen.run.decisions import DecisionRecords, Decisions
+from lumen.run.doings import Doings
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.loop import Observer
+from lumen.run.model_switch import ModelSwitch
+from lumen.run.narrator import Narrator
+from lumen.run.now import NowView, PresentMoment, moment
+from lumen.run.parts.part import Part
+from lumen.run.raised_events import RaisedEvents, person_in, refusal
+from lumen.run.request_checks import RequestChecks
+from lumen.run.status import LastReload, status_of
+from lumen.run.step_memory import StepMemory
 from lumen.statechart import Step
 from lumen.statechart.direct_entry import entered_directly
 
@@ -160,7 +160,7 @@ class OperatorPart(Part, Observer):
             elif request in (WHY, WHY_NOT):
                 self._answering.ask(message)
             elif request is FORK:
-                from lumen.app.forking import forked  # with all that judges files
+                from lumen.run.forking import forked  # with all that judges files
 
                 running = self._behavior.loop.runtime.project
                 self._answering.answer(message, partial(forked, self._journal, running, message.body))

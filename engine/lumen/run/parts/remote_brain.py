@@ -3,10 +3,6 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.narrator import Narrator
-from lumen.app.parts.brain import BrainPart
-from lumen.app.setup import Setup
 from lumen.bus.validated import ValidatedBus
 from lumen.errors import BusRefusedError
 from lumen.language.commands import Rest
@@ -18,11 +14,15 @@ from lumen.project.home import Home
 from lumen.robot.command_table import row_of
 from lumen.robot.person_hold import StoppedBy, on_head
 from lumen.robot.remote import RemoteRobot
-from lumen.runtime.delegated_tracking import DelegatedTracking
-from lumen.runtime.loop import Observer
-from lumen.runtime.presence import BRAIN, HERE, MOTION, ROBOT_PART, Presence, where_it_runs
-from lumen.runtime.resuming import FreshStart, Resumption
-from lumen.runtime.tracking import LocalTracking
+from lumen.run.delegated_tracking import DelegatedTracking
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.loop import Observer
+from lumen.run.narrator import Narrator
+from lumen.run.parts.brain import BrainPart
+from lumen.run.presence import BRAIN, HERE, MOTION, ROBOT_PART, Presence, where_it_runs
+from lumen.run.resuming import FreshStart, Resumption
+from lumen.run.setup import Setup
+from lumen.run.tracking import LocalTracking
 
 SESSION = "brain.json"
 """Where a brain keeps under which sessions its commands travel, for the one that goes on after it."""

@@ -5,9 +5,6 @@ from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 
-from lumen.app.parts.kept_hold import KeptHold
-from lumen.app.parts.part import Part
-from lumen.app.setup import Setup
 from lumen.feature import table
 from lumen.language.commands import Command, Say, Start
 from lumen.language.events import Event
@@ -19,9 +16,12 @@ from lumen.robot.command_receiver import CommandListener
 from lumen.robot.deduplication_log import DeduplicationLog
 from lumen.robot.sense_publisher import PublishCounts
 from lumen.robot.server import RobotServer
-from lumen.runtime.loop import Observer
-from lumen.runtime.perception import FaceDetector
-from lumen.runtime.presence import ROBOT_PART, Presence
+from lumen.run.loop import Observer
+from lumen.run.parts.kept_hold import KeptHold
+from lumen.run.parts.part import Part
+from lumen.run.perception import FaceDetector
+from lumen.run.presence import ROBOT_PART, Presence
+from lumen.run.setup import Setup
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,9 +4,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import inf
 from typing import Any
 
-from lumen.app.causes import innermost
-from lumen.app.narrator import Narrator
-from lumen.app.parts.part import Part
 from lumen.bus.validated import ValidatedBus
 from lumen.language.commands import Command
 from lumen.language.events import Event
@@ -14,11 +11,14 @@ from lumen.language.projects import Project
 from lumen.language.stories import Story, VisitorAction
 from lumen.ports import Bus, Hall
 from lumen.robot.remote import RemoteHall
-from lumen.runtime.presence import BRAIN, ROBOT_PART, VISITOR
-from lumen.runtime.story import StoryEnvironment, StoryPlayer
-from lumen.runtime.trace_subscriber import TraceSubscriber
-from lumen.runtime.troubles import RunTrouble
-from lumen.runtime.visitor import VisitorActor
+from lumen.run.entry_causes import innermost
+from lumen.run.narrator import Narrator
+from lumen.run.parts.part import Part
+from lumen.run.presence import BRAIN, ROBOT_PART, VISITOR
+from lumen.run.story import StoryEnvironment, StoryPlayer
+from lumen.run.trace_subscriber import TraceSubscriber
+from lumen.run.troubles import RunTrouble
+from lumen.run.visitor import VisitorActor
 
 
 class VisitorPart(Part):

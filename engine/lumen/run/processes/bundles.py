@@ -5,8 +5,6 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from lumen.app.parts.part import Part
-from lumen.app.reload.requests import status_key
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.motion.bounds import analyse
@@ -14,8 +12,10 @@ from lumen.ports import Bus, Message
 from lumen.project.chosen_robot import as_robot
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import Home, home_of
-from lumen.runtime.snapshot_store import SnapshotStore
-from lumen.runtime.watcher import SWITCH_INTERVAL
+from lumen.run.parts.part import Part
+from lumen.run.reload.requests import status_key
+from lumen.run.snapshot_store import SnapshotStore
+from lumen.run.watcher import SWITCH_INTERVAL
 from lumen.upkeep.threads import WatchedThread
 
 MOVED = ("applied", "rolled back")

@@ -2,7 +2,7 @@
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
-from lumen.runtime.presence import ROBOT_PART, all_parts, roles
+from lumen.run.presence import ROBOT_PART, all_parts, roles
 
 
 def parts_of(only: str | None, robot: str) -> tuple[str, ...]:

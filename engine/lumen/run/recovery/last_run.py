@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from lumen.app.parts.kept_hold import kept_hold
 from lumen.language.iso_time import iso_time
 from lumen.project.home import Home, home_of
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run.parts.kept_hold import kept_hold
+from lumen.run.snapshot_store import SnapshotStore
 
 
 def last_run(root: Path, robot: str) -> dict[str, Any]:

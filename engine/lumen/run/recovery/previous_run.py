@@ -5,17 +5,17 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.report import START, ReloadReport
-from lumen.app.reload.validation_worker import load_apart
 from lumen.errors import LumenError, ProjectError
 from lumen.insight.changes import changes
 from lumen.insight.migration import Refusal
 from lumen.language.projects import Project
 from lumen.project.chosen_robot import as_robot
 from lumen.project.crash_counter import MAX_CRASHES
-from lumen.runtime.resuming import FreshStart, Resumption, resume
-from lumen.runtime.snapshot_store import SNAPSHOT_VERSION, SnapshotStore, StoredSnapshot
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.report import START, ReloadReport
+from lumen.run.reload.validation_worker import load_apart
+from lumen.run.resuming import FreshStart, Resumption, resume
+from lumen.run.snapshot_store import SNAPSHOT_VERSION, SnapshotStore, StoredSnapshot
 from lumen.statechart import deserialize
 
 LATELY = 600.0

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.reload.records import RunRecords
 from lumen.errors import LumenError
 from lumen.journal.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER, JournalFolder
 from lumen.journal.journal_writer import JournalWriter
@@ -12,7 +10,9 @@ from lumen.language.retention import JournalRetention
 from lumen.language.stories import Story
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import Home, home_of
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.reload.records import RunRecords
+from lumen.run.snapshot_store import SnapshotStore
 from lumen.upkeep.private_folder import private_folder
 
 REHEARSED = JournalRetention(keep=7.0, size=50.0)

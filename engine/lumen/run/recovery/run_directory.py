@@ -6,14 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.narrator import Narrator
-from lumen.app.parts.kept_hold import forget_hold
-from lumen.app.recovery.previous_run import recover, rested
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader, ReloadOptions
-from lumen.app.reload.report import ReloadReport
-from lumen.app.reload.validation_worker import load_apart
 from lumen.bus.addresses import within_process
 from lumen.bus.local import LocalBusServer
 from lumen.errors import UsageError
@@ -22,7 +14,15 @@ from lumen.ports import Bus
 from lumen.project.chosen_robot import as_robot
 from lumen.project.home import ADDRESS_FILE, Home, home_of
 from lumen.robot.robot_routes import COMMAND_ROUTE, STOP_ROUTE
-from lumen.runtime.resuming import FreshStart, Resumption
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.narrator import Narrator
+from lumen.run.parts.kept_hold import forget_hold
+from lumen.run.recovery.previous_run import recover, rested
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.reloader import Reloader, ReloadOptions
+from lumen.run.reload.report import ReloadReport
+from lumen.run.reload.validation_worker import load_apart
+from lumen.run.resuming import FreshStart, Resumption
 
 _log = logging.getLogger(__name__)
 

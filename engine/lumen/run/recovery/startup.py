@@ -3,17 +3,17 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from lumen.app.recovery.run_directory import RunDirectory
-from lumen.app.reload.report import START, ReloadReport
-from lumen.app.reload.rollback_guard import PERIOD
-from lumen.app.reload.validation_worker import load_apart
-from lumen.app.reload.validator import Validation
 from lumen.errors import FatalFilesError, ProjectError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.project.crash_counter import MAX_CRASHES
 from lumen.project.files import fingerprint, read_files
-from lumen.runtime.watcher import SavedFiles
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.reload.report import START, ReloadReport
+from lumen.run.reload.rollback_guard import PERIOD
+from lumen.run.reload.validation_worker import load_apart
+from lumen.run.reload.validator import Validation
+from lumen.run.watcher import SavedFiles
 
 
 def startup_project(

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator
 
-from lumen.app.reload.migration_preview import MigrationPreview, preview
 from lumen.insight.changes import live
 from lumen.insight.migration import Refusal
 from lumen.insight.migration.identity import Identity
@@ -10,6 +9,7 @@ from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.lint.on_request import RELOAD_FORGETS, RELOAD_MOVES, RELOAD_REFUSED
+from lumen.run.reload.migration_preview import MigrationPreview, preview
 from lumen.statechart.type_checks import type_checks, type_name
 
 BOUND = 10_000

@@ -8,7 +8,7 @@ import atexit
 import threading
 from typing import NamedTuple
 
-from lumen.app.reload.delta import DeltaDecoder
+from lumen.run.reload.delta import DeltaDecoder
 from lumen.upkeep.judge_process import JudgeProcess
 
 LINGER = 10.0

@@ -1,6 +1,6 @@
 """Projects whose files were judged before, byte for byte and by this very engine: they are not judged again.
 
-What is kept is what the process that judged them sent (app/reload/delta.py), in the user's own cache: a start of the
+What is kept is what the process that judged them sent (run/reload/delta.py), in the user's own cache: a start of the
 files of yesterday needs no process to read them. Only projects without errors are kept, and not what was warned of.
 """
 
@@ -12,12 +12,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from lumen.app.reload.delta import Delta, DeltaDecoder
 from lumen.language.projects import Project
 from lumen.project.chosen_robot import chosen_robot
 from lumen.project.engine_files import engine, listed
 from lumen.project.files import fingerprint
 from lumen.project.project_folders import MODELS
+from lumen.run.reload.delta import Delta, DeltaDecoder
 from lumen.upkeep.cache_folder import CacheFolder
 
 """The folder of which lint asks which files there are, beside those that it reads."""

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from lumen.app.exploring import outside
 from lumen.insight.exploration.search import StateSpaceSearch, leaves
 from lumen.insight.migration import MigrationDelay, MigrationPlan, MigrationVerdict, plan
 from lumen.language.projects import Project
-from lumen.runtime.story_time import story_epoch
+from lumen.run.exploring import outside
+from lumen.run.story_time import story_epoch
 from lumen.statechart import Snapshot
 
 

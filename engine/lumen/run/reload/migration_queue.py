@@ -5,19 +5,19 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.reload.notifier import ReloadNotifier
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.report import ReloadReport, reason_of, what_for
-from lumen.app.reload.requests import ReloadRequest
-from lumen.app.reload.rollback_guard import RollbackGuard
-from lumen.app.reload.trial import Trial
-from lumen.app.reload.validator import Validation, fault_of
 from lumen.errors import BusError
 from lumen.insight.changes import Change, changes, live
 from lumen.insight.migration import MigrationDelay, MigrationPlan, Refusal
 from lumen.insight.replay.visits import home_of
 from lumen.language.projects import Project
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.reload.notifier import ReloadNotifier
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.report import ReloadReport, reason_of, what_for
+from lumen.run.reload.requests import ReloadRequest
+from lumen.run.reload.rollback_guard import RollbackGuard
+from lumen.run.reload.trial import Trial
+from lumen.run.reload.validator import Validation, fault_of
 
 OTHER_VISITS = "recorded visits would go differently with these files"
 APPLY = "`lumen reload --apply` activates them anyway"

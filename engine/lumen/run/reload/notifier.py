@@ -4,12 +4,12 @@ import logging
 from collections.abc import Iterable
 from datetime import UTC, datetime
 
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.narrator import Narrator
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.report import ReloadReport
-from lumen.app.reload.requests import ReloadRequest, status_key
 from lumen.errors import BusError
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.narrator import Narrator
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.report import ReloadReport
+from lumen.run.reload.requests import ReloadRequest, status_key
 
 _log = logging.getLogger(__name__)
 

@@ -13,9 +13,9 @@ from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.project.crash_counter import CrashCounter
 from lumen.project.home import Home
-from lumen.runtime.journal import Journal
-from lumen.runtime.loop import BehaviorLoop
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run.loop import BehaviorLoop
+from lumen.run.reload_journal import Journal
+from lumen.run.snapshot_store import SnapshotStore
 
 HEARTBEAT_PERIOD = 1.0
 """How often it is noted that the run lives, where nothing else is [s]."""

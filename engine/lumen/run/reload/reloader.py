@@ -8,17 +8,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.narrator import Narrator
-from lumen.app.rehearsal import Rehearsal
-from lumen.app.reload.migration_queue import MigrationQueue, StagedBundle
-from lumen.app.reload.notifier import ReloadNotifier
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.report import ReloadReport
-from lumen.app.reload.requests import WAITING, ReloadRequest, answering, command_key, request_from
-from lumen.app.reload.validation_worker import FileJudge, ValidationWorker
-from lumen.app.reload.validator import BUDGET, BundleValidator, Validation, fault_of, told
-from lumen.app.status import LastReload
 from lumen.bus.validated import by_key
 from lumen.errors import BusError, UsageError
 from lumen.insight.changes import changes, live
@@ -30,7 +19,18 @@ from lumen.motion.bounds import analyse
 from lumen.ports import Message
 from lumen.project.chosen_robot import as_robot
 from lumen.project.files import read_files
-from lumen.runtime.watcher import QUIET_PERIOD, FileWatcher, SavedFiles
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.narrator import Narrator
+from lumen.run.rehearsal import Rehearsal
+from lumen.run.reload.migration_queue import MigrationQueue, StagedBundle
+from lumen.run.reload.notifier import ReloadNotifier
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.report import ReloadReport
+from lumen.run.reload.requests import WAITING, ReloadRequest, answering, command_key, request_from
+from lumen.run.reload.validation_worker import FileJudge, ValidationWorker
+from lumen.run.reload.validator import BUDGET, BundleValidator, Validation, fault_of, told
+from lumen.run.status import LastReload
+from lumen.run.watcher import QUIET_PERIOD, FileWatcher, SavedFiles
 
 _log = logging.getLogger(__name__)
 

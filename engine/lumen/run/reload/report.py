@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from lumen.app.reload.validator import Validation, told
 from lumen.insight.changes import Change, Risk, risk, summary
 from lumen.insight.migration import MigrationDelay, Refusal
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.language.projects import Project
+from lumen.run.reload.validator import Validation, told
 
 MAX_LISTED = 100
 """Changes and diagnostics that a bulletin lists."""

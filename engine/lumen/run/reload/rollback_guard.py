@@ -5,12 +5,12 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from lumen.app.live_behavior import LiveBehavior
 from lumen.insight.changes import live
 from lumen.insight.migration import MigrationPlan
 from lumen.language.commands import Command
 from lumen.language.projects import Project
-from lumen.runtime.resuming import anew
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.resuming import anew
 
 PERIOD = 10.0
 """Of the exhibition's clock [s]."""

@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from lumen.app.live_behavior import LiveBehavior
-from lumen.app.parts.part import Part
-from lumen.app.reload.records import RunRecords
-from lumen.app.reload.reloader import Reloader
 from lumen.language.events import Event
+from lumen.run.live_behavior import LiveBehavior
+from lumen.run.parts.part import Part
+from lumen.run.reload.records import RunRecords
+from lumen.run.reload.reloader import Reloader
 
 
 class ReloadPart(Part):

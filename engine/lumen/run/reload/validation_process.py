@@ -1,4 +1,4 @@
-"""The process in which files are judged: `python -m lumen.app.reload.validation_process`, run by a `JudgeProcess`.
+"""The process in which files are judged: `python -m lumen.run.reload.validation_process`, run by a `JudgeProcess`.
 
 Its memory and its time for each question are limited; the system ends it if it needs more.
 """
@@ -9,15 +9,15 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lumen.app.reload.delta import DeltaEncoder
 from lumen.language.projects import Project
 from lumen.lint import check_files
+from lumen.run.reload.delta import DeltaEncoder
 from lumen.upkeep.garbage import gc_paused
 from lumen.upkeep.heap import give_back
 from lumen.upkeep.judge_process import ANSWER_TIMEOUT, MAX_MEMORY, answering
 
 if TYPE_CHECKING:
-    from lumen.app.rehearsal import Rehearsal
+    from lumen.run.rehearsal import Rehearsal
 
 
 class EnoughError(Exception):
@@ -26,7 +26,7 @@ class EnoughError(Exception):
 
 def failure(project: Project, story: str, seconds: float) -> "Rehearsal | None":
     """How a story fails with a project; None where it does not, or not within `seconds` of this machine's time."""
-    from lumen.app.rehearsal import rehearse  # half of what this process imports: only where a story is played
+    from lumen.run.rehearsal import rehearse  # half of what this process imports: only where a story is played
 
     until = time.perf_counter() + seconds
 
@@ -57,7 +57,7 @@ class FileJudgement:
             case ["play", str(story), float(seconds)] if self._project:
                 return failure(self._project, story, seconds)
             case ["visits", str(root), str(running), float(budget)] if self._project:
-                from lumen.app.reload.visits_check import check_visits  # ninety modules that no start needs
+                from lumen.run.reload.visits_check import check_visits  # ninety modules that no start needs
 
                 return check_visits(Path(root), self._project, running, budget)
         return None

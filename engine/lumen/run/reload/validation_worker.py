@@ -12,20 +12,20 @@ from contextlib import closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from lumen.app.reload.delta import Delta, DeltaDecoder
-from lumen.app.reload.idle_process import IdleProcess, keep, take
-from lumen.app.reload.known_projects import keep as keep_known
-from lumen.app.reload.known_projects import recall
-from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
+from lumen.run.reload.delta import Delta, DeltaDecoder
+from lumen.run.reload.idle_process import IdleProcess, keep, take
+from lumen.run.reload.known_projects import keep as keep_known
+from lumen.run.reload.known_projects import recall
+from lumen.run.reload.visits_check import VisitsCheck
 from lumen.upkeep.judge_process import ANSWER_TIMEOUT, MAX_MEMORY, Fault, JudgeProcess, NoAnswerError
 
 if TYPE_CHECKING:
-    from lumen.app.rehearsal import Rehearsal
+    from lumen.run.rehearsal import Rehearsal
 
-COMMAND = [sys.executable, "-m", "lumen.app.reload.validation_process"]
+COMMAND = [sys.executable, "-m", "lumen.run.reload.validation_process"]
 Loaded = tuple[Project | None, tuple[Diagnostic, ...]]
 
 
@@ -130,7 +130,7 @@ class ValidationWorker:
 def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:
     """What these files make, read in a process of its own; raises FatalFilesError where they end it.
 
-    A project that was read before is not read again (app/reload/known_projects.py), nor warned of.
+    A project that was read before is not read again (run/reload/known_projects.py), nor warned of.
     """
     if project := recall(root, files):
         return project, ()

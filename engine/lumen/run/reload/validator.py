@@ -7,10 +7,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import PurePosixPath
 
-from lumen.app.rehearsal import Rehearsal
-from lumen.app.reload.requests import ReloadRequest
-from lumen.app.reload.validation_worker import FileJudge
-from lumen.app.reload.visits_check import VisitsCheck
 from lumen.errors import FatalFilesError
 from lumen.insight.changes import Change, Risk, changes
 from lumen.language.diagnostics import Diagnostic
@@ -19,7 +15,11 @@ from lumen.language.replay_check import ReplayCheck
 from lumen.language.stories import Story
 from lumen.project.files import fingerprint
 from lumen.project.project_folders import STORIES
-from lumen.runtime.watcher import SavedFiles
+from lumen.run.rehearsal import Rehearsal
+from lumen.run.reload.requests import ReloadRequest
+from lumen.run.reload.validation_worker import FileJudge
+from lumen.run.reload.visits_check import VisitsCheck
+from lumen.run.watcher import SavedFiles
 from lumen.statechart.compiled_machine import prepare
 
 _log = logging.getLogger(__name__)

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from lumen.app.replaying.replay_report import ReplayReport
 from lumen.language.iso_time import local_time
 from lumen.language.projects import Project
 from lumen.language.replay_check import CheckMode
+from lumen.run.replaying.replay_report import ReplayReport
 
 MAX_LISTED = 10
 """Differences that are listed."""
@@ -79,11 +79,11 @@ def check_visits(root: Path, new: Project, running: str, budget: float) -> Visit
 
     What the files of the bundle `running` have changed already counts as the same.
     """
-    from lumen.app.replaying.kept_bundles import KeptBundles  # only where visits are played
-    from lumen.app.replaying.latest_visits import latest_first
-    from lumen.app.replaying.other_files import VisitPlayer
     from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
     from lumen.project.home import home_of
+    from lumen.run.replaying.kept_bundles import KeptBundles  # only where visits are played
+    from lumen.run.replaying.latest_visits import latest_first
+    from lumen.run.replaying.other_files import VisitPlayer
 
     until = time.monotonic() + budget
 

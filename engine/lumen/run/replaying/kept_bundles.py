@@ -8,7 +8,7 @@ from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.chosen_robot import as_robot
 from lumen.project.home import Home, home_of
-from lumen.runtime.snapshot_store import SnapshotStore
+from lumen.run.snapshot_store import SnapshotStore
 
 
 class KeptBundles:

@@ -5,12 +5,12 @@ from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import with_machines
 from lumen.errors import JournalError
 from lumen.insight.replay.entries import JournalJump, RecordedEntry
 from lumen.insight.replay.visits import RecordedVisit, visits
 from lumen.journal.journal_file import read_journal
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import with_machines
 
 
 def latest_first(files: Sequence[Path], bundles: KeptBundles) -> Iterator[RecordedVisit]:

@@ -4,8 +4,6 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from time import monotonic
 
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.replay_report import ReplayReport
 from lumen.errors import BadCommandError
 from lumen.insight.changes import live
 from lumen.insight.replay.against import SAME, VisitVerdict, played_against
@@ -15,6 +13,8 @@ from lumen.language.commands import BodyCommand, Play
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.robot.command_table import COMMANDS, USUAL_DURATION, row_of
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.replay_report import ReplayReport
 
 NOT_WHOLE = "visits that are incomplete in the journal"
 

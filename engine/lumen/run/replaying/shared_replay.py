@@ -4,18 +4,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import closing
 from itertools import islice
 
-from lumen.app.replaying.journals import ChosenJournal
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import VisitPlayer, with_machines
-from lumen.app.replaying.replay_report import ReplayCount, ReplayReport, TakenAgain
-from lumen.app.workers.work_kit import UnpackedKit, WorkKit, models_in
-from lumen.app.workers.workers import Workers
 from lumen.insight.replay.entries import JournalJump, RecordedEntry
 from lumen.insight.replay.replaying import replay
 from lumen.insight.replay.visits import RecordedVisit, visits
 from lumen.journal.journal_file import header_of
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
+from lumen.run.replaying.journals import ChosenJournal
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import VisitPlayer, with_machines
+from lumen.run.replaying.replay_report import ReplayCount, ReplayReport, TakenAgain
+from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in
+from lumen.run.workers.workers import Workers
 
 VISITS = 20
 """How many visits are a task."""

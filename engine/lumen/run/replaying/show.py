@@ -2,14 +2,14 @@
 
 from collections.abc import Iterable
 
-from lumen.app.narrator import Narrator
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.setup import Setup
 from lumen.bus.memory import MemoryBus
 from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.insight.replay.replaying import Replayer
 from lumen.language.projects import Project
-from lumen.runtime.performer import Performer
+from lumen.run.narrator import Narrator
+from lumen.run.performer import Performer
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.setup import Setup
 
 LEAD_IN = 1.0
 """How long after its beginning a run that goes on is shown [s]."""

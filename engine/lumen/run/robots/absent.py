@@ -1,9 +1,9 @@
 """An exhibition without a robot."""
 
-from lumen.app.setup import RobotRequest, Setup
 from lumen.clock.real import RealClock
 from lumen.errors import UsageError
 from lumen.robot.none import NoRobot
+from lumen.run.setup import RobotRequest, Setup
 
 
 def set_up(request: RobotRequest) -> Setup:

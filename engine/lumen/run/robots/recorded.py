@@ -1,8 +1,8 @@
 """A robot that records the commands that it is given."""
 
-from lumen.app.setup import RobotRequest, Setup
 from lumen.clock.simulated import SimulatedClock
 from lumen.robot.recording import RecordingRobot
+from lumen.run.setup import RobotRequest, Setup
 
 
 def set_up(request: RobotRequest) -> Setup:

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from datetime import datetime, time, timedelta
 from typing import NamedTuple
 
-from lumen.app.replaying.journals import ChosenJournal, requested_time
-from lumen.app.replaying.kept_bundles import KeptBundles
-from lumen.app.replaying.other_files import with_machines
 from lumen.errors import UsageError
 from lumen.insight.replay.journal_clock import JournalClock
 from lumen.insight.replay.visits import RecordedVisit, visits
+from lumen.run.replaying.journals import ChosenJournal, requested_time
+from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.other_files import with_machines
 
 
 class ChosenVisit(NamedTuple):

@@ -4,14 +4,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.app.rehearsal import Rehearsal, rehearse
 from lumen.insight.replay.against import noticed
 from lumen.language.command_data import command_data
 from lumen.language.commands import Command, Play, Publish, Say, Start
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
+from lumen.run.rehearsal import Rehearsal, rehearse
 from lumen.statechart import Step
 from lumen.statechart.nesting import active_names, entered_names
 

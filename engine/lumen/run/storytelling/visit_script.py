@@ -23,7 +23,7 @@ from lumen.language.stories import (
 )
 from lumen.language.verbs import VERBS
 from lumen.project.added_verbs import usable_verbs
-from lumen.runtime.visitor import APPROACH_DISTANCE, SPEECH_ROUTE, VISITOR_SPEED
+from lumen.run.visitor import APPROACH_DISTANCE, SPEECH_ROUTE, VISITOR_SPEED
 from lumen.statechart.command_ids import result_of
 
 FACE_ROUTE = "face"

@@ -8,16 +8,16 @@ from itertools import product
 from math import ceil
 from typing import Any, NamedTuple
 
-from lumen.app.storytelling.rendition import Rendition, TickNotes, played, told
-from lumen.app.storytelling.visit_script import TimedAction, broken, results, script
 from lumen.errors import LumenError, UsageError
 from lumen.expressions.wall_clock import zone
 from lumen.insight.replay.visits import RecordedVisit
 from lumen.language.hours import WEEKDAYS, Schedule
 from lumen.language.projects import Project
 from lumen.language.stories import Expect, SetAutonomy, Story, StoryPause, StoryStep, VisitorAction
-from lumen.runtime.approvals import marked_transitions
-from lumen.runtime.loop import TICK_PERIOD
+from lumen.run.approvals import marked_transitions
+from lumen.run.loop import TICK_PERIOD
+from lumen.run.storytelling.rendition import Rendition, TickNotes, played, told
+from lumen.run.storytelling.visit_script import TimedAction, broken, results, script
 from lumen.statechart import Snapshot, deserialize, initial
 
 USUAL_WITHIN = 30.0

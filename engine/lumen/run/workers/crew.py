@@ -6,9 +6,9 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from itertools import chain, islice
 from typing import Any, NamedTuple, Protocol
 
-from lumen.app.workers.tasks import TaskHead, do_task
 from lumen.errors import WorkersError
 from lumen.language.counts import counted
+from lumen.run.workers.tasks import TaskHead, do_task
 
 IN_FLIGHT = 256
 """How many tasks are given away at once: what they carry is in memory, and a cluster may have as many workers."""

@@ -10,10 +10,10 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lumen.app.workers.work_kit import UnpackedKit
 from lumen.errors import WorkersError
 from lumen.project.engine_files import code_hash
 from lumen.project.memoization import memoize
+from lumen.run.workers.work_kit import UnpackedKit
 
 PACKAGES = ("lumen-robot", "mujoco", "dm-control", "numpy")
 """What outcomes depend on, beside Python."""

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from lumen.app.lint.findings import Findings
-from lumen.app.verdict import Verdict
+from lumen.run.linting.findings import Findings
+from lumen.run.verdict import Verdict
 
 
 def findings(found: Sequence[Findings], *, coloured: bool = False) -> str:

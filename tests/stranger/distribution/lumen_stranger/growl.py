@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lumen.language.gestures import WordTime
-from lumen.modules.audio_track import AudioTrack
+from lumen.run.audio_track import AudioTrack
 
 TIME_OF_A_LETTER = 0.1
 """[s]."""

@@ -1,9 +1,9 @@
 """A guest book: it keeps what visitors say, except what names a person who wants to be forgotten."""
 
-from lumen.app.parts.part import Part
-from lumen.app.services import Services
 from lumen.language.people import PersonName
-from lumen.runtime.loop import Observer
+from lumen.run.loop import Observer
+from lumen.run.parts.part import Part
+from lumen.run.services import Services
 from lumen.statechart import Step
 
 FORGOTTEN: list[PersonName] = []

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from lumen.modules.module import Module
 from lumen.ports import Message, MessageHandler
+from lumen.run.module import Module
 
 
 class Mood(Module):
