@@ -17,11 +17,11 @@ import listening
 import numpy as np
 
 import lumen
+from lumen.features.ears.expected import expected, heard_names
+from lumen.features.ears.resampling import resampled
+from lumen.features.ears.sphinx import Sphinx
+from lumen.features.voice.module import espeak
 from lumen.language.projects import Project
-from lumen.modules.ears.expected import expected, heard_names
-from lumen.modules.ears.resampling import resampled
-from lumen.modules.ears.sphinx import Sphinx
-from lumen.modules.voice import espeak
 from lumen.run.sound import Sound
 
 ENGLISH = {

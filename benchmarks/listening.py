@@ -21,16 +21,16 @@ from numpy.typing import NDArray
 import lumen
 from lumen.bus import connect
 from lumen.expressions.phrases import is_heard
+from lumen.features.ears.expected import HeardName, expected, heard_names
+from lumen.features.ears.module import Ears
+from lumen.features.ears.recogniser import Recogniser
+from lumen.features.ears.resampling import resampled
+from lumen.features.ears.shared_recogniser import shared_sphinx
+from lumen.features.ears.voice_activity import VoiceActivity
+from lumen.features.voice.module import espeak
 from lumen.language.machines import MachineDefinition
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project
-from lumen.modules.ears import Ears
-from lumen.modules.ears.expected import HeardName, expected, heard_names
-from lumen.modules.ears.recogniser import Recogniser
-from lumen.modules.ears.resampling import resampled
-from lumen.modules.ears.shared_recogniser import shared_sphinx
-from lumen.modules.ears.voice_activity import VoiceActivity
-from lumen.modules.voice import espeak
 from lumen.run.sound import Sound
 
 sys.path.insert(0, str(Path(__file__).parents[1]))

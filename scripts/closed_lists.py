@@ -37,7 +37,10 @@ ON_PURPOSE: Mapping[tuple[str, str], str] = {
     ("language/machines.py", "StateKind"): "the kinds of states that the algorithm of SCXML has",
     ("language/routes.py", "Carried"): "promises that every bus keeps; a new one would break the buses of packages",
     ("language/verbs.py", "VERBS"): "typed verbs of every robot (decision 119); packages have rows `verbs`",
-    ("lsp/names.py", "NameKind"): "the names in Lumen's own files; those in a package's rows come from its schemas",
+    (
+        "features/editor/names.py",
+        "NameKind",
+    ): "the names in Lumen's own files; those in a package's rows come from its schemas",
     ("robot/command_table.py", "COMMANDS"): "a union that mypy checks (decision 119); packages have rows `verbs`",
 }
 """Why a list stays closed, by its file and name."""

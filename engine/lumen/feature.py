@@ -222,7 +222,7 @@ class Subcommand(NamedTuple):
 class EditorRow(NamedTuple):
     """The answer of `lumen lsp` to a method of the Language Server Protocol.
 
-    `answer` is a function of the `LanguageServer` of `lumen.lsp.language_server` and the method's parameters. `options`
+    `answer` is a function of the `LanguageServer` of `lumen.features.editor.language_server` and the method's parameters. `options`
     names the value of `lsprotocol` that tells the editor more, such as the letters that begin a completion.
     """
 
@@ -351,7 +351,7 @@ class Feature(NamedTuple):
     buses: Mapping[str, BusRow] = {}
     senses: Mapping[str, SenseRow] = {}
     voices: Mapping[str, str] = {}
-    """For `lumen run --voice NAME`, the class: a `lumen.app.voice.RobotVoice`, made as `Speaker` there."""
+    """For `lumen run --voice NAME`, the class: a `lumen.features.voice.speaker.RobotVoice`, made as `Speaker` there."""
     forgets: tuple[str, ...] = ()
     """Functions and classes that forget a person (`lumen memory forget NAME`), while an exhibition runs.
 

@@ -8,7 +8,7 @@ from tests import ROOT
 from tests.scanning import matching
 
 ENGINE = ROOT / "engine/lumen"
-MAY = ("robots/naoqi/", "formats/", "rules/pages/")
+MAY = ("features/naoqi/", "formats/", "rules/pages/")
 """What speaks with NAOqi or reads files made for it, and examples of findings."""
 
 

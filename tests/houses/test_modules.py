@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from lumen.bus import connect
-from lumen.modules.ears.recogniser import Hypothesis
-from lumen.modules.ears.shared_recogniser import shared_sphinx
-from lumen.modules.ears.sphinx import Sphinx
+from lumen.features.ears.recogniser import Hypothesis
+from lumen.features.ears.shared_recogniser import shared_sphinx
+from lumen.features.ears.sphinx import Sphinx
 from lumen.run.sound import Sound
 from tests.houses.test_over_rabbitmq import Hall
 from tests.rabbitmq import RabbitMQ

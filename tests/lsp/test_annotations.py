@@ -1,12 +1,12 @@
 """What is shown between and behind the lines: lenses, hints, signatures, folds, links, and what is found by name."""
 
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.folding import folds
-from lumen.lsp.hints import hints
-from lumen.lsp.lenses import ACTIVE_NOW, PLAY_MOTION, RUN_STORY, active_places, lenses
-from lumen.lsp.links import links
-from lumen.lsp.signatures import signature
-from lumen.lsp.symbols import search
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.folding import folds
+from lumen.features.editor.hints import hints
+from lumen.features.editor.lenses import ACTIVE_NOW, PLAY_MOTION, RUN_STORY, active_places, lenses
+from lumen.features.editor.links import links
+from lumen.features.editor.signatures import signature
+from lumen.features.editor.symbols import search
 from lumen.project.files import read_files
 from tests import ROOT
 from tests.tables import for_each

@@ -3,11 +3,11 @@
 import pytest
 
 from lumen.errors import UsageError
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.completion import complete
-from lumen.lsp.hover import hover
-from lumen.lsp.renaming import renamable, rename
-from lumen.lsp.symbols import Symbol, symbols
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.completion import complete
+from lumen.features.editor.hover import hover
+from lumen.features.editor.renaming import renamable, rename
+from lumen.features.editor.symbols import Symbol, symbols
 from lumen.project.files import read_files
 from tests import ROOT
 from tests.tables import for_each

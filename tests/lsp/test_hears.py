@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import UsageError
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.completion import complete
-from lumen.lsp.definitions import definitions, uses
-from lumen.lsp.hover import hover
-from lumen.lsp.renaming import applied, renamable, rename
-from lumen.lsp.symbols import search
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.completion import complete
+from lumen.features.editor.definitions import definitions, uses
+from lumen.features.editor.hover import hover
+from lumen.features.editor.renaming import applied, renamable, rename
+from lumen.features.editor.symbols import search
 from lumen.project.common_words import COMMON_FILE, common_words
 from tests.tables import for_each
 

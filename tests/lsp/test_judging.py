@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from lumen.lsp.analysis import Analysis, Judgement
-from lumen.lsp.judging import Judge, JudgingQuestions
+from lumen.features.editor.analysis import Analysis, Judgement
+from lumen.features.editor.judging import Judge, JudgingQuestions
 from tests.waiting import HANG
 
 

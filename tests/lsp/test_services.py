@@ -9,14 +9,14 @@ import pytest
 from pygls.exceptions import JsonRpcContentModified
 
 from lumen.errors import UsageError
-from lumen.lsp.analysis import Analysis, Judgement
-from lumen.lsp.completion import complete
-from lumen.lsp.definitions import definitions, uses
-from lumen.lsp.features import changes
-from lumen.lsp.hover import hover
-from lumen.lsp.names import NameKind
-from lumen.lsp.renaming import applied, refuse_harm, renamable, rename
-from lumen.lsp.symbols import symbols
+from lumen.features.editor.analysis import Analysis, Judgement
+from lumen.features.editor.completion import complete
+from lumen.features.editor.definitions import definitions, uses
+from lumen.features.editor.hover import hover
+from lumen.features.editor.names import NameKind
+from lumen.features.editor.renaming import applied, refuse_harm, renamable, rename
+from lumen.features.editor.requests import changes
+from lumen.features.editor.symbols import symbols
 from lumen.project.files import read_files
 from tests import ROOT
 from tests.mutation.mutants import Nursery

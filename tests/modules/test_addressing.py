@@ -8,10 +8,10 @@ import pytest
 
 import lumen
 from lumen import statechart
+from lumen.features.ears.addressing import AFTER_FACE, AFTER_TOUCH, LEAD, NO_DISTANCE, Addressing
+from lumen.features.ears.module import Ears
 from lumen.language.commands import Leds, Start
 from lumen.language.events import Event
-from lumen.modules.ears import Ears
-from lumen.modules.ears.addressing import AFTER_FACE, AFTER_TOUCH, LEAD, NO_DISTANCE, Addressing
 from tests.modules.conftest import Stand, with_options
 from tests.modules.test_own_voice import SAY, Ear
 from tests.tables import for_each

@@ -10,16 +10,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import ModuleError
+from lumen.features.ears.bigrams import arpa
+from lumen.features.ears.expected import expected, heard_names
+from lumen.features.ears.module import Ears, Hypothesis
+from lumen.features.ears.resampling import resampled
+from lumen.features.ears.spelling import pronounced
+from lumen.features.ears.sphinx import MAX_MODELS, Sphinx
+from lumen.features.voice.module import espeak
 from lumen.insight.explaining.sayings import path_of
 from lumen.insight.explaining.sentences import explained, first_context
 from lumen.language.projects import Project
-from lumen.modules.ears import Ears, Hypothesis
-from lumen.modules.ears.bigrams import arpa
-from lumen.modules.ears.expected import expected, heard_names
-from lumen.modules.ears.resampling import resampled
-from lumen.modules.ears.spelling import pronounced
-from lumen.modules.ears.sphinx import MAX_MODELS, Sphinx
-from lumen.modules.voice import espeak
 from lumen.run.sound import Sound, sound_of
 from tests.modules.conftest import Stand
 from tests.tables import for_each

@@ -8,13 +8,13 @@ import pytest
 
 import lumen
 from lumen import statechart
+from lumen.features.ears.active_states import LOST_AFTER, ActiveStates
+from lumen.features.ears.expected import MAX_SENTENCES, STORY_WEIGHT, HeardName, expected, heard_names
+from lumen.features.ears.module import Ears
+from lumen.features.ears.recogniser import Hypothesis
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition, State
 from lumen.language.projects import Project
-from lumen.modules.ears import Ears
-from lumen.modules.ears.active_states import LOST_AFTER, ActiveStates
-from lumen.modules.ears.expected import MAX_SENTENCES, STORY_WEIGHT, HeardName, expected, heard_names
-from lumen.modules.ears.recogniser import Hypothesis
 from lumen.run.sound import Sound
 from lumen.statechart.nesting import active_names
 from lumen.talk.speech import TABLES, WORD_LISTS

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lumen.modules.ears import Ears, Recogniser
-from lumen.modules.ears.own_voice import ECHO, LONGEST, OwnVoice
-from lumen.modules.ears.voice_activity import VoiceActivity
-from lumen.modules.voice import espeak
+from lumen.features.ears.module import Ears, Recogniser
+from lumen.features.ears.own_voice import ECHO, LONGEST, OwnVoice
+from lumen.features.ears.voice_activity import VoiceActivity
+from lumen.features.voice.module import espeak
 from lumen.run.sound import Sound
 from tests.modules.conftest import Stand, with_options
 from tests.tables import for_each

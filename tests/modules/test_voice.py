@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.voice import Speaker, voiced
 from lumen.cli.main import main
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import ModuleError, UsageError
+from lumen.features.voice.module import Espeak, Voice, espeak
+from lumen.features.voice.speaker import Speaker, voiced
 from lumen.language.commands import Say, Volume
 from lumen.language.projects import Project
-from lumen.modules.voice import Espeak, Voice, espeak
 from lumen.robot.none import NoRobot
 from lumen.robots.simulation import SimulatedRobot
 from lumen.run.setup import Setup

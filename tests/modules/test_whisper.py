@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from lumen.errors import ModuleError
-from lumen.modules.ears import Ears, Hypothesis
-from lumen.modules.ears.whisper import FILES, Whisper
+from lumen.features.ears.module import Ears, Hypothesis
+from lumen.features.ears.whisper import FILES, Whisper
 from lumen.run.sound import Sound
 from tests.modules.conftest import Stand, with_options
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import qi
 
+from lumen.features.naoqi.naoqi_events import event_of
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.motion.projection import seen
 from lumen.robot.recording import FACE_HEIGHT_FRACTION, PODIUM_HEIGHT, TORSO_HEIGHT
-from lumen.robots.naoqi.naoqi_events import event_of
 from tests.naoqi.services import SERVICES, ALAudioDevice, ALMemory, ALSonar, ALVideoDevice
 from tests.naoqi.world import World
 

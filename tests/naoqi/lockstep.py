@@ -1,9 +1,9 @@
 """The adapter and the fake in one virtual time: nothing passes before every answer has arrived."""
 
+from lumen.features.naoqi.offers import NaoqiRobot
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Reading, Sense
-from lumen.robots.naoqi import NaoqiRobot
 from tests.naoqi.fake import FakeNao
 from tests.waiting import HANG, until
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import qi
 
-from lumen.robots.naoqi.hardware import CHARGE, CHARGING, INERTIAL, PLUGGED, device
+from lumen.features.naoqi.hardware import CHARGE, CHARGING, INERTIAL, PLUGGED, device
 from tests.naoqi.body_services import ALMotion, ALRobotPosture
 from tests.naoqi.times import Blocked
 from tests.naoqi.world import World

@@ -7,11 +7,11 @@ import time
 import pytest
 
 from lumen.errors import RobotError
+from lumen.features.naoqi.offers import NaoqiRobot
+from lumen.features.naoqi.session import address
 from lumen.language.commands import Say
 from lumen.language.projects import Project
 from lumen.ports import Perform
-from lumen.robots.naoqi import NaoqiRobot
-from lumen.robots.naoqi.session import address
 from tests.naoqi.conftest import Live
 from tests.naoqi.fake import FakeNao
 from tests.naoqi.lockstep import Lockstep

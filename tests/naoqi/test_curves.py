@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lumen.features.naoqi.curves import MAX_CURVE_ERROR, curves
 from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.motion.trajectories import Trajectory
-from lumen.robots.naoqi.curves import MAX_CURVE_ERROR, curves
 from tests.naoqi.joints import bezier
 
 

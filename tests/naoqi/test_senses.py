@@ -5,10 +5,10 @@ import logging
 import numpy as np
 import pytest
 
+from lumen.features.naoqi.hardware import FORCE_SENSORS, INERTIAL, device
 from lumen.language.commands import Posture
 from lumen.language.routes import Size
 from lumen.ports import Battery, Image, Joints, Sense, Tactile
-from lumen.robots.naoqi.hardware import FORCE_SENSORS, INERTIAL, device
 from tests.naoqi.conftest import Live
 from tests.naoqi.lockstep import Lockstep
 from tests.waiting import until

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lumen.robots.naoqi.hardware import hardware_of
+from lumen.features.naoqi.hardware import hardware_of
 from tests.naoqi.joints import Joints
 from tests.naoqi.times import Times
 

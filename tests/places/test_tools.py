@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.completion import complete
+from lumen.features.editor.definitions import definitions
+from lumen.features.editor.renaming import renamable, rename
 from lumen.insight.changes.projects import changes
 from lumen.insight.exploration import explore
 from lumen.lint import check_files
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.completion import complete
-from lumen.lsp.definitions import definitions
-from lumen.lsp.renaming import renamable, rename
 from lumen.statechart import Machine
 from tests import ROOT
 from tests.lsp.test_services import SHIPPED, TOUR, place

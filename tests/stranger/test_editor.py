@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from lumen.lsp.server import server
+from lumen.features.editor.server import server
 from tests import ROOT
 from tests.lsp.client import ENGINE, Client
 from tests.stranger.installing import Installed

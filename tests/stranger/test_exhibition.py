@@ -7,18 +7,18 @@ from types import SimpleNamespace
 import pytest
 
 import lumen
-from lumen.app.voice import speaker
 from lumen.cli.main import main
 from lumen.errors import ExpressionError, LumenError, UsageError
 from lumen.expressions import Scope, compile_expression
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.completion import complete
+from lumen.features.editor.hover import hover
+from lumen.features.editor.signatures import signature
+from lumen.features.voice.speaker import speaker
 from lumen.language.events import robot_events
 from lumen.language.routes import route_meanings
 from lumen.language.stories import Visitor
 from lumen.lint import check_files
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.completion import complete
-from lumen.lsp.hover import hover
-from lumen.lsp.signatures import signature
 from lumen.project.files import read_files
 from lumen.project.schema import load_schema
 from lumen.robot.bounded_robot import BoundedRobot

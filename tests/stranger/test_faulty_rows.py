@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.voice import AddedVoice
 from lumen.bus import connect
 from lumen.errors import ExpressionError, LumenError, Refused
 from lumen.expressions import Scope, compile_expression
 from lumen.feature import features, owner, resolve, table
+from lumen.features.voice.speaker import AddedVoice
 from lumen.language.people import PersonName
 from lumen.lint import check_files
 from lumen.lint.fixes import fixes

@@ -12,12 +12,12 @@ import pytest
 from lumen.app.fleet.house_keys import at_home
 from lumen.cli.main import main
 from lumen.feature import resolve
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.completion import complete
+from lumen.features.editor.hover import hover
 from lumen.insight.changes import changes, live
 from lumen.language.projects import Project
 from lumen.lint import check_files
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.completion import complete
-from lumen.lsp.hover import hover
 from lumen.project import memoization
 from lumen.project.files import read_files
 from lumen.run.reload.delta import DeltaDecoder, DeltaEncoder

@@ -273,7 +273,7 @@ def _heard(
     """
     with ExitStack() as stack:
         if setup and (options.voice != "none" or options.sound):
-            from lumen.app.voice import voiced  # few runs need espeak-ng
+            from lumen.features.voice.speaker import voiced  # few runs need espeak-ng
 
             language = language_of(one.project, options.language) or one.project.languages[0]
             stack.callback(voiced(setup, options.voice, options.sound, language, track))

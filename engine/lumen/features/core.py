@@ -192,7 +192,7 @@ FEATURE = Feature(
         "lint": Subcommand("report what is wrong in a project, and where", "lumen.cli.lint"),
         "explain": Subcommand("explain a lint code, with an example", "lumen.cli.explain"),
         "completion": Subcommand("print the completion script for bash, zsh or fish", "lumen.cli.completion"),
-        "lsp": Subcommand("run the language server for editors (LSP)", "lumen.cli.lsp"),
+        "lsp": Subcommand("run the language server for editors (LSP)", "lumen.features.editor.command"),
         "language": Subcommand("add a language to a project, or list what is missing in one", "lumen.cli.language"),
         "schema": Subcommand("print the JSON Schema of a kind of file, for editors", "lumen.cli.schema"),
         "upgrade": Subcommand("rewrite a project's files for the current vocabulary", "lumen.cli.upgrade"),

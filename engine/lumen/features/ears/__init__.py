@@ -2,4 +2,4 @@
 
 from lumen.feature import Feature, ModuleRow
 
-FEATURE = Feature(name="ears", modules={"ears": ModuleRow("lumen.modules.ears:Ears")})
+FEATURE = Feature(name="ears", modules={"ears": ModuleRow("lumen.features.ears.module:Ears")})

@@ -6,17 +6,17 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ModuleError
+from lumen.features.ears.active_states import ActiveStates
+from lumen.features.ears.addressing import NOBODY, SPEAKS, Addressing
+from lumen.features.ears.expected import HeardName, expected, heard_names
+from lumen.features.ears.own_voice import OwnVoice, Utterance
+from lumen.features.ears.recogniser import Hypothesis, Recogniser, hypotheses
+from lumen.features.ears.shared_recogniser import shared_sphinx
+from lumen.features.ears.voice_activity import VoiceActivity, voice_activity
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.iso_time import iso_time
 from lumen.language.modules import EARS, ModuleSettings
 from lumen.language.projects import Project
-from lumen.modules.ears.active_states import ActiveStates
-from lumen.modules.ears.addressing import NOBODY, SPEAKS, Addressing
-from lumen.modules.ears.expected import HeardName, expected, heard_names
-from lumen.modules.ears.own_voice import OwnVoice, Utterance
-from lumen.modules.ears.recogniser import Hypothesis, Recogniser, hypotheses
-from lumen.modules.ears.shared_recogniser import shared_sphinx
-from lumen.modules.ears.voice_activity import VoiceActivity, voice_activity
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.run.module import Module
 from lumen.run.sound import Sound, sound_of
@@ -181,6 +181,6 @@ def _recogniser(project: Project, options: Mapping[str, Any]) -> Recogniser:
     folder = options.get("whisper")
     if folder is None:
         return shared_sphinx()
-    from lumen.modules.ears.whisper import shared_whisper
+    from lumen.features.ears.whisper import shared_whisper
 
     return shared_whisper(Path(project.root) / folder, project.languages)

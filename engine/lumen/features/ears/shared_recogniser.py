@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable, Sequence
 from weakref import WeakValueDictionary
 
-from lumen.modules.ears.recogniser import Hypothesis, RankingRecogniser
+from lumen.features.ears.recogniser import Hypothesis, RankingRecogniser
 from lumen.run.sound import Sound
 
 _lock = threading.Lock()
@@ -35,6 +35,6 @@ class SharedRecogniser(RankingRecogniser):
 
 def shared_sphinx() -> SharedRecogniser:
     """PocketSphinx, as it comes with its package."""
-    from lumen.modules.ears.sphinx import Sphinx  # nobody who brings another needs it
+    from lumen.features.ears.sphinx import Sphinx  # nobody who brings another needs it
 
     return SharedRecogniser("sphinx", Sphinx)

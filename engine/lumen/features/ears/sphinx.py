@@ -9,10 +9,10 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ModuleError
-from lumen.modules.ears.bigrams import arpa
-from lumen.modules.ears.recogniser import Hypothesis, RankingRecogniser
-from lumen.modules.ears.resampling import resampled
-from lumen.modules.ears.spelling import pronounced
+from lumen.features.ears.bigrams import arpa
+from lumen.features.ears.recogniser import Hypothesis, RankingRecogniser
+from lumen.features.ears.resampling import resampled
+from lumen.features.ears.spelling import pronounced
 from lumen.run.sound import Sound
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lumen.modules.ears.resampling import resampled
+from lumen.features.ears.resampling import resampled
 from lumen.run.sound import Sound
 
 SAMPLE_RATE = 16_000

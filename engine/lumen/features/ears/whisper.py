@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.modules.ears.recogniser import Hypothesis, RankingRecogniser
-from lumen.modules.ears.resampling import resampled
-from lumen.modules.ears.shared_recogniser import SharedRecogniser
+from lumen.features.ears.recogniser import Hypothesis, RankingRecogniser
+from lumen.features.ears.resampling import resampled
+from lumen.features.ears.shared_recogniser import SharedRecogniser
 from lumen.run.sound import Sound
 
 INSTALL_WHISPER = "pip install 'lumen-robot[ears-whisper]'"

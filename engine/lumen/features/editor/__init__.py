@@ -2,7 +2,7 @@
 
 from lumen.feature import EditorRow, Feature
 
-_ANSWERS = "lumen.lsp.features"
+_ANSWERS = "lumen.features.editor.requests"
 
 FEATURE = Feature(
     name="editor",

@@ -5,10 +5,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from lumen.features.editor.broken_files import BrokenFile, KnownFindings, broken_files, follows, signature
+from lumen.features.editor.index import NameIndex
 from lumen.language.diagnostics import Diagnostic, gathered
 from lumen.lint import check_files
-from lumen.lsp.broken_files import BrokenFile, KnownFindings, broken_files, follows, signature
-from lumen.lsp.index import NameIndex
 from lumen.project.building import draft
 from lumen.project.common_words import COMMON, COMMON_FILE, common_words, is_shipped
 from lumen.project.document import Document

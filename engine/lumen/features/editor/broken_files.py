@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
+from lumen.features.editor.mending import MendedText, mended
 from lumen.language.diagnostics import Diagnostic, Severity
-from lumen.lsp.mending import MendedText, mended
 from lumen.project.files import Unreadable
 from lumen.project.project_folders import kind_of
 from lumen.project.yaml_reader import parse

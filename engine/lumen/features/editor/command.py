@@ -11,7 +11,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0 when the editor has said goodbye."""
-    from lumen.lsp.server import serve  # pygls takes 0.6 s
+    from lumen.features.editor.server import serve  # pygls takes 0.6 s
 
     serve()
     return 0

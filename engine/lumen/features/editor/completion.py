@@ -5,18 +5,18 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.expressions.function_table import functions
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.cursor import Cursor, cursor
+from lumen.features.editor.grammar import key_kind, value_kind
+from lumen.features.editor.heard_rows import ELSE, is_phrase, names_in, row_around, texts_in
+from lumen.features.editor.index import WORD_KINDS, NameIndex, stem
+from lumen.features.editor.names import NameKind
+from lumen.features.editor.schemas import keys_at, values_at
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import robot_events
 from lumen.language.routes import Route
 from lumen.lint.events import BUILT_IN_FAMILIES, hears
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.cursor import Cursor, cursor
-from lumen.lsp.grammar import key_kind, value_kind
-from lumen.lsp.heard_rows import ELSE, is_phrase, names_in, row_around, texts_in
-from lumen.lsp.index import WORD_KINDS, NameIndex, stem
-from lumen.lsp.names import NameKind
-from lumen.lsp.schemas import keys_at, values_at
 from lumen.project.lending import shipped_message
 from lumen.project.outline import THIS
 from lumen.project.project_folders import kind_of

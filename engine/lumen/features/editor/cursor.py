@@ -4,9 +4,9 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
+from lumen.features.editor.fragments import fragment
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
-from lumen.lsp.fragments import fragment
 from lumen.project.document import Document
 from lumen.project.yaml_reader import parse
 

@@ -1,7 +1,7 @@
 """Where a thing is made known, and everywhere it is named."""
 
+from lumen.features.editor.analysis import Analysis
 from lumen.language.diagnostics import Place
-from lumen.lsp.analysis import Analysis
 
 
 def definitions(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:

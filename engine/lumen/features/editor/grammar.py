@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from functools import lru_cache
 
+from lumen.features.editor.names import NameKind
 from lumen.language.diagnostics import NodePath
 from lumen.language.verbs import VERBS
-from lumen.lsp.names import NameKind
 from lumen.project.words import ANYHOW
 
 MAX_REMEMBERED_PATHS = 50_000

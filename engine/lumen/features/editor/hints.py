@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from lumen.features.editor.analysis import Analysis
 from lumen.language.diagnostics import Place
 from lumen.language.numbers import is_number
 from lumen.lint.timing import duration
-from lumen.lsp.analysis import Analysis
 from lumen.project.project_folders import kind_of
 
 

@@ -4,17 +4,17 @@ from collections.abc import Sequence
 from math import degrees
 from pathlib import PurePosixPath
 
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.heard_rows import is_phrase
+from lumen.features.editor.index import WORDS_SCOPE
+from lumen.features.editor.locating import key_at
+from lumen.features.editor.names import NameKind, NameUse, covers
+from lumen.features.editor.schemas import description_at
+from lumen.features.editor.sentences import of_patterns, of_phrase_at, of_row_at
 from lumen.language.counts import counted
 from lumen.language.diagnostics import Diagnostic
 from lumen.lint.codes import codes
 from lumen.lint.pages import page
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.heard_rows import is_phrase
-from lumen.lsp.index import WORDS_SCOPE
-from lumen.lsp.locating import key_at
-from lumen.lsp.names import NameKind, NameUse, covers
-from lumen.lsp.schemas import description_at
-from lumen.lsp.sentences import of_patterns, of_phrase_at, of_row_at
 from lumen.project.common_words import COMMON, COMMON_FILE
 from lumen.project.draft import ProjectDraft
 from lumen.project.project_folders import WORDS_FOLDER, kind_of

@@ -5,12 +5,12 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from typing import Any
 
+from lumen.features.editor.grammar import defines, key_kind, value_kind
+from lumen.features.editor.heard_rows import names_in
+from lumen.features.editor.locating import DocumentText, NameInText, in_expression, in_template
+from lumen.features.editor.names import BODY_KINDS, KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers
 from lumen.language.actions import context_key
 from lumen.language.diagnostics import NodePath, Place
-from lumen.lsp.grammar import defines, key_kind, value_kind
-from lumen.lsp.heard_rows import names_in
-from lumen.lsp.locating import DocumentText, NameInText, in_expression, in_template
-from lumen.lsp.names import BODY_KINDS, KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers
 from lumen.project.document import Document
 from lumen.project.document_report import DocumentReport
 from lumen.project.memoization import memoize

@@ -1,6 +1,6 @@
 """A project judged in a process of its own: Python runs one thread at a time, and no answer waits for findings.
 
-This file has both ends: the server's `Judge`, and `python -m lumen.lsp.judging`, which it runs.
+This file has both ends: the server's `Judge`, and `python -m lumen.features.editor.judging`, which it runs.
 """
 
 import asyncio
@@ -10,11 +10,11 @@ import traceback
 from functools import partial
 from queue import SimpleQueue
 
-from lumen.lsp.analysis import Analysis, Judgement
+from lumen.features.editor.analysis import Analysis, Judgement
 from lumen.upkeep.judge_process import AnswerPipe, JudgeProcess, NoAnswerError, answering
 from lumen.upkeep.threads import WatchedThread
 
-COMMAND = (sys.executable, "-P", "-m", "lumen.lsp.judging")
+COMMAND = (sys.executable, "-P", "-m", "lumen.features.editor.judging")
 """`-P`: no module is imported from the folder in which the editor started the server."""
 
 

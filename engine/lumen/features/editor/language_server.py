@@ -11,13 +11,13 @@ from pygls.lsp import server as pygls_server
 
 import lumen
 from lumen.errors import LumenError
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.judging import Judge
-from lumen.lsp.lenses import active_places
-from lumen.lsp.open_projects import OpenProjects, root_of
-from lumen.lsp.protocol import ProtocolEncoder
-from lumen.lsp.ranges import path_of
-from lumen.lsp.running import RunningExhibitions
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.judging import Judge
+from lumen.features.editor.lenses import active_places
+from lumen.features.editor.open_projects import OpenProjects, root_of
+from lumen.features.editor.protocol import ProtocolEncoder
+from lumen.features.editor.ranges import path_of
+from lumen.features.editor.running import RunningExhibitions
 from lumen.upkeep.threads import WatchedThread
 
 CHECK_DELAY = 0.02

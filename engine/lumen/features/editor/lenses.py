@@ -3,9 +3,9 @@
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.index import stem
 from lumen.language.diagnostics import Place
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.index import stem
 from lumen.project.project_folders import kind_of
 
 RUN_STORY, PLAY_MOTION, SHOW_PLACES = "lumen.runStory", "lumen.playMotion", "lumen.showPlaces"

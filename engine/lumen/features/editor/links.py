@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.names import KIND_FOLDERS, NameKind
 from lumen.language.diagnostics import Place
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.names import KIND_FOLDERS, NameKind
 from lumen.project.messages import SCHEMA_SUFFIX
 
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from lumen.errors import ExpressionError
 from lumen.expressions.tokens import Token, tokenize
+from lumen.features.editor.names import NameKind, covers
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.text_lines import LineIndex
-from lumen.lsp.names import NameKind, covers
 from lumen.project.document import Document
 
 _TEMPLATE = re.compile(r"\{\{(.*?)\}\}", re.DOTALL)

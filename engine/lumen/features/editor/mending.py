@@ -6,8 +6,8 @@ All other lines stay where they are, so that what is said of them is in the righ
 import re
 from typing import NamedTuple
 
+from lumen.features.editor.fragments import ancestors, block_end
 from lumen.language.text_lines import lines_of
-from lumen.lsp.fragments import ancestors, block_end
 from lumen.project.yaml_reader import parse
 
 MAX_CUTS = 8

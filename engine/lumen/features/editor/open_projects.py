@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.lsp.analysis import Analysis
+from lumen.features.editor.analysis import Analysis
 from lumen.project.files import composed, read_files
 from lumen.project.project_folders import MAIN_FILE, kind_of
 

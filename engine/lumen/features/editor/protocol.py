@@ -6,14 +6,14 @@ from pathlib import Path
 from lsprotocol import types as lsp
 from pygls.workspace import PositionCodec
 
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.completion import Item
+from lumen.features.editor.names import NameKind
+from lumen.features.editor.ranges import Ranges
+from lumen.features.editor.renaming import Renaming
+from lumen.features.editor.symbols import Symbol
 from lumen.language.diagnostics import Diagnostic, Place, Severity
 from lumen.lint.fixes import Edit, FileText
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.completion import Item
-from lumen.lsp.names import NameKind
-from lumen.lsp.ranges import Ranges
-from lumen.lsp.renaming import Renaming
-from lumen.lsp.symbols import Symbol
 
 LSP_SEVERITIES = {
     Severity.ERROR: lsp.DiagnosticSeverity.Error,

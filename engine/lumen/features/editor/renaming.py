@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from lumen.errors import UsageError
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.heard_rows import ELSE, WAYS
+from lumen.features.editor.index import WORD_KINDS
+from lumen.features.editor.names import KIND_FOLDERS, NameKind, NameUse
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.language.routes import route_meanings
 from lumen.lint.fixes import Edit, edited
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.heard_rows import ELSE, WAYS
-from lumen.lsp.index import WORD_KINDS
-from lumen.lsp.names import KIND_FOLDERS, NameKind, NameUse
 from lumen.talk.speech import TABLES, WORD_LISTS
 
 _NAMES = {

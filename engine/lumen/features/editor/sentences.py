@@ -4,12 +4,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import Any
 
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.index import stem
+from lumen.features.editor.locating import key_at
 from lumen.insight.explaining.words import shown
 from lumen.language.diagnostics import NodePath
 from lumen.language.machines import Hears, MachineDefinition
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.index import stem
-from lumen.lsp.locating import key_at
 from lumen.project.draft import ProjectDraft
 from lumen.project.project_folders import kind_of
 from lumen.talk.hearing import HEARD, hearing_of

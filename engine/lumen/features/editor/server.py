@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from lumen.feature import Feature, rows
-from lumen.lsp.language_server import LanguageServer
-from lumen.lsp.refusals import quiet
+from lumen.features.editor.language_server import LanguageServer
+from lumen.features.editor.refusals import quiet
 from lumen.project.broken_features import blamed, resolved
 
 SWITCH_INTERVAL = 0.001

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from lumen.expressions.function_table import fault_of, functions
 from lumen.feature import resolve, table
+from lumen.features.editor.analysis import Analysis
 from lumen.language.text_lines import lines_of
-from lumen.lsp.analysis import Analysis
 
 _OPEN = re.compile(r"(\w+)\s*\($")
 _TEXT = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"")

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.grammar import defines, key_kind
+from lumen.features.editor.names import NameKind, NameUse
 from lumen.language.diagnostics import Place
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.grammar import defines, key_kind
-from lumen.lsp.names import NameKind, NameUse
 from lumen.project.document import Document
 from lumen.project.project_folders import kind_of
 

@@ -9,8 +9,8 @@ FEATURE = Feature(
     extras=("naoqi",),
     robots={
         "naoqi": RobotRow(
-            "lumen.app.robots.real:set_up",
-            "lumen.app.robots.real:set_up_house",
+            "lumen.features.naoqi.set_up:set_up",
+            "lumen.features.naoqi.set_up:set_up_house",
             real_time=True,
             bounded=True,
             options=(URL,),

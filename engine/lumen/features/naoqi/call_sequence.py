@@ -6,7 +6,7 @@ from math import inf
 from typing import Any
 
 from lumen.errors import RobotError, RobotFailedError
-from lumen.robots.naoqi.session import NaoqiCall
+from lumen.features.naoqi.session import NaoqiCall
 
 CANCEL_TIMEOUT = 1.5
 """How long what was cancelled may go on [s]: a walk ends after the step in the air."""

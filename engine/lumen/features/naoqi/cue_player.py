@@ -1,10 +1,10 @@
 """What goes on beside the joints of a motion: lights, and the words and sounds that the exhibition performs."""
 
+from lumen.features.naoqi.lights import fades
+from lumen.features.naoqi.walks import PostCall
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.robot.cues import CueNotifier, EventSink
-from lumen.robots.naoqi.lights import fades
-from lumen.robots.naoqi.walks import PostCall
 
 
 class CuePlayer:

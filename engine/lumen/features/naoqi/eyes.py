@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Mapping
 
+from lumen.features.naoqi.lights import fades
+from lumen.features.naoqi.session import NaoqiCall
 from lumen.language.commands import Leds
 from lumen.language.lights import LIGHT_GROUPS, lights_of
 from lumen.language.robots import Body
 from lumen.ports import Perform, RobotCommand
-from lumen.robots.naoqi.lights import fades
-from lumen.robots.naoqi.session import NaoqiCall
 
 OURS_AFTER = 0.5
 """How long after eyes were lit they are ours at the soonest [s]: what lights them is on its way."""

@@ -4,6 +4,9 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 from lumen.errors import RobotError
+from lumen.features.naoqi.eyes import NaoqiEyes
+from lumen.features.naoqi.hardware import hardware_of
+from lumen.features.naoqi.session import NaoqiCall, NaoqiSession
 from lumen.language.body_parts import ARMS, HEAD, LEGS, VOICE, WHOLE_BODY
 from lumen.language.commands import Posture, Rest, Say, Wake
 from lumen.language.gestures import NO_GESTURES
@@ -14,9 +17,6 @@ from lumen.motion.life import vigour
 from lumen.ports import Live, RobotCommand
 from lumen.robot.command_table import speech_duration
 from lumen.robot.life_layer import LifeLayer
-from lumen.robots.naoqi.eyes import NaoqiEyes
-from lumen.robots.naoqi.hardware import hardware_of
-from lumen.robots.naoqi.session import NaoqiCall, NaoqiSession
 
 SEND_PERIOD = 0.1
 """How often it is sent where the joints are wanted [s]; NAOqi goes on evenly in between."""

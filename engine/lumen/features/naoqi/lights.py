@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 
+from lumen.features.naoqi.hardware import hardware_of
 from lumen.language.lights import rgb
 from lumen.language.robots import Body
-from lumen.robots.naoqi.hardware import hardware_of
 
 NAOQI_COLOURS: Mapping[object, int] = {
     "green": 0x00FF00, "orange": 0xFF6000, "purple": 0x8000FF, "pink": 0xFF4080, "turquoise": 0x20FFC0,

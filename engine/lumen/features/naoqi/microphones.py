@@ -4,12 +4,12 @@ from collections.abc import Callable
 from typing import Any
 
 from lumen.errors import RobotFailedError, SenseError
+from lumen.features.naoqi.call_sequence import CallSequence, CallSteps
+from lumen.features.naoqi.session import NaoqiCall, NaoqiSession
 from lumen.language.events import RECORDED, Event
 from lumen.ports import Record
 from lumen.robot.cues import EventSink
 from lumen.robot.sense_codec import RECORDING_RATE, recording_body
-from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
-from lumen.robots.naoqi.session import NaoqiCall, NaoqiSession
 
 AUDIO_DEVICE, MICROPHONE_SERVICE = "ALAudioDevice", "LumenMicrophones"
 FRONT_MICROPHONE, INTERLEAVED = 3, 0

@@ -3,17 +3,17 @@
 from collections.abc import Callable, Collection, Mapping, Sequence
 
 from lumen.errors import RobotRefusedError
+from lumen.features.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
+from lumen.features.naoqi.cue_player import CuePlayer
+from lumen.features.naoqi.curves import curves
+from lumen.features.naoqi.session import NaoqiCall
+from lumen.features.naoqi.walks import PostCall, grounded
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.motion.postures import UPRIGHT
 from lumen.motion.trajectories import JointTrack, Trajectory
 from lumen.robot.cues import EventSink
 from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from, home_angles, way_duration
-from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
-from lumen.robots.naoqi.cue_player import CuePlayer
-from lumen.robots.naoqi.curves import curves
-from lumen.robots.naoqi.session import NaoqiCall
-from lumen.robots.naoqi.walks import PostCall, grounded
 
 START_POSTURE_TOLERANCE = 0.1
 """Legs that are nearer than this to the posture that a motion begins in need no way there [rad]."""

@@ -7,9 +7,9 @@ from functools import partial
 from typing import Any
 
 from lumen.errors import RobotError
+from lumen.features.naoqi.session import NaoqiSession
 from lumen.language.events import Event
 from lumen.ports import Tactile
-from lumen.robots.naoqi.session import NaoqiSession
 
 FALLEN = "robotHasFallen"
 FALLING = ("robotIsFalling", "ALMotion/RobotIsFalling")

@@ -5,9 +5,9 @@ import re
 from collections.abc import Sequence
 
 from lumen.errors import RobotError, RobotModelError, RobotUnreachableError
+from lumen.features.naoqi.session import NaoqiSession
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.robots import Body
-from lumen.robots.naoqi.session import NaoqiSession
 
 REQUIRED_SERVICES = ("ALMotion", "ALRobotPosture", "ALMemory")
 OPTIONAL_SERVICES = {

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from lumen.errors import RobotError
-from lumen.robots.naoqi.session import NaoqiSession
+from lumen.features.naoqi.session import NaoqiSession
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 10.0

@@ -3,6 +3,17 @@
 from collections.abc import Callable, Sequence
 
 from lumen.errors import RobotLostError
+from lumen.features.naoqi.call_sequence import CallSequence
+from lumen.features.naoqi.hardware import hardware_of
+from lumen.features.naoqi.life import NaoqiLife
+from lumen.features.naoqi.naoqi_events import FALLEN, FALLING, FULL, HealthAlerts, NaoqiEvents
+from lumen.features.naoqi.preparing import halt, prepare
+from lumen.features.naoqi.reconnector import Reconnector
+from lumen.features.naoqi.sense_poller import SensePoller
+from lumen.features.naoqi.sensors import NaoqiSensors
+from lumen.features.naoqi.session import CALL_TIMEOUT, CONNECTION_LOST, NaoqiCall, NaoqiSession
+from lumen.features.naoqi.skills import NaoqiSkills
+from lumen.features.naoqi.walking_area import WalkingArea
 from lumen.language.body_parts import part_of
 from lumen.language.events import Event
 from lumen.language.projects import Stage
@@ -13,17 +24,6 @@ from lumen.robot.command_bounds import CommandBounds
 from lumen.robot.command_table import parts_of
 from lumen.robot.executor import ExecutingRobot, Executor
 from lumen.robot.skill_runner import SkillRunner
-from lumen.robots.naoqi.call_sequence import CallSequence
-from lumen.robots.naoqi.hardware import hardware_of
-from lumen.robots.naoqi.life import NaoqiLife
-from lumen.robots.naoqi.naoqi_events import FALLEN, FALLING, FULL, HealthAlerts, NaoqiEvents
-from lumen.robots.naoqi.preparing import halt, prepare
-from lumen.robots.naoqi.reconnector import Reconnector
-from lumen.robots.naoqi.sense_poller import SensePoller
-from lumen.robots.naoqi.sensors import NaoqiSensors
-from lumen.robots.naoqi.session import CALL_TIMEOUT, CONNECTION_LOST, NaoqiCall, NaoqiSession
-from lumen.robots.naoqi.skills import NaoqiSkills
-from lumen.robots.naoqi.walking_area import WalkingArea
 
 
 class NaoqiRobot(ExecutingRobot):

@@ -5,8 +5,8 @@ import threading
 from collections.abc import Callable
 
 from lumen.errors import RobotError
+from lumen.features.naoqi.session import CONNECTION_LOST, NaoqiSession
 from lumen.ports import Reading
-from lumen.robots.naoqi.session import CONNECTION_LOST, NaoqiSession
 from lumen.upkeep.threads import WatchedThread
 
 SENSE_RETRY_DELAY = 1.0

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import RobotError, SenseError
+from lumen.features.naoqi.hardware import CHARGE, CHARGING, INERTIAL, PLUGGED, device, hardware_of
+from lumen.features.naoqi.session import NaoqiSession
 from lumen.language.robots import Body
 from lumen.language.routes import BATTERY, IMAGE, JOINT, SIZES, SONAR, TACTILE, Size
 from lumen.ports import Battery, Image, Joints, Reading, Sonar, Tactile, Whereabouts
-from lumen.robots.naoqi.hardware import CHARGE, CHARGING, INERTIAL, PLUGGED, device, hardware_of
-from lumen.robots.naoqi.session import NaoqiSession
 
 if TYPE_CHECKING:
     import numpy as np

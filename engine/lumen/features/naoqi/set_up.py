@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from lumen.clock.real import RealClock
 from lumen.errors import UsageError
-from lumen.robots.naoqi import NaoqiRobot, PhysicalHall
+from lumen.features.naoqi.offers import NaoqiRobot, PhysicalHall
 from lumen.run.setup import RobotRequest, Setup
 
 NAO = "nao.local"

@@ -6,21 +6,21 @@ from math import inf
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotFailedError, RobotRefusedError
+from lumen.features.naoqi.call_sequence import CallSequence, CallSteps
+from lumen.features.naoqi.hardware import hardware_of
+from lumen.features.naoqi.lights import fades
+from lumen.features.naoqi.microphones import Microphones
+from lumen.features.naoqi.motion_player import MotionPlayer
+from lumen.features.naoqi.session import NaoqiSession
+from lumen.features.naoqi.speech import language_of, words
+from lumen.features.naoqi.walking_area import WalkingArea
+from lumen.features.naoqi.walks import NaoqiWalks
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.robots import Body
 from lumen.ports import Aim, Live, NativeCommand, Perform, Record
 from lumen.robot.command_table import parts_of
 from lumen.robot.cues import EventSink
 from lumen.robot.joint_ways import LOOK_SPEED
-from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps
-from lumen.robots.naoqi.hardware import hardware_of
-from lumen.robots.naoqi.lights import fades
-from lumen.robots.naoqi.microphones import Microphones
-from lumen.robots.naoqi.motion_player import MotionPlayer
-from lumen.robots.naoqi.session import NaoqiSession
-from lumen.robots.naoqi.speech import language_of, words
-from lumen.robots.naoqi.walking_area import WalkingArea
-from lumen.robots.naoqi.walks import NaoqiWalks
 
 LOOK_TOLERANCE = 0.03
 """A head that is nearer than this to where it should look is there [rad]."""

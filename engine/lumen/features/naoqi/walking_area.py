@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from math import cos, hypot, sin
 
 from lumen.errors import RobotRefusedError
+from lumen.features.naoqi.hardware import Hardware
 from lumen.language.projects import Stage
 from lumen.motion.dead_reckoning import DeadReckoning, turned
 from lumen.ports import Sonar, Whereabouts
 from lumen.robot.hazards import danger
-from lumen.robots.naoqi.hardware import Hardware
 
 FALL_DRIFT = 0.6
 """How far the robot may have slid while it fell and got up again [m], as the simulated one does."""

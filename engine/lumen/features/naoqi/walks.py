@@ -5,10 +5,10 @@ from math import hypot, isfinite
 from typing import Any
 
 from lumen.errors import BadCommandError, RobotError, RobotFailedError, RobotRefusedError
+from lumen.features.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
+from lumen.features.naoqi.session import NaoqiCall
+from lumen.features.naoqi.walking_area import MAX_STAGE_DRIFT, GroundPose, WalkingArea
 from lumen.language.commands import Move, Walk
-from lumen.robots.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
-from lumen.robots.naoqi.session import NaoqiCall
-from lumen.robots.naoqi.walking_area import MAX_STAGE_DRIFT, GroundPose, WalkingArea
 
 MAX_WALK_DISTANCE = 10.0
 """A walk farther than this [m] is a mistake."""

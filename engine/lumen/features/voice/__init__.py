@@ -4,6 +4,6 @@ from lumen.feature import Feature, ModuleRow
 
 FEATURE = Feature(
     name="voice",
-    modules={"voice": ModuleRow("lumen.modules.voice:Voice")},
-    voices={"espeak": "lumen.app.voice:Speaker"},
+    modules={"voice": ModuleRow("lumen.features.voice.module:Voice")},
+    voices={"espeak": "lumen.features.voice.speaker:Speaker"},
 )

@@ -12,9 +12,9 @@ from typing import IO, Protocol, TypeVar, runtime_checkable
 
 from lumen.errors import ModuleError, UsageError
 from lumen.feature import Feature, distribution_of, owner, table
+from lumen.features.voice.module import espeak
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.gestures import WordTime
-from lumen.modules.voice import espeak
 from lumen.ports import Robot
 from lumen.project.broken_features import called, faults_reported, need_made, shown
 from lumen.robot.bounded_robot import ability

@@ -4,10 +4,10 @@ import time
 from collections.abc import Callable, Mapping
 
 from lumen.errors import ModuleError
+from lumen.features.voice.espeak_voice import espeak
 from lumen.language.iso_time import iso_time
 from lumen.language.modules import VOICE
 from lumen.language.projects import Project
-from lumen.modules.voice.espeak import espeak
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.run.module import Module
 

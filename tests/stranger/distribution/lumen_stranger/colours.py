@@ -2,7 +2,7 @@
 
 from lsprotocol import types as lsp
 
-from lumen.lsp.language_server import LanguageServer
+from lumen.features.editor.language_server import LanguageServer
 
 OPTIONS = lsp.DocumentColorOptions(work_done_progress=False)
 

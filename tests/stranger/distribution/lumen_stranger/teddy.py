@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from lumen.app.voice import RobotVoice
+from lumen.features.voice.speaker import RobotVoice
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.stories import Visitor

@@ -2,8 +2,8 @@
 
 from lsprotocol import types as lsp
 
-from lumen.lsp import hints, lenses, signatures
-from lumen.lsp.language_server import LanguageServer
+from lumen.features.editor import hints, lenses, signatures
+from lumen.features.editor.language_server import LanguageServer
 
 CALLS = lsp.SignatureHelpOptions(trigger_characters=["(", ","])
 

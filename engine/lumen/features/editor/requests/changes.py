@@ -4,10 +4,10 @@ from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcContentModified, JsonRpcInvalidParams
 
 from lumen.errors import LumenError
+from lumen.features.editor import renaming
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.language_server import LanguageServer
 from lumen.lint.fixes import fixes
-from lumen.lsp import renaming
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.language_server import LanguageServer
 
 RENAMING = lsp.RenameOptions(prepare_provider=True)
 REPAIRS = lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from lsprotocol import types as lsp
 
-from lumen.lsp.language_server import LanguageServer
-from lumen.lsp.ranges import path_of
+from lumen.features.editor.language_server import LanguageServer
+from lumen.features.editor.ranges import path_of
 
 MAX_TOLD = 2_000
 """Characters of a process's last words that are shown."""

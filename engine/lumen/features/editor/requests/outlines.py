@@ -2,9 +2,9 @@
 
 from lsprotocol import types as lsp
 
-from lumen.lsp import folding, links, symbols
-from lumen.lsp.language_server import LanguageServer
-from lumen.lsp.protocol import icon
+from lumen.features.editor import folding, links, symbols
+from lumen.features.editor.language_server import LanguageServer
+from lumen.features.editor.protocol import icon
 
 MAX_FOUND_SYMBOLS = 300
 

@@ -5,9 +5,9 @@ from typing import Any
 
 from lsprotocol import types as lsp
 
-from lumen.lsp import completion, definitions, hover
-from lumen.lsp.analysis import Analysis
-from lumen.lsp.language_server import LanguageServer
+from lumen.features.editor import completion, definitions, hover
+from lumen.features.editor.analysis import Analysis
+from lumen.features.editor.language_server import LanguageServer
 
 TRIGGERS = lsp.CompletionOptions(trigger_characters=[".", "#", "'", "{", " ", ":", "|"])
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from lsprotocol import types as lsp
 
-from lumen.lsp.language_server import LanguageServer
-from lumen.lsp.ranges import path_of
+from lumen.features.editor.language_server import LanguageServer
+from lumen.features.editor.ranges import path_of
 
 
 def begun(server: LanguageServer, params: lsp.InitializedParams) -> None:
