@@ -69,8 +69,8 @@ def fuzzylite(head: Controller, points: int) -> One:
     """pyfuzzylite, from our own export."""
     import fuzzylite as fl
 
-    from lumen.formats.conversion_findings import dotted
-    from lumen.formats.fll import write_fll
+    from lumen.features.formats_fuzzy.fll import write_fll
+    from lumen.project.formats.conversion_findings import dotted
 
     text = write_fll(head, dotted("head"))[0].replace("Centroid 1000", f"Centroid {points}")
     engine = fl.FllImporter().from_string(text)

@@ -26,10 +26,10 @@ from tests.fuzzy.nao import TOP  # noqa: E402
 from tests.fuzzy.test_physics import cases, within_reach  # noqa: E402
 
 import lumen  # noqa: E402
-from lumen.formats.plots import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet, draw  # noqa: E402
 from lumen.language.projects import Project  # noqa: E402
 from lumen.language.stories import Visitor  # noqa: E402
 from lumen.motion.projection import Vector3, centring  # noqa: E402
+from lumen.project.formats.plots import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet, draw  # noqa: E402
 
 LATENCIES, TICKS, OFF = (0.0, 0.1, 0.2), (0.033, 0.1), (15.0, 8.0)
 FACE: Vector3 = (1.5, 0.2, 0.5)

@@ -4,8 +4,8 @@ import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from lumen.formats.importers import format_tables
-from lumen.formats.known import FormatTable, Known
+from lumen.project.formats.importers import format_tables
+from lumen.project.formats.known import FormatTable, Known
 
 PAGE = Path(__file__).parents[1] / "docs/formats.md"
 HEADING = "## Names that are read, listed, or without meaning\n"

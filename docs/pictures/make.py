@@ -26,7 +26,6 @@ from PIL import Image, ImageDraw, ImageFont
 
 import lumen
 from lumen.clock.simulated import SimulatedClock
-from lumen.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
 from lumen.fuzzy import Controller
 from lumen.language.commands import Posture, Walk
 from lumen.language.motions import MotionDefinition
@@ -34,6 +33,7 @@ from lumen.language.projects import Project
 from lumen.motion.trajectories import Trajectory
 from lumen.ports import Image as Frame
 from lumen.ports import Perform, Sense
+from lumen.project.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
 from lumen.project.lending import model_files
 from lumen.robots.simulation import SimulatedRobot, available
 from lumen.robots.simulation.rendering import RenderQuality, RenderState, SceneRenderer

@@ -237,8 +237,8 @@ EXPORTED_KINDS = ("behavior", "controller", "diagram", "project")
 class Importer(NamedTuple):
     """A kind of file of another tool that `lumen import` converts to one of ours.
 
-    `kind` is `behavior`, `controller` or `motion`. `read` names a `FileReader` of `lumen.formats.importers`, for a
-    motion a `MotionReader` of `lumen.formats.gestures`.
+    `kind` is `behavior`, `controller` or `motion`. `read` names a `FileReader` of `lumen.project.formats.importers`, for a
+    motion a `MotionReader` of `lumen.features.formats_motion.offers`.
     """
 
     kind: str

@@ -1,6 +1,6 @@
 """Find small changes to files of other tools that change neither the result nor the findings of `lumen import`.
 
-A change may be silent if its format's table (`format_tables` of `lumen.formats.importers`) lists the touched name as
+A change may be silent if its format's table (`format_tables` of `lumen.project.formats.importers`) lists the touched name as
 without meaning, or if the import had already listed that part of the file before the change.
 """
 
@@ -16,8 +16,8 @@ from random import Random
 from typing import NamedTuple
 
 from lumen.cli.main import main
-from lumen.formats.conversion_findings import LOST
-from lumen.formats.importers import format_tables
+from lumen.project.formats.conversion_findings import LOST
+from lumen.project.formats.importers import format_tables
 from tests import ROOT
 from tests.attack.changes import CHANGERS, Change, changed, normal
 from tests.attack.files import FOREIGN

@@ -4,8 +4,8 @@ from random import Random
 
 import pytest
 
-from lumen.formats.gestures import webots
-from lumen.formats.importers import format_tables
+from lumen.features.formats_motion import webots
+from lumen.project.formats.importers import format_tables
 from tests.attack.changes import CHANGERS, changed, normal
 from tests.attack.files import FOREIGN
 from tests.attack.silence import Importer, attack_imports, passes_silently, samples

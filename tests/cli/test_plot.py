@@ -11,9 +11,9 @@ from PIL import Image
 
 import lumen
 from lumen.cli.main import main
-from lumen.formats.plots import controller_sheet, draw, explained_sheet, motion_sheet
 from lumen.fuzzy import Controller
 from lumen.motion import Motion
+from lumen.project.formats.plots import controller_sheet, draw, explained_sheet, motion_sheet
 from tests.tables import for_each
 
 pytestmark = pytest.mark.rest  # dear

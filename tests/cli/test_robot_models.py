@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 
 from lumen.cli.importing import result_faults
 from lumen.cli.importing_robot import robot_body
-from lumen.formats.conversion_findings import ConversionFindings, ForeignFileError
-from lumen.formats.robot_models import begins_robot, read_robot
-from lumen.formats.robot_models.mjcf import mjcf_model
-from lumen.formats.xml_elements import parse_xml
+from lumen.features.formats_robots.mjcf import mjcf_model
+from lumen.features.formats_robots.offers import begins_robot, read_robot
+from lumen.project.formats.conversion_findings import ConversionFindings, ForeignFileError
+from lumen.project.formats.xml_elements import parse_xml
 from tests import ROOT
 from tests.tables import for_each
 

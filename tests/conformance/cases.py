@@ -12,9 +12,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from lumen.formats.conversion_findings import ForeignFileError
-from lumen.formats.scxml import read_scxml
+from lumen.features.formats_charts.scxml import read_scxml
 from lumen.language.diagnostics import Diagnostic, Severity
+from lumen.project.formats.conversion_findings import ForeignFileError
 from lumen.project.yaml_reader import parse
 from lumen.statechart import Event, Machine, Snapshot, Step, due, initial, step
 from tests.fetched import fetched

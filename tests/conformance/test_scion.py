@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from lumen.formats.conversion_findings import dotted
-from lumen.formats.scxml import read_scxml, write_scxml
-from lumen.formats.xstate import read_xstate, write_xstate
+from lumen.features.formats_charts.scxml import read_scxml, write_scxml
+from lumen.features.formats_charts.xstate import read_xstate, write_xstate
+from lumen.project.formats.conversion_findings import dotted
 from lumen.statechart import Machine
 from tests.conformance.__main__ import report
 from tests.conformance.cases import Case, cases, machine_of, play, run, table

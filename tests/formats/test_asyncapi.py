@@ -10,7 +10,7 @@ import yaml
 from jsonschema import Draft202012Validator
 
 from lumen.cli.main import main
-from lumen.formats.asyncapi import write_asyncapi
+from lumen.features.formats_routes.asyncapi import write_asyncapi
 from lumen.language.projects import Project
 from tests import ROOT
 from tests.exhibits import project

@@ -9,14 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.cli.main import main
-from lumen.formats.conversion_findings import ForeignFileError, dotted
-from lumen.formats.fcl import read_fcl
-from lumen.formats.fis import read_fis
-from lumen.formats.fll import read_fll, write_fll
-from lumen.formats.fll.infix_formulas import Trouble, read_formula, write_formula
+from lumen.features.formats_fuzzy.fcl import read_fcl
+from lumen.features.formats_fuzzy.fis import read_fis
+from lumen.features.formats_fuzzy.fll import read_fll, write_fll
+from lumen.features.formats_fuzzy.fll.infix_formulas import Trouble, read_formula, write_formula
 from lumen.fuzzy import Controller
 from lumen.fuzzy.arithmetic import NUMBERS
 from lumen.fuzzy.formulas import formula
+from lumen.project.formats.conversion_findings import ForeignFileError, dotted
 from tests.tables import for_each
 
 FIS = """[System]

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 
 import lumen
 from lumen.cli.main import main
-from lumen.formats.diagrams import dot_text, neighbourhood, overview, region, svg
-from lumen.formats.diagrams.diagram import Diagram
-from lumen.formats.diagrams.layering import GAP, Extent, layered
-from lumen.formats.diagrams.placing import ROW, PlacedBox, place, text_width
-from lumen.formats.diagrams.transition_rows import guard_phrase
+from lumen.features.formats_charts.diagrams import dot_text, neighbourhood, overview, region, svg
+from lumen.features.formats_charts.diagrams.diagram import Diagram
+from lumen.features.formats_charts.diagrams.layering import GAP, Extent, layered
+from lumen.features.formats_charts.diagrams.placing import ROW, PlacedBox, place, text_width
+from lumen.features.formats_charts.diagrams.transition_rows import guard_phrase
 from lumen.language.actions import Expression
 from lumen.language.machines import MachineDefinition
 from lumen.statechart import Machine

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from lumen.formats.fcl import read_fcl
+from lumen.features.formats_fuzzy.fcl import read_fcl
 from lumen.fuzzy import Controller
 from tests.tables import for_each
 

@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from lumen.formats.xstate import read_xstate
+from lumen.features.formats_charts.xstate import read_xstate
 from lumen.language.diagnostics import has_errors
 from lumen.statechart import Interpreter, Machine
 from tests.formats.test_xstate_runs import by_xstate

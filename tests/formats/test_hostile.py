@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import ProjectError
-from lumen.formats.conversion_findings import ForeignFileError
-from lumen.formats.scxml import read_scxml
-from lumen.formats.xstate import read_xstate
+from lumen.features.formats_charts.scxml import read_scxml
+from lumen.features.formats_charts.xstate import read_xstate
 from lumen.language.diagnostics import has_errors
+from lumen.project.formats.conversion_findings import ForeignFileError
 from lumen.statechart import Machine
 from tests.tables import for_each
 

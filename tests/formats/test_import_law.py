@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from lumen.cli.main import main
-from lumen.formats.xstate import read_xstate
+from lumen.features.formats_charts.xstate import read_xstate
 from lumen.fuzzy import Controller
 from lumen.motion import Motion
 from lumen.statechart import Machine

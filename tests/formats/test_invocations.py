@@ -5,13 +5,13 @@ from typing import Any
 
 import pytest
 
-from lumen.formats.conversion_findings import ForeignFileError, dotted
-from lumen.formats.dot import dot
-from lumen.formats.mermaid import mermaid
-from lumen.formats.scxml import read_scxml, write_scxml
-from lumen.formats.xstate import read_xstate, write_xstate
-from lumen.formats.yaml_document import document_yaml
+from lumen.features.formats_charts.dot import dot
+from lumen.features.formats_charts.mermaid import mermaid
+from lumen.features.formats_charts.scxml import read_scxml, write_scxml
+from lumen.features.formats_charts.xstate import read_xstate, write_xstate
 from lumen.language.diagnostics import has_errors
+from lumen.project.formats.conversion_findings import ForeignFileError, dotted
+from lumen.project.formats.yaml_document import document_yaml
 from lumen.statechart import Interpreter, Machine
 from tests.tables import for_each
 

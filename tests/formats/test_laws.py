@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 
-from lumen.formats.conversion_findings import dotted
-from lumen.formats.scxml import read_scxml, write_scxml
-from lumen.formats.xstate import read_xstate, write_xstate
-from lumen.formats.yaml_document import document_yaml
+from lumen.features.formats_charts.scxml import read_scxml, write_scxml
+from lumen.features.formats_charts.xstate import read_xstate, write_xstate
 from lumen.language.diagnostics import has_errors
+from lumen.project.formats.conversion_findings import dotted
+from lumen.project.formats.yaml_document import document_yaml
 from lumen.project.yaml_reader import parse
 from lumen.statechart import Machine
 from tests.formats.making import HAPPENINGS, charts, run

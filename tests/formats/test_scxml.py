@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from lumen.formats.conversion_findings import dotted
-from lumen.formats.scxml import read_scxml, write_scxml
+from lumen.features.formats_charts.scxml import read_scxml, write_scxml
+from lumen.project.formats.conversion_findings import dotted
 from lumen.statechart import Machine
 from tests.tables import for_each
 

@@ -8,9 +8,9 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 
-from lumen.formats.conversion_findings import dotted
-from lumen.formats.scxml import write_scxml
-from lumen.formats.scxml.namespaces import SCXML_NAMESPACE
+from lumen.features.formats_charts.scxml import write_scxml
+from lumen.features.formats_charts.scxml.namespaces import SCXML_NAMESPACE
+from lumen.project.formats.conversion_findings import dotted
 from lumen.statechart import Machine
 from tests import ROOT
 from tests.formats.making import charts

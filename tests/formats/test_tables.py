@@ -2,7 +2,7 @@
 
 from scripts.format_tables import PAGE, written
 
-from lumen.formats.importers import format_tables
+from lumen.project.formats.importers import format_tables
 from tests.tables import for_each
 
 

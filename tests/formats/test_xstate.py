@@ -3,8 +3,8 @@
 import json
 from typing import Any
 
-from lumen.formats.conversion_findings import dotted
-from lumen.formats.xstate import read_xstate, write_xstate
+from lumen.features.formats_charts.xstate import read_xstate, write_xstate
+from lumen.project.formats.conversion_findings import dotted
 from lumen.statechart import Machine, initial
 
 

@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from lumen.formats.conversion_findings import dotted
-from lumen.formats.xstate import write_xstate
+from lumen.features.formats_charts.xstate import write_xstate
+from lumen.project.formats.conversion_findings import dotted
 from lumen.statechart import Interpreter, Machine, VirtualClock
 from tests import ROOT
 from tests.fetched import fetched

@@ -16,8 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import LumenError
-from lumen.formats.conversion_findings import dotted
-from lumen.formats.fll import read_fll, write_fll
+from lumen.features.formats_fuzzy.fll import read_fll, write_fll
 from lumen.fuzzy import Controller
 from lumen.fuzzy.arithmetic import NUMBERS
 from lumen.fuzzy.hedges import hedged
@@ -33,6 +32,7 @@ from lumen.language.controllers import (
     TERM_PARAMETERS,
     Term,
 )
+from lumen.project.formats.conversion_findings import dotted
 from tests.scanning import matching
 from tests.tables import for_each
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
-from lumen.modules.memory import Store
+from lumen.features.visitors.module import Store
 from lumen.project.home import Home
 from lumen.robot.deduplication_log import DeduplicationLog
 from lumen.upkeep.private_folder import private_folder

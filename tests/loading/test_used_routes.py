@@ -8,7 +8,7 @@ import pytest
 import lumen
 from lumen.bus.aliases import aliases_of
 from lumen.bus.validated import by_key
-from lumen.formats.asyncapi import document
+from lumen.features.formats_routes.asyncapi import document
 from lumen.insight.changes.projects import changes
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.projects import Project

@@ -8,9 +8,8 @@ from typing import Any
 import pytest
 
 from lumen.errors import ProjectError
-from lumen.formats.conversion_findings import dotted
-from lumen.formats.scxml import read_scxml, write_scxml
-from lumen.formats.xstate import read_xstate, write_xstate
+from lumen.features.formats_charts.scxml import read_scxml, write_scxml
+from lumen.features.formats_charts.xstate import read_xstate, write_xstate
 from lumen.insight.changes import changes
 from lumen.insight.changes.change import Risk
 from lumen.language.diagnostics import has_errors
@@ -18,6 +17,7 @@ from lumen.lint import check_files
 from lumen.project import load
 from lumen.project.building import draft
 from lumen.project.files import read_files
+from lumen.project.formats.conversion_findings import dotted
 from lumen.statechart import Interpreter, Machine
 from tests import ROOT
 

@@ -16,12 +16,12 @@ from PIL import Image
 
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import ModuleError
+from lumen.features.eyes.detector import PersonDetector
+from lumen.features.eyes.gallery import FaceGallery
+from lumen.features.eyes.module import Eyes
 from lumen.language.modules import module_names
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.modules.eyes import Eyes
-from lumen.modules.eyes.detector import PersonDetector
-from lumen.modules.eyes.gallery import FaceGallery
 from lumen.ports import Sense
 from lumen.robots.simulation import SimulatedRobot
 from lumen.run.exhibition import Exhibition

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from lumen.bus import Bus
-from lumen.modules.memory import JournalEntry, Store
-from lumen.modules.memory.visit import SILENCE
+from lumen.features.visitors.module import JournalEntry, Store
+from lumen.features.visitors.visit import SILENCE
 from tests.modules.conftest import Stand
 from tests.modules.test_memory import FACT, JOURNAL, Calendar, entries, remembering, talk
 

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from lumen.bus import Bus
+from lumen.features.visitors.module import JournalEntry, Memory, Store
 from lumen.language.projects import Project
-from lumen.modules.memory import JournalEntry, Memory, Store
 from tests.modules.conftest import Stand, with_options
 from tests.waiting import until
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from lumen.modules import social
-from lumen.modules.social import Social
+from lumen.features.social import module as social
+from lumen.features.social.module import Social
 from tests.modules.conftest import Stand
 
 Make = Callable[..., Stand]

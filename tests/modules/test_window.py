@@ -13,10 +13,10 @@ import pytest
 from PIL import Image
 
 from lumen.errors import ModuleError
-from lumen.modules.eyes import Eyes
-from lumen.modules.eyes.detector import Box
-from lumen.modules.eyes.window import Window
-from lumen.modules.eyes.window_server import MAX_CONNECTIONS, WindowPage
+from lumen.features.eyes.detector import Box
+from lumen.features.eyes.module import Eyes
+from lumen.features.eyes.window import Window
+from lumen.features.eyes.window_server import MAX_CONNECTIONS, WindowPage
 from tests.modules.conftest import Stand, with_options
 from tests.modules.test_eyes import body, photographed
 from tests.waiting import HANG, until

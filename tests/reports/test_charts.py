@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from lumen.errors import LumenError
-from lumen.formats.conversion_findings import ForeignFileError, dotted
-from lumen.formats.scxml import read_scxml, write_scxml
-from lumen.formats.scxml.known import ATTRIBUTES, ELEMENTS
-from lumen.formats.xstate import read_xstate
+from lumen.features.formats_charts.scxml import read_scxml, write_scxml
+from lumen.features.formats_charts.scxml.known import ATTRIBUTES, ELEMENTS
+from lumen.features.formats_charts.xstate import read_xstate
 from lumen.language.diagnostics import Diagnostic, has_errors, nearest
 from lumen.lint import check_files
+from lumen.project.formats.conversion_findings import ForeignFileError, dotted
 from lumen.project.yaml_reader import parse
 from lumen.statechart import Interpreter, Machine
 from tests.tables import for_each

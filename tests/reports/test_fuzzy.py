@@ -7,15 +7,15 @@ from typing import Any
 import pytest
 import yaml
 
-from lumen.formats.conversion_findings import LOST
-from lumen.formats.fcl import read_fcl
-from lumen.formats.fis import read_fis
-from lumen.formats.fll import read_fll
+from lumen.features.formats_fuzzy.fcl import read_fcl
+from lumen.features.formats_fuzzy.fis import read_fis
+from lumen.features.formats_fuzzy.fll import read_fll
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import Diagnostic
 from lumen.lint import rulebooks
 from lumen.project.controllers import build_controller
 from lumen.project.document_report import DocumentReport
+from lumen.project.formats.conversion_findings import LOST
 from lumen.project.schema import check_schema
 from lumen.project.yaml_reader import parse
 from tests.tables import for_each

@@ -11,9 +11,8 @@ import yaml
 
 import lumen
 from lumen.cli.main import main
-from lumen.formats.conversion_findings import LOST, ForeignFileError
-from lumen.formats.gestures import read_gesture
-from lumen.formats.robot_models import read_robot
+from lumen.features.formats_motion.offers import read_gesture
+from lumen.features.formats_robots.offers import read_robot
 from lumen.language.commands import Look, Wake
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event
@@ -29,6 +28,7 @@ from lumen.motion.limits import beyond_limits, overspeed
 from lumen.ports import Aim, Perform, RobotCommand, Sense
 from lumen.project.bodies import build_body
 from lumen.project.document_report import DocumentReport
+from lumen.project.formats.conversion_findings import LOST, ForeignFileError
 from lumen.project.motions import build_motion
 from lumen.project.packaged import shipped_root
 from lumen.project.schema import check_schema

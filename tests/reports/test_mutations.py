@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import lumen
-from lumen.formats.conversion_findings import ForeignFileError
-from lumen.formats.fcl import read_fcl
-from lumen.formats.fis import read_fis
-from lumen.formats.fll import read_fll
-from lumen.formats.gestures import read_gesture
-from lumen.formats.robot_models import read_robot
+from lumen.features.formats_fuzzy.fcl import read_fcl
+from lumen.features.formats_fuzzy.fis import read_fis
+from lumen.features.formats_fuzzy.fll import read_fll
+from lumen.features.formats_motion.offers import read_gesture
+from lumen.features.formats_robots.offers import read_robot
+from lumen.project.formats.conversion_findings import ForeignFileError
 from lumen.project.packaged import shipped_root
 from tests.tables import for_each
 

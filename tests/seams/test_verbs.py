@@ -9,7 +9,6 @@ import pytest
 
 from lumen.bus.memory import MemoryBus
 from lumen.feature import table
-from lumen.formats.behavior_data import plain_action
 from lumen.insight.changes.actions import described
 from lumen.language.actions import Action, ComputedAction
 from lumen.language.body_parts import PARTS
@@ -54,6 +53,7 @@ from lumen.ports import (
     Whereabouts,
 )
 from lumen.project.actions import COMPUTED_READERS
+from lumen.project.formats.behavior_data import plain_action
 from lumen.project.schema import load_schema
 from lumen.robot.command_codec import decode_command, encode_command
 from lumen.robot.command_table import COMMANDS, row_of

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.app.film_progress import FilmProgress
+from lumen.features.film.progress import FilmProgress
 from lumen.language.stories import Visitor
 from lumen.robots.simulation import SimulatedRobot
 from lumen.robots.simulation.film import Film

@@ -1,6 +1,6 @@
 """Diagrams: every state and arrow, in words that Mermaid 11 reads."""
 
-from lumen.formats.mermaid import mermaid
+from lumen.features.formats_charts.mermaid import mermaid
 from lumen.statechart import Machine
 
 CHART = {

@@ -4,8 +4,8 @@ from math import pi
 
 import pytest
 
-from lumen.formats.behavior_data import plain_action
 from lumen.language.commands import Move, Start, Walk
+from lumen.project.formats.behavior_data import plain_action
 from lumen.robot.recording import RecordingRobot
 from lumen.statechart import Interpreter, Machine, initial
 from tests.motions.making import nao

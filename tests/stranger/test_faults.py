@@ -231,7 +231,7 @@ def test_faulty_code_ends_with_a_sentence_that_names_its_package(
 
 MODULE = "from lumen.run.module import Module\n\n\nclass Mood(Module):\n    "
 CURVES = """
-from lumen.formats.gestures.joint_curves import CurvePoint
+from lumen.features.formats_motion.joint_curves import CurvePoint
 from lumen.language.diagnostics import Place
 """
 ROW = "modules={'mood': ModuleRow('faulty_code:Mood')}"

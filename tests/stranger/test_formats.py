@@ -6,7 +6,7 @@ import pytest
 from scripts.format_tables import written
 
 from lumen.cli.main import main
-from lumen.formats.importers import endings, format_tables
+from lumen.project.formats.importers import endings, format_tables
 from lumen.statechart import Machine
 from tests import ROOT
 from tests.stranger.installing import Installed, Lumen

@@ -10,7 +10,6 @@ from written_distribution import on_path, write_distribution
 from lumen.cli.main import main
 from lumen.console.entry_words import told_of
 from lumen.features.editor.schemas import description_at, keys_at, values_at
-from lumen.formats.behavior_data import plain_action
 from lumen.insight.changes.actions import described
 from lumen.insight.explaining.words import of_deed
 from lumen.language.actions import Action
@@ -20,6 +19,7 @@ from lumen.language.events import RESULT, Event
 from lumen.lint import check_files
 from lumen.project.added_verbs import time_taken
 from lumen.project.files import read_files
+from lumen.project.formats.behavior_data import plain_action
 from lumen.project.schema import load_schema
 from lumen.statechart import Machine, deserialize, initial, serialize, step
 from tests.stranger_verbs.conftest import HERE

@@ -7,11 +7,11 @@ from typing import Any
 
 from lumen.cli.render.terminal_text import SEVERITY_COLOURS
 from lumen.cli.terminal import coloured, paint
-from lumen.formats.conversion_findings import CODE_MEANINGS
 from lumen.language.text_lines import lines_of
 from lumen.lint.codes import codes, families
 from lumen.lint.pages import Example, Page, page
 from lumen.lint.selection import selected
+from lumen.project.formats.conversion_findings import CODE_MEANINGS
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

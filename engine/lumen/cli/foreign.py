@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.formats.conversion_findings import MAX_FILE_BYTES
 from lumen.language.diagnostics import Diagnostic
+from lumen.project.formats.conversion_findings import MAX_FILE_BYTES
 from lumen.upkeep.regular_files import read_regular
 
 

@@ -10,9 +10,9 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.cli.projects import shown_project
 from lumen.cli.writing import write_file
 from lumen.errors import UsageError
-from lumen.formats.diagrams import dot_text, neighbourhood, overview, region, svg
-from lumen.formats.diagrams.diagram import Diagram
-from lumen.formats.mermaid import mermaid
+from lumen.features.formats_charts.diagrams import dot_text, neighbourhood, overview, region, svg
+from lumen.features.formats_charts.diagrams.diagram import Diagram
+from lumen.features.formats_charts.mermaid import mermaid
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition
 

@@ -15,11 +15,8 @@ from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
 from lumen.feature import distribution_of, rows
-from lumen.formats.conversion_findings import ForeignFileError
-from lumen.formats.gestures import choregraphe_list, read_gesture
-from lumen.formats.importers import FileReader, endings, importer, reader
-from lumen.formats.robot_models import begins_robot
-from lumen.formats.yaml_document import document_yaml
+from lumen.features.formats_motion.offers import choregraphe_list, read_gesture
+from lumen.features.formats_robots.offers import begins_robot
 from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.robots import Body
 from lumen.language.text_lines import lines_of
@@ -32,6 +29,9 @@ from lumen.project.controllers import build_controller
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import body_of
 from lumen.project.files import read_files
+from lumen.project.formats.conversion_findings import ForeignFileError
+from lumen.project.formats.importers import FileReader, endings, importer, reader
+from lumen.project.formats.yaml_document import document_yaml
 from lumen.project.motions import build_motion
 from lumen.project.packaged import find_project
 from lumen.project.schema import check_schema

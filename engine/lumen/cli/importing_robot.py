@@ -7,10 +7,10 @@ from pathlib import Path
 from lumen.cli.writing import write_file
 from lumen.errors import LumenError
 from lumen.extras import MissingExtraError
-from lumen.formats.conversion_findings import LOST
-from lumen.formats.robot_models import read_robot
-from lumen.formats.xml_elements import XmlElement, parse_xml
+from lumen.features.formats_robots.offers import read_robot
 from lumen.language.diagnostics import Diagnostic, Place, Severity
+from lumen.project.formats.conversion_findings import LOST
+from lumen.project.formats.xml_elements import XmlElement, parse_xml
 
 
 def robot_body(

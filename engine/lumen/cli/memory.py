@@ -10,12 +10,12 @@ from lumen.bus.addresses import within_process
 from lumen.cli.projects import shown_project
 from lumen.cli.reach import configure_robot_name
 from lumen.errors import BusUnreachableError, UsageError
+from lumen.features.visitors.memory import DATABASE_FILE
+from lumen.features.visitors.module import Store
 from lumen.language.counts import counted
 from lumen.language.iso_time import local_time
 from lumen.language.people import name_key
 from lumen.language.routing_keys import default_key
-from lumen.modules.memory import Store
-from lumen.modules.memory.memory import DATABASE_FILE
 from lumen.ports import Bus
 from lumen.project.building import draft, main_settings
 from lumen.project.files import read_files

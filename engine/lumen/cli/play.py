@@ -5,7 +5,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from lumen.cli.film_options import configure_size, film_path, film_size
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.imperfection_options import configure_imperfections, imperfections_of
@@ -13,9 +12,8 @@ from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import ProgressListener, progress
 from lumen.cli.projects import shown_project
 from lumen.errors import ProjectError, UsageError
-from lumen.formats.conversion_findings import ForeignFileError
-from lumen.formats.gestures import read_gesture
-from lumen.formats.importers import endings
+from lumen.features.film.options import configure_size, film_path, film_size
+from lumen.features.formats_motion.offers import read_gesture
 from lumen.language.commands import Posture
 from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.motions import MotionDefinition
@@ -28,6 +26,8 @@ from lumen.project.document import Document
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft, body_of
 from lumen.project.files import read_files
+from lumen.project.formats.conversion_findings import ForeignFileError
+from lumen.project.formats.importers import endings
 from lumen.project.motions import build_motion
 from lumen.project.schema import check_schema
 from lumen.run.loop import TICK_PERIOD

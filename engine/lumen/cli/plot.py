@@ -8,11 +8,11 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.cli.projects import shown_project
 from lumen.cli.writing import write_file
 from lumen.errors import UsageError
-from lumen.formats.plots import PLOT_ENDINGS, PlotSheet, controller_sheet, draw, explained_sheet, motion_sheet
 from lumen.fuzzy import Controller
 from lumen.language.diagnostics import did_you_mean
 from lumen.motion import Motion
 from lumen.project.files import on_disk
+from lumen.project.formats.plots import PLOT_ENDINGS, PlotSheet, controller_sheet, draw, explained_sheet, motion_sheet
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -7,7 +7,6 @@ from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 
 from lumen.bus.addresses import examples, within_process
-from lumen.cli.film_options import configure_size, film_path, film_progress, film_size
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.imperfection_options import configure_imperfections, set_up_robot
 from lumen.cli.main import ready
@@ -22,6 +21,7 @@ from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
 from lumen.errors import UsageError
 from lumen.feature import table
+from lumen.features.film.options import configure_size, film_path, film_progress, film_size
 from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.language.stories import Story
 from lumen.ports import Clock

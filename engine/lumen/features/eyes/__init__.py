@@ -2,4 +2,4 @@
 
 from lumen.feature import Feature, ModuleRow
 
-FEATURE = Feature(name="eyes", modules={"eyes": ModuleRow("lumen.modules.eyes:Eyes")})
+FEATURE = Feature(name="eyes", modules={"eyes": ModuleRow("lumen.features.eyes.module:Eyes")})

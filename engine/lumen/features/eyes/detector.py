@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import ModuleError
-from lumen.modules.eyes.opencv import INSTALL_EYES, opencv
+from lumen.features.eyes.opencv import INSTALL_EYES, opencv
 
 if TYPE_CHECKING:
-    from lumen.modules.eyes.pictures import Grey
+    from lumen.features.eyes.pictures import Grey
 
 FACE_CASCADE = "haarcascade_frontalface_alt.xml"
 """The stump-based Haar cascade of R. Lienhart: of those in the package it puts its box tightest around the face."""

@@ -7,15 +7,15 @@ from pathlib import Path
 from typing import Any, Self
 
 from lumen.errors import ModuleError
+from lumen.features.eyes.detector import Box, PersonDetector
+from lumen.features.eyes.gallery import MAX_PICTURES_PER_NAME, FaceGallery
+from lumen.features.eyes.pictures import Frame, frame_of
+from lumen.features.eyes.video import ROBOT_CAMERA, VideoSource
+from lumen.features.eyes.window import Window
 from lumen.language.modules import EYES
 from lumen.language.people import name_key
 from lumen.language.projects import Project
 from lumen.language.routes import IMAGE
-from lumen.modules.eyes.detector import Box, PersonDetector
-from lumen.modules.eyes.gallery import MAX_PICTURES_PER_NAME, FaceGallery
-from lumen.modules.eyes.pictures import Frame, frame_of
-from lumen.modules.eyes.video import ROBOT_CAMERA, VideoSource
-from lumen.modules.eyes.window import Window
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.run.module import DAY, KEEP_DAYS, Module
 

@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ModuleError
+from lumen.features.eyes.detector import Box
+from lumen.features.eyes.opencv import opencv
 from lumen.language.people import name_key
-from lumen.modules.eyes.detector import Box
-from lumen.modules.eyes.opencv import opencv
 from lumen.upkeep.private_folder import private_folder, write_private
 
 if TYPE_CHECKING:
-    from lumen.modules.eyes.pictures import Grey
+    from lumen.features.eyes.pictures import Grey
 
 FACE_SIZE = 96
 """Faces are compared at this width and height [px]."""

@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.modules.eyes.opencv import opencv
-from lumen.modules.eyes.pictures import Frame, check_size
+from lumen.features.eyes.opencv import opencv
+from lumen.features.eyes.pictures import Frame, check_size
 
 ROBOT_CAMERA = "robot"
 """The value of `camera` that stands for the robot's own."""

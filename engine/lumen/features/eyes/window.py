@@ -4,14 +4,14 @@ import threading
 from typing import TYPE_CHECKING
 
 from lumen.errors import ModuleError
-from lumen.modules.eyes.detector import Box
-from lumen.modules.eyes.opencv import opencv
-from lumen.modules.eyes.window_server import WindowServer
+from lumen.features.eyes.detector import Box
+from lumen.features.eyes.opencv import opencv
+from lumen.features.eyes.window_server import WindowServer
 from lumen.upkeep.threads import WatchedThread
 
 if TYPE_CHECKING:
-    from lumen.modules.eyes.pictures import Grey
-    from lumen.modules.eyes.window_server import WindowPage
+    from lumen.features.eyes.pictures import Grey
+    from lumen.features.eyes.window_server import WindowPage
 
 PART_BOUNDARY = "frame"
 FACE_COLOUR, PERSON_COLOUR, TEXT_COLOUR = (0, 200, 0), (200, 120, 0), (255, 255, 255)

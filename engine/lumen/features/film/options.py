@@ -5,9 +5,9 @@ import os
 import re
 from pathlib import Path
 
-from lumen.app.film_progress import FilmProgress
 from lumen.cli.streams import complain
 from lumen.errors import UsageError
+from lumen.features.film.progress import FilmProgress
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.run.rehearsal import rehearse

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from lumen.app.film_progress import FilmProgress
-from lumen.app.film_sound import add_sound
 from lumen.errors import UsageError
+from lumen.features.film.progress import FilmProgress
+from lumen.features.film.sound import add_sound
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
 from lumen.language.stories import Arrive, Leave, Speak, VisitorAction

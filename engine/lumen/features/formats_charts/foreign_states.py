@@ -5,7 +5,7 @@ from collections.abc import Container, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.formats.unused_names import unused_name
+from lumen.project.formats.unused_names import unused_name
 
 MAX_RENAMED = 1000
 """Ids of one file that may become the same text; the search for a free number takes longer with more."""

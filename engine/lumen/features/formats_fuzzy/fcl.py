@@ -11,16 +11,16 @@ from difflib import get_close_matches
 from math import inf
 from typing import Any, NamedTuple
 
-from lumen.formats.conversion_findings import ConversionFindings, broken
-from lumen.formats.encodings import text_of
-from lumen.formats.fcl_words import ACCUS, ACTS, ANDS, METHODS, NUMBER, ORS, function, reach, shape
-from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
-from lumen.formats.fll.fuzzylite_names import plain
-from lumen.formats.fll.infix_formulas import Trouble
-from lumen.formats.known import FormatTable, Known
+from lumen.features.formats_fuzzy.fcl_words import ACCUS, ACTS, ANDS, METHODS, NUMBER, ORS, function, reach, shape
+from lumen.features.formats_fuzzy.fll.controller_draft import ControllerDraft, operators, ranged
+from lumen.features.formats_fuzzy.fll.fuzzylite_names import plain
+from lumen.features.formats_fuzzy.fll.infix_formulas import Trouble
 from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.text_lines import LineIndex, lines_of
+from lumen.project.formats.conversion_findings import ConversionFindings, broken
+from lumen.project.formats.encodings import text_of
+from lumen.project.formats.known import FormatTable, Known
 from lumen.project.rule_parser import RuleWord
 
 _COMMENT = re.compile(r"(?P<open>\(\*|/\*)|//[^\n]*")

@@ -6,8 +6,8 @@ Of `AND` and `OR` one alone means its partner as well (IEC 61131-7, De Morgan; j
 import re
 from collections.abc import Mapping
 
-from lumen.formats.fll.fuzzylite_names import SHAPES
-from lumen.formats.fll.infix_formulas import Trouble, read_formula
+from lumen.features.formats_fuzzy.fll.fuzzylite_names import SHAPES
+from lumen.features.formats_fuzzy.fll.infix_formulas import Trouble, read_formula
 from lumen.language.controllers import TERM_PARAMETERS
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"

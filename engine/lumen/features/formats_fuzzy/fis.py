@@ -10,15 +10,15 @@ from collections.abc import Callable, Iterator, Mapping
 from math import isfinite, nan
 from typing import Any, NamedTuple
 
-from lumen.formats.conversion_findings import ConversionFindings, broken
-from lumen.formats.encodings import text_of
-from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
-from lumen.formats.fll.fuzzylite_names import plain, written
-from lumen.formats.known import FormatTable, Known
-from lumen.formats.set_formulas import set_formula
+from lumen.features.formats_fuzzy.fll.controller_draft import ControllerDraft, operators, ranged
+from lumen.features.formats_fuzzy.fll.fuzzylite_names import plain, written
+from lumen.features.formats_fuzzy.set_formulas import set_formula
 from lumen.language.controllers import WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place, did_you_mean
 from lumen.language.text_lines import lines_of
+from lumen.project.formats.conversion_findings import ConversionFindings, broken
+from lumen.project.formats.encodings import text_of
+from lumen.project.formats.known import FormatTable, Known
 from lumen.project.rule_parser import RuleSyntaxError, parse_rule
 
 _SECTION = re.compile(r"\[(System|Input|Output|Rules)\s*(\d*)\]", re.IGNORECASE)

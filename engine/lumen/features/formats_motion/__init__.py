@@ -5,13 +5,13 @@ from lumen.feature import Feature, Importer
 FEATURE = Feature(
     name="formats_motion",
     importers={
-        ".motion": Importer("motion", "lumen.formats.gestures.webots:read_webots"),
-        ".xar": Importer("motion", "lumen.formats.gestures.choregraphe:read_choregraphe"),
-        ".py": Importer("motion", "lumen.formats.gestures.naoqi:read_naoqi"),
+        ".motion": Importer("motion", "lumen.features.formats_motion.webots:read_webots"),
+        ".xar": Importer("motion", "lumen.features.formats_motion.choregraphe:read_choregraphe"),
+        ".py": Importer("motion", "lumen.features.formats_motion.naoqi:read_naoqi"),
     },
     format_tables={
-        "Webots' .motion": "lumen.formats.gestures.webots:KNOWN",
-        "Choregraphe's .xar": "lumen.formats.gestures.choregraphe:KNOWN",
-        "NAOqi's Python": "lumen.formats.gestures.naoqi_calls:KNOWN",
+        "Webots' .motion": "lumen.features.formats_motion.webots:KNOWN",
+        "Choregraphe's .xar": "lumen.features.formats_motion.choregraphe:KNOWN",
+        "NAOqi's Python": "lumen.features.formats_motion.naoqi_calls:KNOWN",
     },
 )

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
-from lumen.formats.gestures.literals import MAX_NUMBER
+from lumen.features.formats_motion.literals import MAX_NUMBER
 from lumen.language.diagnostics import Place
 
 BezierHandle = tuple[float, float]

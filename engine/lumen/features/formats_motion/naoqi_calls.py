@@ -5,7 +5,7 @@ The order of joints in a chain is ALMotion's ("Joints", "Effectors & Chains" of 
 
 from collections.abc import Mapping
 
-from lumen.formats.known import FormatTable, Known
+from lumen.project.formats.known import FormatTable, Known
 
 ALMOTION_CALLS = {
     "angleInterpolationBezier": ("names", "times", "keys"),

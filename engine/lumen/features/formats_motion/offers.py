@@ -3,13 +3,13 @@
 from pathlib import PurePath
 from typing import Any, Protocol
 
-from lumen.formats.conversion_findings import LOST, ConversionFindings, broken
-from lumen.formats.gestures.choregraphe import choregraphe_list
-from lumen.formats.gestures.joint_curves import JointCurves, MotionFile
-from lumen.formats.gestures.motion_writer import MotionWriter
-from lumen.formats.importers import reader
+from lumen.features.formats_motion.choregraphe import choregraphe_list
+from lumen.features.formats_motion.joint_curves import JointCurves, MotionFile
+from lumen.features.formats_motion.motion_writer import MotionWriter
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.robots import Body
+from lumen.project.formats.conversion_findings import LOST, ConversionFindings, broken
+from lumen.project.formats.importers import reader
 
 __all__ = ["MotionReader", "choregraphe_list", "read_gesture"]
 

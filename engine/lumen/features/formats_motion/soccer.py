@@ -5,11 +5,11 @@
 files hold.
 """
 
-from lumen.formats.conversion_findings import ConversionFindings, broken
-from lumen.formats.gestures.cells import Cell, cells_of
-from lumen.formats.gestures.joint_curves import CurvePoint, JointCurves, number
+from lumen.features.formats_motion.cells import Cell, cells_of
+from lumen.features.formats_motion.joint_curves import CurvePoint, JointCurves, number
 from lumen.language.counts import counted
 from lumen.language.diagnostics import Place
+from lumen.project.formats.conversion_findings import ConversionFindings, broken
 
 SOCCER_VERSION = "V1.1"
 POSE = "play"

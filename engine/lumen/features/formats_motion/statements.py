@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from enum import Enum
 from typing import NamedTuple
 
-from lumen.formats.gestures.naoqi_calls import ALMOTION_CALLS
+from lumen.features.formats_motion.naoqi_calls import ALMOTION_CALLS
 
 
 class Branch(Enum):

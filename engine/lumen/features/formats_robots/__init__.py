@@ -5,7 +5,7 @@ from lumen.feature import Feature
 FEATURE = Feature(
     name="formats_robots",
     format_tables={
-        "URDF": "lumen.formats.robot_models.urdf:KNOWN",
-        "MJCF": "lumen.formats.robot_models.mjcf_known:KNOWN",
+        "URDF": "lumen.features.formats_robots.urdf:KNOWN",
+        "MJCF": "lumen.features.formats_robots.mjcf_known:KNOWN",
     },
 )

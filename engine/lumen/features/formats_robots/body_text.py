@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from math import atan2, hypot, pi, tan
 
-from lumen.formats.robot_models.guessing import GuessedRoles
-from lumen.formats.robot_models.parts import ModelJoint, RobotModel
-from lumen.formats.yaml_document import SCHEMA_COMMENT
+from lumen.features.formats_robots.guessing import GuessedRoles
+from lumen.features.formats_robots.parts import ModelJoint, RobotModel
 from lumen.language.roles import ARM_ROLES, HEAD_ROLES, LEG_ROLES, SIDES
+from lumen.project.formats.yaml_document import SCHEMA_COMMENT
 
 GUESSED = "  # guessed"
 WIDTH, HEIGHT = 320, 240

@@ -4,9 +4,9 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.robot_models.parts import ModelCamera, ModelJoint, RobotModel
+from lumen.features.formats_robots.parts import ModelCamera, ModelJoint, RobotModel
 from lumen.language.roles import LEG_ROLES, SIDES
+from lumen.project.formats.conversion_findings import ConversionFindings
 
 _WORDS: Mapping[str, tuple[str, ...]] = {
     "head": ("head", "neck", "lowerneck", "upperneck"),

@@ -2,12 +2,10 @@
 
 from math import degrees, pi, radians
 
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.known_elements import tell_losses
-from lumen.formats.robot_models.mjcf_defaults import Defaults
-from lumen.formats.robot_models.mjcf_known import ACTUATORS, KNOWN
-from lumen.formats.robot_models.numbers import Numbers
-from lumen.formats.robot_models.orientation import (
+from lumen.features.formats_robots.mjcf_defaults import Defaults
+from lumen.features.formats_robots.mjcf_known import ACTUATORS, KNOWN
+from lumen.features.formats_robots.numbers import Numbers
+from lumen.features.formats_robots.orientation import (
     AXES,
     NestedFrame,
     Quaternion,
@@ -18,8 +16,10 @@ from lumen.formats.robot_models.orientation import (
     turn,
     unit,
 )
-from lumen.formats.robot_models.parts import ModelCamera, ModelJoint, RobotModel, follows
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_robots.parts import ModelCamera, ModelJoint, RobotModel, follows
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.known_elements import tell_losses
+from lumen.project.formats.xml_elements import XmlElement
 
 _ORIGIN = (0.0, 0.0, 0.0)
 SAME_ANGLE = 1e-3

@@ -1,7 +1,7 @@
 """The defaults of MJCF: what an element's class says that the element does not."""
 
-from lumen.formats.robot_models.mjcf_known import ACTUATORS
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_robots.mjcf_known import ACTUATORS
+from lumen.project.formats.xml_elements import XmlElement
 
 _MAIN = "main"
 

@@ -3,7 +3,7 @@
 The names are those of MuJoCo 3 (`mj_printSchema`): a name in no table is misspelt, and MuJoCo would refuse it.
 """
 
-from lumen.formats.known import FormatTable, Known
+from lumen.project.formats.known import FormatTable, Known
 
 _STAYS = "only MuJoCo uses it: it stays in the model"
 

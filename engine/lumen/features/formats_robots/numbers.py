@@ -2,9 +2,9 @@
 
 from math import isfinite
 
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.robot_models.orientation import Vector
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_robots.orientation import Vector
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.xml_elements import XmlElement
 
 
 class Numbers:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from lumen.formats.robot_models.orientation import Vector
+from lumen.features.formats_robots.orientation import Vector
 from lumen.language.diagnostics import Place
 
 

@@ -3,14 +3,14 @@
 import re
 from collections.abc import Sequence
 
-from lumen.formats.conversion_findings import LOST, ConversionFindings, broken
-from lumen.formats.robot_models.body_text import CIRCLE, body_text
-from lumen.formats.robot_models.guessing import guess_roles
-from lumen.formats.robot_models.mjcf import mjcf_model
-from lumen.formats.robot_models.parts import ModelJoint, RobotModel
-from lumen.formats.robot_models.urdf import urdf_model
-from lumen.formats.xml_elements import parse_xml
+from lumen.features.formats_robots.body_text import CIRCLE, body_text
+from lumen.features.formats_robots.guessing import guess_roles
+from lumen.features.formats_robots.mjcf import mjcf_model
+from lumen.features.formats_robots.parts import ModelJoint, RobotModel
+from lumen.features.formats_robots.urdf import urdf_model
 from lumen.language.diagnostics import Diagnostic
+from lumen.project.formats.conversion_findings import LOST, ConversionFindings, broken
+from lumen.project.formats.xml_elements import parse_xml
 
 _READERS = {"robot": urdf_model, "mujoco": mjcf_model}
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")

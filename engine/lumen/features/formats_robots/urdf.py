@@ -1,12 +1,12 @@
 """A robot of URDF (wiki.ros.org/urdf/XML): its joints. Transmissions and simulators' tags say nothing here."""
 
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.known import FormatTable, Known
-from lumen.formats.known_elements import tell_losses
-from lumen.formats.robot_models.numbers import Numbers
-from lumen.formats.robot_models.orientation import AXES, NestedFrame, Quaternion, euler, rotated
-from lumen.formats.robot_models.parts import ModelJoint, RobotModel, follows
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_robots.numbers import Numbers
+from lumen.features.formats_robots.orientation import AXES, NestedFrame, Quaternion, euler, rotated
+from lumen.features.formats_robots.parts import ModelJoint, RobotModel, follows
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.known import FormatTable, Known
+from lumen.project.formats.known_elements import tell_losses
+from lumen.project.formats.xml_elements import XmlElement
 
 _LOOKS = "only its appearance"
 _SIMULATOR = "a setting for another simulator"

@@ -4,5 +4,5 @@ from lumen.feature import Exporter, Feature
 
 FEATURE = Feature(
     name="formats_routes",
-    exporters={"asyncapi": Exporter("project", "lumen.formats.asyncapi:write_asyncapi")},
+    exporters={"asyncapi": Exporter("project", "lumen.features.formats_routes.asyncapi:write_asyncapi")},
 )

@@ -2,4 +2,4 @@
 
 from lumen.feature import Feature, ModuleRow
 
-FEATURE = Feature(name="social", modules={"social": ModuleRow("lumen.modules.social:Social")})
+FEATURE = Feature(name="social", modules={"social": ModuleRow("lumen.features.social.module:Social")})

@@ -2,4 +2,4 @@
 
 from lumen.feature import Feature, ModuleRow
 
-FEATURE = Feature(name="visitors", modules={"memory": ModuleRow("lumen.modules.memory:Memory")})
+FEATURE = Feature(name="visitors", modules={"memory": ModuleRow("lumen.features.visitors.module:Memory")})

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any, Self
 
 from lumen.errors import ModuleError
+from lumen.features.visitors.store import Forgotten, JournalEntry, Store
+from lumen.features.visitors.visit import JournalEnd, Visit
 from lumen.language.modules import MEMORY, VISITOR_KEY
 from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
-from lumen.modules.memory.store import Forgotten, JournalEntry, Store
-from lumen.modules.memory.visit import JournalEnd, Visit
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.run.module import DAY, KEEP_DAYS, Module
 

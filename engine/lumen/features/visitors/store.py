@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from lumen.errors import ModuleError
+from lumen.features.visitors.tables import NEWER_TABLES, check, prepare
+from lumen.features.visitors.visit import JournalEnd
 from lumen.language.iso_time import iso_time
 from lumen.language.people import PersonName, name_key
-from lumen.modules.memory.tables import NEWER_TABLES, check, prepare
-from lumen.modules.memory.visit import JournalEnd
 from lumen.upkeep.private_folder import private_folder
 
 LOCK_TIMEOUT = 0.5

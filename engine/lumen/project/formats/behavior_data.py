@@ -7,7 +7,6 @@ from typing import Any, assert_never
 from lumen.expressions import unparse
 from lumen.expressions.readings import as_written
 from lumen.expressions.tree import Literal
-from lumen.formats.durations import duration
 from lumen.language.actions import (
     Action,
     AskQuestion,
@@ -29,6 +28,7 @@ from lumen.language.actions import (
 from lumen.language.buttons import Button
 from lumen.language.machines import MachineDefinition
 from lumen.language.verbs import Quantity, verb_of
+from lumen.project.formats.durations import duration
 
 ActionData = dict[str, Any]
 """An action of a behaviour file: its verb, and what stands under it."""

@@ -3,8 +3,8 @@
 import re
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 
-from lumen.formats.conversion_findings import ConversionFindings
 from lumen.language.diagnostics import Place
+from lumen.project.formats.conversion_findings import ConversionFindings
 
 _LATIN_WORD = re.compile(rb"[A-Za-z][\x80-\xff]|[\x80-\xff][A-Za-z]")
 _CYRILLIC_WORD = re.compile(rb"[\xc0-\xff\xa8\xb8]{2,}")

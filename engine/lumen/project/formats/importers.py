@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from lumen.feature import Importer, distribution_of, owner, table
-from lumen.formats.known import FormatTable
 from lumen.language.diagnostics import Diagnostic
 from lumen.project.broken_features import faulty, resolved, shown
+from lumen.project.formats.known import FormatTable
 
 
 class FileReader(Protocol):

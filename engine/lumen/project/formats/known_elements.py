@@ -5,9 +5,9 @@ The key of an element in the table is `<Key>`; its entry names attributes, and e
 
 from collections.abc import Callable
 
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.known import FormatTable
-from lumen.formats.xml_elements import XmlElement
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.known import FormatTable
+from lumen.project.formats.xml_elements import XmlElement
 
 
 def tell_losses(

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from lumen.formats.conversion_findings import broken, check_size
 from lumen.language.diagnostics import Place
+from lumen.project.formats.conversion_findings import broken, check_size
 
 MAX_XML_LEVELS = 100
 """Elements inside each other."""

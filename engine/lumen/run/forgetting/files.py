@@ -11,6 +11,9 @@ from pathlib import Path
 from lumen.app.recording.recordings_folder import RecordingsFolder
 from lumen.app.recording.redaction import redacted
 from lumen.errors import JournalError, LumenError, ModuleError
+from lumen.features.eyes.eyes import FACES_FILE
+from lumen.features.visitors.memory import DATABASE_FILE
+from lumen.features.visitors.module import Store
 from lumen.formats.recordings.rewriting import rewrite
 from lumen.journal.forgotten_snapshots import forgetful_data
 from lumen.journal.journal_file import JOURNAL_SUFFIX, read_journal
@@ -18,9 +21,6 @@ from lumen.journal.journal_folder import JOURNAL_FOLDER, newest
 from lumen.journal.redaction import names, redact
 from lumen.language.counts import counted
 from lumen.language.people import PersonName, name_key
-from lumen.modules.eyes.eyes import FACES_FILE
-from lumen.modules.memory import Store
-from lumen.modules.memory.memory import DATABASE_FILE
 from lumen.project.home import Home
 from lumen.project.json_lines import forget_lines, line_names
 from lumen.run.forgetting.report import Forgetting, ForgottenPlace
@@ -78,7 +78,7 @@ def _database(file: Path, name: str, found: Forgetting) -> None:
 
 
 def _faces(file: Path, name: str, found: Forgetting) -> None:
-    from lumen.modules.eyes.gallery import FaceGallery  # OpenCV takes its time to import
+    from lumen.features.eyes.gallery import FaceGallery  # OpenCV takes its time to import
 
     if gone := FaceGallery(file, time.time).forget(name):
         found.pictures += gone

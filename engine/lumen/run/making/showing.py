@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumen.app.film_progress import FilmProgress
 from lumen.app.parts.console import ConsolePart
-from lumen.app.parts.film import FilmPart
+from lumen.features.film.part import FilmPart
+from lumen.features.film.progress import FilmProgress
 from lumen.run.audio_track import AudioTrack
 from lumen.run.making.serving import directory_of
 from lumen.run.services import Services

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from lumen.formats.conversion_findings import ConversionFindings, PlaceOfPath
-from lumen.formats.known import FormatTable, Known
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.machines import MachineDefinition
+from lumen.project.formats.conversion_findings import ConversionFindings, PlaceOfPath
+from lumen.project.formats.known import FormatTable, Known
 
 KNOWN: FormatTable = {"line": Known(frozenset(("state", "event")), lost={"comment": "comments are left out"})}
 

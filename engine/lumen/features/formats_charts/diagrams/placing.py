@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from lumen.formats.diagrams.diagram import Diagram, StateBox
-from lumen.formats.diagrams.layering import GAP, Extent, Point, layered
+from lumen.features.formats_charts.diagrams.diagram import Diagram, StateBox
+from lumen.features.formats_charts.diagrams.layering import GAP, Extent, Point, layered
 
 WIDEST, WAYS = 1260.0, 60.0
 """How wide a layer may be, and what each frame leaves to arrows [px], so that the whole is read on 1400."""

@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 
 from lumen.errors import UsageError
-from lumen.formats.diagrams.diagram import Diagram, StateBox
-from lumen.formats.diagrams.transition_rows import made, rows_of, short_name
+from lumen.features.formats_charts.diagrams.diagram import Diagram, StateBox
+from lumen.features.formats_charts.diagrams.transition_rows import made, rows_of, short_name
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.run.captions import invocation

@@ -4,10 +4,10 @@ Both are read into the tree of `lumen.expressions`, which holds the rest of ECMA
 calls of methods (`.trim`, the object being the first argument).
 """
 
-from lumen.formats.ecmascript.reader import ScriptNames, ScriptTranslator, read_condition, read_value
-from lumen.formats.ecmascript.script_parser import parse_script
-from lumen.formats.ecmascript.script_tokens import ScriptError
-from lumen.formats.ecmascript.writer import Vocabulary, WrittenScript, write_expression
+from lumen.features.formats_charts.ecmascript.reader import ScriptNames, ScriptTranslator, read_condition, read_value
+from lumen.features.formats_charts.ecmascript.script_parser import parse_script
+from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
+from lumen.features.formats_charts.ecmascript.writer import Vocabulary, WrittenScript, write_expression
 
 __all__ = [
     "ScriptError",

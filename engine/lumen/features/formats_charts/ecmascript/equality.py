@@ -12,10 +12,10 @@ from lumen.expressions.tree import (
     Unary,
     path_of,
 )
-from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND
-from lumen.formats.ecmascript.known_fields import is_data, negated
-from lumen.formats.ecmascript.script_tokens import ScriptError
-from lumen.formats.ecmascript.translation import Translation
+from lumen.features.formats_charts.ecmascript.kind_inference import UNKNOWN_KIND
+from lumen.features.formats_charts.ecmascript.known_fields import is_data, negated
+from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
+from lumen.features.formats_charts.ecmascript.translation import Translation
 
 EVENT, HAPPENED = Identifier("_event"), FunctionCall("has", (FieldAccess(Identifier("event"), "name"),))
 """An event as a whole, and that there is one: before the first `_event` is undefined (SCXML 5.10.1)."""

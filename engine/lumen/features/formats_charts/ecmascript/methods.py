@@ -12,9 +12,9 @@ from lumen.expressions.tree import (
     ListLiteral,
     Literal,
 )
-from lumen.formats.ecmascript.kind_inference import is_float
-from lumen.formats.ecmascript.script_tokens import ScriptError
-from lumen.formats.ecmascript.translation import Translation
+from lumen.features.formats_charts.ecmascript.kind_inference import is_float
+from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
+from lumen.features.formats_charts.ecmascript.translation import Translation
 
 SIGN_FUNCTIONS = {"contained": "in", "same": "=="}
 """Calls that stand for a sign where ECMAScript's own is another one for texts and lists, or for lists and numbers."""

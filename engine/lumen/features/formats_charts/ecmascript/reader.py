@@ -22,12 +22,12 @@ from lumen.expressions.tree import (
     Unary,
     walk,
 )
-from lumen.formats.ecmascript.equality import EVENT, HAPPENED, equality, guarded
-from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND, is_float, kind
-from lumen.formats.ecmascript.known_fields import known, negated
-from lumen.formats.ecmascript.methods import LUMEN_FUNCTIONS, SIGN_FUNCTIONS, method
-from lumen.formats.ecmascript.script_parser import parse_script
-from lumen.formats.ecmascript.script_tokens import ScriptError
+from lumen.features.formats_charts.ecmascript.equality import EVENT, HAPPENED, equality, guarded
+from lumen.features.formats_charts.ecmascript.kind_inference import UNKNOWN_KIND, is_float, kind
+from lumen.features.formats_charts.ecmascript.known_fields import known, negated
+from lumen.features.formats_charts.ecmascript.methods import LUMEN_FUNCTIONS, SIGN_FUNCTIONS, method
+from lumen.features.formats_charts.ecmascript.script_parser import parse_script
+from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
 
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _FALSY = ListLiteral((Literal(None), Literal(False), Literal(0), Literal("")))

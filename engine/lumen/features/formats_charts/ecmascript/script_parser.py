@@ -6,7 +6,7 @@ from typing import ClassVar
 from lumen.expressions.pratt import CONSTANTS, PrattParser
 from lumen.expressions.tokens import Token
 from lumen.expressions.tree import ExpressionNode, Literal
-from lumen.formats.ecmascript.script_tokens import ScriptError, tokenize_script
+from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError, tokenize_script
 
 _FOREIGN = {
     "function": "functions", "new": "`new`", "instanceof": "`instanceof`", "=": "assignments", "++": "`++`",

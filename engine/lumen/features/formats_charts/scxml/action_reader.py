@@ -5,17 +5,17 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from lumen.expressions import unparse
-from lumen.formats.behavior_data import ActionData, quoted
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.durations import duration, milliseconds
-from lumen.formats.ecmascript import ScriptError, parse_script, read_condition, read_value
-from lumen.formats.ecmascript.constants import constant
-from lumen.formats.foreign_json import foreign_json
-from lumen.formats.scxml.assignments import assignments
-from lumen.formats.scxml.data_model import ScxmlDataModel, written
-from lumen.formats.scxml.log_templates import plain_template, template_of
-from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_charts.ecmascript import ScriptError, parse_script, read_condition, read_value
+from lumen.features.formats_charts.ecmascript.constants import constant
+from lumen.features.formats_charts.scxml.assignments import assignments
+from lumen.features.formats_charts.scxml.data_model import ScxmlDataModel, written
+from lumen.features.formats_charts.scxml.log_templates import plain_template, template_of
+from lumen.features.formats_charts.scxml.namespaces import LUMEN_NAMESPACE
+from lumen.project.formats.behavior_data import ActionData, quoted
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.durations import duration, milliseconds
+from lumen.project.formats.foreign_json import foreign_json
+from lumen.project.formats.xml_elements import XmlElement
 
 PROCESSORS = ("", "scxml", "http://www.w3.org/TR/scxml/#SCXMLEventProcessor", "http://www.w3.org/TR/scxml/")
 _NOT_CONSTANT = object()

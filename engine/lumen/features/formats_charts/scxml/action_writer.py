@@ -7,12 +7,9 @@ from typing import Any
 
 from lumen.expressions import parse_expression, unparse
 from lumen.expressions.tree import Literal
-from lumen.formats.behavior_data import plain_action, plain_value
-from lumen.formats.conversion_findings import ExportReport
-from lumen.formats.durations import duration
-from lumen.formats.ecmascript import ScriptError, Vocabulary, write_expression
-from lumen.formats.scxml.log_templates import expression_of
-from lumen.formats.scxml.xml_tags import XmlTag
+from lumen.features.formats_charts.ecmascript import ScriptError, Vocabulary, write_expression
+from lumen.features.formats_charts.scxml.log_templates import expression_of
+from lumen.features.formats_charts.scxml.xml_tags import XmlTag
 from lumen.language.actions import (
     Assign,
     CancelSend,
@@ -25,6 +22,9 @@ from lumen.language.actions import (
     Send,
     Template,
 )
+from lumen.project.formats.behavior_data import plain_action, plain_value
+from lumen.project.formats.conversion_findings import ExportReport
+from lumen.project.formats.durations import duration
 
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 

@@ -16,7 +16,7 @@ from lumen.expressions.tree import (
     Logic,
     walk,
 )
-from lumen.formats.behavior_data import TransitionData, single
+from lumen.project.formats.behavior_data import TransitionData, single
 
 
 def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[TransitionData], None]) -> dict[str, Any]:

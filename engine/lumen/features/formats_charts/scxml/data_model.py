@@ -6,14 +6,14 @@ from typing import Any
 
 from lumen.expressions import unparse
 from lumen.expressions.kinds import kind_of
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.ecmascript import ScriptError, ScriptNames, parse_script, read_value
-from lumen.formats.ecmascript.constants import constant
-from lumen.formats.ecmascript.kind_inference import UNKNOWN_KIND, kind
-from lumen.formats.foreign_json import foreign_json
-from lumen.formats.scxml.state_tree import STATES, ScxmlStateTree
-from lumen.formats.unused_names import unused_name
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_charts.ecmascript import ScriptError, ScriptNames, parse_script, read_value
+from lumen.features.formats_charts.ecmascript.constants import constant
+from lumen.features.formats_charts.ecmascript.kind_inference import UNKNOWN_KIND, kind
+from lumen.features.formats_charts.scxml.state_tree import STATES, ScxmlStateTree
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.foreign_json import foreign_json
+from lumen.project.formats.unused_names import unused_name
+from lumen.project.formats.xml_elements import XmlElement
 
 _UNFIT = re.compile(r"\W+", re.ASCII)
 _NOTHING = object()

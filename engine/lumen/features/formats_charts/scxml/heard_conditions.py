@@ -2,7 +2,7 @@
 
 from lumen.expressions import unparse
 from lumen.expressions.tree import Literal
-from lumen.formats.ecmascript import ScriptError
+from lumen.features.formats_charts.ecmascript import ScriptError
 
 HEARS = "hears"
 _AND, _END = " && (", ")"

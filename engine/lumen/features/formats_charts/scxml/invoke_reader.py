@@ -4,8 +4,8 @@ import re
 from pathlib import PurePosixPath
 from typing import Any
 
-from lumen.formats.scxml.action_reader import PROCESSORS, LeftOutError, ScxmlActionReader
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_charts.scxml.action_reader import PROCESSORS, LeftOutError, ScxmlActionReader
+from lumen.project.formats.xml_elements import XmlElement
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*")
 _ID = re.compile(r"[^\s@*]+")

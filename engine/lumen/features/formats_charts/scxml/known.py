@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from lumen.formats.known import FormatTable, Known
-from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
+from lumen.features.formats_charts.scxml.namespaces import LUMEN_NAMESPACE
+from lumen.project.formats.known import FormatTable, Known
 
 _FINAL = "nothing follows a final state"
 _ENTERED = "a parallel state enters all of its states"

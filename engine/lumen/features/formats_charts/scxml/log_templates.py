@@ -6,10 +6,16 @@ from lumen.expressions import split_template, unparse
 from lumen.expressions.kinds import TEXT
 from lumen.expressions.templates import Placeholder
 from lumen.expressions.tree import Binary, ExpressionNode, Literal
-from lumen.formats.ecmascript import ScriptError, ScriptNames, Vocabulary, parse_script, write_expression
-from lumen.formats.ecmascript.kind_inference import kind
-from lumen.formats.ecmascript.reader import ScriptTranslator, printed
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_charts.ecmascript import (
+    ScriptError,
+    ScriptNames,
+    Vocabulary,
+    parse_script,
+    write_expression,
+)
+from lumen.features.formats_charts.ecmascript.kind_inference import kind
+from lumen.features.formats_charts.ecmascript.reader import ScriptTranslator, printed
+from lumen.project.formats.xml_elements import XmlElement
 
 
 def template_of(element: XmlElement, names: ScriptNames) -> str:

@@ -2,22 +2,22 @@
 
 from typing import Any
 
-from lumen.formats.behavior_data import ActionData, single
-from lumen.formats.conversion_findings import ConversionFindings, broken
-from lumen.formats.durations import milliseconds
-from lumen.formats.ecmascript import ScriptError
-from lumen.formats.foreign_states import ForeignState, passing_key
-from lumen.formats.scxml.action_reader import LeftOutError, ScxmlActionReader, own
-from lumen.formats.scxml.data_model import ScxmlDataModel
-from lumen.formats.scxml.invoke_reader import invocation
-from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE, SCXML_NAMESPACE
-from lumen.formats.scxml.state_tree import ScxmlStateTree, regular
-from lumen.formats.scxml.transition_reader import ScxmlTransitionReader
-from lumen.formats.scxml.unread import UnreadParts
-from lumen.formats.unused_names import unused_name
-from lumen.formats.xml_elements import XmlElement, parse_xml
+from lumen.features.formats_charts.ecmascript import ScriptError
+from lumen.features.formats_charts.foreign_states import ForeignState, passing_key
+from lumen.features.formats_charts.scxml.action_reader import LeftOutError, ScxmlActionReader, own
+from lumen.features.formats_charts.scxml.data_model import ScxmlDataModel
+from lumen.features.formats_charts.scxml.invoke_reader import invocation
+from lumen.features.formats_charts.scxml.namespaces import LUMEN_NAMESPACE, SCXML_NAMESPACE
+from lumen.features.formats_charts.scxml.state_tree import ScxmlStateTree, regular
+from lumen.features.formats_charts.scxml.transition_reader import ScxmlTransitionReader
+from lumen.features.formats_charts.scxml.unread import UnreadParts
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import RESUME_WORDS
+from lumen.project.formats.behavior_data import ActionData, single
+from lumen.project.formats.conversion_findings import ConversionFindings, broken
+from lumen.project.formats.durations import milliseconds
+from lumen.project.formats.unused_names import unused_name
+from lumen.project.formats.xml_elements import XmlElement, parse_xml
 
 
 def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:

@@ -1,9 +1,9 @@
 """The states of an SCXML document before anything in them is read: their keys and paths in our tree."""
 
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_id, free_key
-from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_charts.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_id, free_key
+from lumen.features.formats_charts.scxml.namespaces import LUMEN_NAMESPACE
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.xml_elements import XmlElement
 
 STATES = ("state", "parallel", "final", "history")
 

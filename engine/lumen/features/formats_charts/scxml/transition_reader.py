@@ -5,18 +5,18 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
-from lumen.formats.behavior_data import TransitionData, single
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.ecmascript import ScriptError
-from lumen.formats.event_descriptors import normal, overlap
-from lumen.formats.foreign_states import ForeignState
-from lumen.formats.scxml.action_reader import ScxmlActionReader
-from lumen.formats.scxml.candidates import arrange
-from lumen.formats.scxml.heard_conditions import guard_in
-from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE
-from lumen.formats.scxml.state_tree import ScxmlStateTree, regular
-from lumen.formats.xml_elements import XmlElement
+from lumen.features.formats_charts.ecmascript import ScriptError
+from lumen.features.formats_charts.event_descriptors import normal, overlap
+from lumen.features.formats_charts.foreign_states import ForeignState
+from lumen.features.formats_charts.scxml.action_reader import ScxmlActionReader
+from lumen.features.formats_charts.scxml.candidates import arrange
+from lumen.features.formats_charts.scxml.heard_conditions import guard_in
+from lumen.features.formats_charts.scxml.namespaces import LUMEN_NAMESPACE
+from lumen.features.formats_charts.scxml.state_tree import ScxmlStateTree, regular
 from lumen.language.diagnostics import Place
+from lumen.project.formats.behavior_data import TransitionData, single
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.xml_elements import XmlElement
 from lumen.project.transitions import rivals
 from lumen.talk.hearing import HEARD
 

@@ -1,8 +1,6 @@
 """Report and remove what the reader does not read, so that nothing of a document is lost silently."""
 
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.known import Known
-from lumen.formats.scxml.known import (
+from lumen.features.formats_charts.scxml.known import (
     ACTION_HOLDERS,
     ALTERNATIVES,
     ATTRIBUTES,
@@ -15,7 +13,9 @@ from lumen.formats.scxml.known import (
     VALUES,
     plain,
 )
-from lumen.formats.xml_elements import XmlElement
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.known import Known
+from lumen.project.formats.xml_elements import XmlElement
 
 _NOTHING = Known()
 _TEXTS = OPEN | {"script"}

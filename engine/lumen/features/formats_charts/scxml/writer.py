@@ -4,20 +4,20 @@ import json
 from collections.abc import Container, Iterator, Sequence
 from typing import Any
 
-from lumen.formats.behavior_data import plain_block, plain_button, plain_phrases, plain_properties
-from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
-from lumen.formats.durations import duration
-from lumen.formats.ecmascript import ScriptError, Vocabulary
-from lumen.formats.ecmascript.kind_inference import kinds_of
-from lumen.formats.ecmascript.script_parser import is_reserved
-from lumen.formats.heard_rows import LOST_ELSEWHERE, as_guard, in_asked_order, key_of
-from lumen.formats.scxml.action_writer import ScxmlActionWriter
-from lumen.formats.scxml.heard_conditions import HEARS, row_condition
-from lumen.formats.scxml.namespaces import LUMEN_NAMESPACE, SCXML_INVOKE_TYPE, SCXML_NAMESPACE
-from lumen.formats.scxml.xml_tags import XmlTag
+from lumen.features.formats_charts.ecmascript import ScriptError, Vocabulary
+from lumen.features.formats_charts.ecmascript.kind_inference import kinds_of
+from lumen.features.formats_charts.ecmascript.script_parser import is_reserved
+from lumen.features.formats_charts.heard_rows import LOST_ELSEWHERE, as_guard, in_asked_order, key_of
+from lumen.features.formats_charts.scxml.action_writer import ScxmlActionWriter
+from lumen.features.formats_charts.scxml.heard_conditions import HEARS, row_condition
+from lumen.features.formats_charts.scxml.namespaces import LUMEN_NAMESPACE, SCXML_INVOKE_TYPE, SCXML_NAMESPACE
+from lumen.features.formats_charts.scxml.xml_tags import XmlTag
 from lumen.language.actions import Template
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.machines import Hears, MachineDefinition, State, StateKind, Transition
+from lumen.project.formats.behavior_data import plain_block, plain_button, plain_phrases, plain_properties
+from lumen.project.formats.conversion_findings import ExportReport, PlaceOfPath
+from lumen.project.formats.durations import duration
 
 _TAGS = {StateKind.PARALLEL: "parallel", StateKind.FINAL: "final", StateKind.HISTORY: "history"}
 

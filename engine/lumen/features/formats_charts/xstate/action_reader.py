@@ -6,17 +6,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.expressions.kinds import kind_of
-from lumen.formats.behavior_data import ActionData, TransitionData, quoted
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.durations import MAX_DELAY, duration
-from lumen.formats.xstate.json_source import JsonSource
-from lumen.formats.xstate.known import losses
-from lumen.formats.xstate.names import XStateNames
+from lumen.features.formats_charts.xstate.json_source import JsonSource
+from lumen.features.formats_charts.xstate.known import losses
+from lumen.features.formats_charts.xstate.names import XStateNames
 from lumen.language.actions import PARENT
 from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.numbers import is_number
 from lumen.project.behaviors import build_machine
 from lumen.project.document_report import DocumentReport
+from lumen.project.formats.behavior_data import ActionData, TransitionData, quoted
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.durations import MAX_DELAY, duration
 from lumen.project.plain import plain_document
 from lumen.project.schema import check_schema
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from lumen.formats.heard_rows import in_asked_order
+from lumen.features.formats_charts.heard_rows import in_asked_order
 from lumen.language.actions import AskQuestion, If, PlacedAction, Raise, Send
 from lumen.language.machines import MachineDefinition, State, Transition
 

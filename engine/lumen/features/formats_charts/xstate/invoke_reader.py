@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from lumen.formats.behavior_data import TransitionData, single
-from lumen.formats.xstate.action_reader import DO_ACTOR, XStateActionReader, shown_name
-from lumen.formats.xstate.constants import constant_data
-from lumen.formats.xstate.known import losses
-from lumen.formats.xstate.state_tree import XStateNode
-from lumen.formats.xstate.transition_reader import XStateTransitionReader
+from lumen.features.formats_charts.xstate.action_reader import DO_ACTOR, XStateActionReader, shown_name
+from lumen.features.formats_charts.xstate.constants import constant_data
+from lumen.features.formats_charts.xstate.known import losses
+from lumen.features.formats_charts.xstate.state_tree import XStateNode
+from lumen.features.formats_charts.xstate.transition_reader import XStateTransitionReader
 from lumen.language.diagnostics import NodePath
+from lumen.project.formats.behavior_data import TransitionData, single
 
 _ENDS = {"onDone": "done.invoke", "onError": "error.invoke"}
 

@@ -4,10 +4,10 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.formats.conversion_findings import broken, check_size
-from lumen.formats.foreign_json import foreign_json
 from lumen.language.diagnostics import NodePath, Place
 from lumen.project.document import Document
+from lumen.project.formats.conversion_findings import broken, check_size
+from lumen.project.formats.foreign_json import foreign_json
 from lumen.project.yaml_nodes import DUPLICATE_KEY
 from lumen.project.yaml_reader import parse
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from lumen.formats.known import FormatTable, Known
+from lumen.project.formats.known import FormatTable, Known
 
 _NOTE = {"description": "a note for readers"}
 _STATE_NOTES = {"key": "the key under `states` is used", "order": "the order of the file is used"}

@@ -4,10 +4,10 @@ import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from lumen.formats.unused_names import unused_name
-from lumen.formats.xstate.descriptors import invoke_id, own_event
-from lumen.formats.xstate.state_tree import XStateStateTree
+from lumen.features.formats_charts.xstate.descriptors import invoke_id, own_event
+from lumen.features.formats_charts.xstate.state_tree import XStateStateTree
 from lumen.language.diagnostics import NodePath
+from lumen.project.formats.unused_names import unused_name
 
 _BLANKS = re.compile(r"\s+")
 _SENDERS = ("xstate.raise", "xstate.send", "xstate.sendTo")

@@ -3,21 +3,21 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.formats.behavior_data import ActionData, TransitionData, quoted, single
-from lumen.formats.conversion_findings import ConversionFindings, broken
-from lumen.formats.foreign_states import passing_key
-from lumen.formats.xstate.action_reader import XStateActionReader
-from lumen.formats.xstate.constants import constant_data
-from lumen.formats.xstate.descriptors import bare, is_descriptor, longest_first, own_event
-from lumen.formats.xstate.invoke_reader import XStateInvokeReader
-from lumen.formats.xstate.json_source import parse_json
-from lumen.formats.xstate.known import STATE_KINDS, is_version_4, losses
-from lumen.formats.xstate.names import XStateNames
-from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
-from lumen.formats.xstate.transition_reader import XStateTransitionReader
+from lumen.features.formats_charts.foreign_states import passing_key
+from lumen.features.formats_charts.xstate.action_reader import XStateActionReader
+from lumen.features.formats_charts.xstate.constants import constant_data
+from lumen.features.formats_charts.xstate.descriptors import bare, is_descriptor, longest_first, own_event
+from lumen.features.formats_charts.xstate.invoke_reader import XStateInvokeReader
+from lumen.features.formats_charts.xstate.json_source import parse_json
+from lumen.features.formats_charts.xstate.known import STATE_KINDS, is_version_4, losses
+from lumen.features.formats_charts.xstate.names import XStateNames
+from lumen.features.formats_charts.xstate.state_tree import XStateNode, XStateStateTree
+from lumen.features.formats_charts.xstate.transition_reader import XStateTransitionReader
 from lumen.language.diagnostics import Diagnostic, NodePath
 from lumen.language.machines import RESUME_WORDS
 from lumen.language.numbers import is_number
+from lumen.project.formats.behavior_data import ActionData, TransitionData, quoted, single
+from lumen.project.formats.conversion_findings import ConversionFindings, broken
 from lumen.talk.hearing import HEARD
 
 _MACHINE = ("types", "events", "phrases", "answers", "lists", "properties", "renamed")

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.formats.conversion_findings import ConversionFindings
-from lumen.formats.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_id, free_key
-from lumen.formats.xstate.json_source import JsonSource
+from lumen.features.formats_charts.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_id, free_key
+from lumen.features.formats_charts.xstate.json_source import JsonSource
 from lumen.language.diagnostics import NodePath
+from lumen.project.formats.conversion_findings import ConversionFindings
 
 
 class XStateNode(ForeignState):

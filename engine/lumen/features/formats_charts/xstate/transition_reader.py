@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from lumen.formats.behavior_data import TransitionData
-from lumen.formats.xstate.action_reader import HEARS_GUARD, XStateActionReader
-from lumen.formats.xstate.known import BOOLEANS, losses
-from lumen.formats.xstate.state_tree import XStateNode, XStateStateTree
+from lumen.features.formats_charts.xstate.action_reader import HEARS_GUARD, XStateActionReader
+from lumen.features.formats_charts.xstate.known import BOOLEANS, losses
+from lumen.features.formats_charts.xstate.state_tree import XStateNode, XStateStateTree
 from lumen.language.diagnostics import NodePath
+from lumen.project.formats.behavior_data import TransitionData
 from lumen.project.transitions import rivals
 
 

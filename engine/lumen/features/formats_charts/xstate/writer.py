@@ -5,7 +5,14 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from lumen.expressions.readings import as_written
-from lumen.formats.behavior_data import (
+from lumen.features.formats_charts.heard_rows import LOST_ELSEWHERE, as_guard, key_of
+from lumen.features.formats_charts.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD, HEARS_GUARD
+from lumen.features.formats_charts.xstate.constants import constant
+from lumen.features.formats_charts.xstate.descriptors import EventDescriptors
+from lumen.language.actions import Expression, PlacedAction, Template
+from lumen.language.diagnostics import Diagnostic
+from lumen.language.machines import Answer, Hears, Invoke, MachineDefinition, State, StateKind, Transition
+from lumen.project.formats.behavior_data import (
     plain_action,
     plain_block,
     plain_button,
@@ -13,14 +20,7 @@ from lumen.formats.behavior_data import (
     plain_properties,
     plain_value,
 )
-from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
-from lumen.formats.heard_rows import LOST_ELSEWHERE, as_guard, key_of
-from lumen.formats.xstate.action_reader import ACTION_PREFIX, DO_ACTOR, EXPRESSION_GUARD, HEARS_GUARD
-from lumen.formats.xstate.constants import constant
-from lumen.formats.xstate.descriptors import EventDescriptors
-from lumen.language.actions import Expression, PlacedAction, Template
-from lumen.language.diagnostics import Diagnostic
-from lumen.language.machines import Answer, Hears, Invoke, MachineDefinition, State, StateKind, Transition
+from lumen.project.formats.conversion_findings import ExportReport, PlaceOfPath
 
 _HINT = "write an implementation with that name for XState"
 

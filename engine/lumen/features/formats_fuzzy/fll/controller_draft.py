@@ -7,10 +7,8 @@ from math import inf, isfinite, isnan
 from typing import Any, assert_never
 from unicodedata import normalize
 
-from lumen.formats.conversion_findings import LOST, ConversionFindings, ForeignFileError, broken
-from lumen.formats.fll.fuzzylite_names import plain
-from lumen.formats.fll.rule_text import rule_text
-from lumen.formats.unused_names import unused_name
+from lumen.features.formats_fuzzy.fll.fuzzylite_names import plain
+from lumen.features.formats_fuzzy.fll.rule_text import rule_text
 from lumen.language.controllers import (
     TERM_PARAMETERS,
     Antecedent,
@@ -22,6 +20,8 @@ from lumen.language.controllers import (
 from lumen.language.counts import counted
 from lumen.language.diagnostics import Place
 from lumen.project.document_report import DocumentReport
+from lumen.project.formats.conversion_findings import LOST, ConversionFindings, ForeignFileError, broken
+from lumen.project.formats.unused_names import unused_name
 from lumen.project.plain import plain_document
 from lumen.project.rule_parser import KEYWORDS, Mention, RuleSyntaxError, RuleWord, parse_rule
 from lumen.project.terms import build_terms

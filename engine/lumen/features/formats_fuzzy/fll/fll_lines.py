@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from lumen.formats.conversion_findings import ConversionFindings, broken
 from lumen.language.diagnostics import Place
 from lumen.language.text_lines import lines_of
+from lumen.project.formats.conversion_findings import ConversionFindings, broken
 
 MAX_FLL_LINES = 20_000
 """In a file."""

@@ -7,14 +7,14 @@ import re
 from math import inf, isfinite, nan
 from typing import Any
 
-from lumen.formats.conversion_findings import ConversionFindings, broken, decoded
-from lumen.formats.fll.controller_draft import ControllerDraft, operators, ranged
-from lumen.formats.fll.fll_lines import FllLine, FllLineReader, FllPart
-from lumen.formats.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES, plain
-from lumen.formats.fll.infix_formulas import read_formula
-from lumen.formats.known import FormatTable, Known
+from lumen.features.formats_fuzzy.fll.controller_draft import ControllerDraft, operators, ranged
+from lumen.features.formats_fuzzy.fll.fll_lines import FllLine, FllLineReader, FllPart
+from lumen.features.formats_fuzzy.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES, plain
+from lumen.features.formats_fuzzy.fll.infix_formulas import read_formula
 from lumen.language.controllers import ACTIVATIONS, S_NORMS, T_NORMS, WEIGHTED_DEFUZZIFIERS
 from lumen.language.diagnostics import Diagnostic, Place
+from lumen.project.formats.conversion_findings import ConversionFindings, broken, decoded
+from lumen.project.formats.known import FormatTable, Known
 from lumen.project.rule_parser import RuleWord
 
 _SIDES = {"InputVariable": "inputs", "OutputVariable": "outputs"}

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
 
-from lumen.formats.fll.fuzzylite_names import written
+from lumen.features.formats_fuzzy.fll.fuzzylite_names import written
 from lumen.language.controllers import Antecedent, Conjunction, Disjunction, Negation, Proposition
 
 _NOBODY: Mapping[str, str] = {}

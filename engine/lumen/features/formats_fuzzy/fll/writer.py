@@ -3,11 +3,9 @@
 import re
 from collections.abc import Iterator, Mapping
 
-from lumen.formats.conversion_findings import ExportReport, PlaceOfPath
-from lumen.formats.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES, foreign, written
-from lumen.formats.fll.infix_formulas import write_formula
-from lumen.formats.fll.rule_text import negations, rule_text
-from lumen.formats.unused_names import unused_name
+from lumen.features.formats_fuzzy.fll.fuzzylite_names import ACTIVATED, METHODS, NORMS, SHAPES, foreign, written
+from lumen.features.formats_fuzzy.fll.infix_formulas import write_formula
+from lumen.features.formats_fuzzy.fll.rule_text import negations, rule_text
 from lumen.language.controllers import (
     VALUE_TERMS,
     Activation,
@@ -18,6 +16,8 @@ from lumen.language.controllers import (
     Variable,
 )
 from lumen.language.diagnostics import Diagnostic
+from lumen.project.formats.conversion_findings import ExportReport, PlaceOfPath
+from lumen.project.formats.unused_names import unused_name
 
 _UNFIT = re.compile(r"[^A-Za-z0-9_]+")
 

@@ -1,10 +1,10 @@
 """Pictures of controllers and motions: from a value to what has to be drawn (`PlotSheet`), from that to an image."""
 
-from lumen.formats.plots.controller_plot import controller_sheet, curves_sheet
-from lumen.formats.plots.drawing import PLOT_ENDINGS, draw
-from lumen.formats.plots.explanation_plot import explained_sheet
-from lumen.formats.plots.motion_plot import motion_sheet
-from lumen.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
+from lumen.project.formats.plots.controller_plot import controller_sheet, curves_sheet
+from lumen.project.formats.plots.drawing import PLOT_ENDINGS, draw
+from lumen.project.formats.plots.explanation_plot import explained_sheet
+from lumen.project.formats.plots.motion_plot import motion_sheet
+from lumen.project.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
 
 __all__ = [
     "PLOT_ENDINGS", "PlotAxis", "PlotBars", "PlotLine", "PlotMark", "PlotPanel", "PlotSheet", "PlotSurface",

@@ -5,11 +5,11 @@ from dataclasses import replace
 from itertools import chain
 from math import isfinite, isnan
 
-from lumen.formats.plots.sheet import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
 from lumen.fuzzy.arithmetic import NUMBERS
 from lumen.fuzzy.memberships import membership
 from lumen.fuzzy.survey import Survey, asked, resting
 from lumen.language.controllers import VALUE_TERMS, ControllerDefinition, Variable
+from lumen.project.formats.plots.sheet import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
 
 POINTS, ACROSS = 321, 41
 """Of a curve, and of each side of a surface."""

@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 from lumen.extras import demand
-from lumen.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
+from lumen.project.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,9 +1,9 @@
 """One evaluation as a sheet: what the inputs belong to, how much each rule fires, and the sets that come of it."""
 
-from lumen.formats.plots.controller_plot import axis, memberships
-from lumen.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet
 from lumen.fuzzy.explanation import Concluded, Explanation
 from lumen.language.controllers import ControllerDefinition, Variable
+from lumen.project.formats.plots.controller_plot import axis, memberships
+from lumen.project.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet
 
 MAX_RULE_LENGTH = 60
 """Characters of a rule beside its bar."""

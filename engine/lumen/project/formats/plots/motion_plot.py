@@ -2,10 +2,10 @@
 
 from math import degrees
 
-from lumen.formats.plots.sheet import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.motion.trajectories import JointTrack, Trajectory
+from lumen.project.formats.plots.sheet import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet
 
 POINTS_PER_CURVE = 201
 """Of one joint, over the whole motion."""
