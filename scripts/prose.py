@@ -55,7 +55,7 @@ FIRST_HOUR = "concepts installing change-the-tour own-exhibition museum lint sto
 FRONT = ("README.md", "CHANGELOG.md", *(f"docs/{page}.md" for page in FIRST_HOUR.split()))
 """The files that a newcomer reads in the first hour."""
 ENGINE = "engine/lumen"
-TEXTS = "engine/lumen/console/pages/texts/en.js"
+TEXTS = "engine/lumen/features/console/pages/texts/en.js"
 LIMIT = 1.0
 """Hits per 1,000 words in all that users read first."""
 OTHER_PAGES, CODE = 11.0, 32.5

@@ -5,7 +5,7 @@ import re
 from tests import ROOT
 from tests.console.viewer import Viewer
 
-TEXTS = ROOT / "engine/lumen/console/pages/texts"
+TEXTS = ROOT / "engine/lumen/features/console/pages/texts"
 SHOWN = """
 const names = ".place, .state-name, option, code, .values, .way-head > :last-child, th[scope=row]";
 const quoted = `[lang]:not(html):not([lang=id]), rest-button .broken, ${names}`;

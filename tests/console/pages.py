@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
-from lumen.console.serving import Console
+from lumen.features.console.serving import Console
 from lumen.run.reaching import Reached, reach_exhibition
 from tests.waiting import HANG
 

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from lumen.app.parts.console import ConsolePart
+from lumen.features.console.part import ConsolePart
 from lumen.run.parts import console
 from tests.console.pages import Browser
 from tests.waiting import until

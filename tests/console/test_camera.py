@@ -4,7 +4,7 @@ import base64
 import http.client
 import threading
 
-from lumen.console.camera import jpeg_in
+from lumen.features.console.camera import jpeg_in
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Served
 from tests.waiting import until

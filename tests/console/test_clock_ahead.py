@@ -4,7 +4,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from lumen.console.known_robot import KnownRobot
+from lumen.features.console.known_robot import KnownRobot
 
 
 def at(ahead: float) -> str:

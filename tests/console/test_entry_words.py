@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from lumen.console.entry_words import ENGLISH, OTHERS, told_of
+from lumen.features.console.entry_words import ENGLISH, OTHERS, told_of
 
 PERSON = ["person", "", "", "Aisyah", 0.0]
 SAID = {"Start": {"id": "d1", "command": {"Say": {"text": "Selamat datang", "language": "id"}}}}

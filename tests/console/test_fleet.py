@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from lumen.bus.memory import MemoryBus
-from lumen.console.people import Role
-from lumen.console.serving import Console
+from lumen.features.console.people import Role
+from lumen.features.console.serving import Console
 from lumen.run.reaching import Reached
 from tests.console.languages import english_on
 from tests.console.pages import Browser

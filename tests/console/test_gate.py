@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from lumen.console.access import Access, TooFastError
-from lumen.console.gate import MAX_BODY
-from lumen.console.people import Person, Role
-from lumen.console.requests import REQUESTS_PER_SECOND
-from lumen.console.serving import Console
+from lumen.features.console.access import Access, TooFastError
+from lumen.features.console.gate import MAX_BODY
+from lumen.features.console.people import Person, Role
+from lumen.features.console.requests import REQUESTS_PER_SECOND
+from lumen.features.console.serving import Console
 from lumen.errors import UsageError
 from lumen.upkeep.ratelimit import BURST
 from tests.console.pages import Browser, Served, Stream

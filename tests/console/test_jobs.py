@@ -15,10 +15,10 @@ from unittest.mock import Mock
 import pytest
 
 import lumen
-from lumen.console import jobs
-from lumen.console.jobs import MAX_WAITING, Jobs
-from lumen.console.poses import Poses
-from lumen.console.requests import DeniedError
+from lumen.features.console import jobs
+from lumen.features.console.jobs import MAX_WAITING, Jobs
+from lumen.features.console.poses import Poses
+from lumen.features.console.requests import DeniedError
 from lumen.errors import BusError, LumenError
 from lumen.upkeep import judge_process
 from lumen.upkeep.judge_process import Fault, NoAnswerError
@@ -124,7 +124,7 @@ def test_entries_that_are_told_make_the_same_day(copy: Path) -> None:
 
 
 def test_the_console_itself_has_neither_the_simulator_nor_numbers_in_it() -> None:
-    script = "import sys, lumen.console.serving; print(*{'mujoco', 'dm_control', 'numpy', 'scipy'} & set(sys.modules))"
+    script = "import sys, lumen.features.console.serving; print(*{'mujoco', 'dm_control', 'numpy', 'scipy'} & set(sys.modules))"
     with Guarded([sys.executable, "-c", script], stdout=PIPE, text=True) as process:
         assert process.communicate()[0].split() == []
 
@@ -133,7 +133,7 @@ def test_poses_follow_the_joints_and_their_process_ends_with_the_looking(
     served: Served, hosted: Hosted, browser: Browser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The head is turned by as much as its joint on the bus says; what is about no joint is passed over."""
-    monkeypatch.setattr("lumen.console.poses.LINGER", 0.1)
+    monkeypatch.setattr("lumen.features.console.poses.LINGER", 0.1)
     poses, bus = served.console.site.sights.poses("NAO"), hosted.exhibition.node.bus
     names = list(lumen.load(hosted.root).body.joints)
 
@@ -159,7 +159,7 @@ def test_poses_follow_the_joints_and_their_process_ends_with_the_looking(
 def test_a_model_that_is_gone_is_said_and_what_draws_is_begun_anew(
     served: Served, hosted: Hosted, browser: Browser, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("lumen.console.poses.RETRY", 0.1)
+    monkeypatch.setattr("lumen.features.console.poses.RETRY", 0.1)
     monkeypatch.setattr(jobs, "PROGRAM", "tests.console.gone_wrong")
     with Stream(browser, "/api/poses?robot=NAO") as stream:
         until(lambda: len(stream.of("trouble")) > 1)

@@ -15,7 +15,7 @@ from tests.console.test_pages import PAGES
 from tests.console.viewer import Viewer
 from tests.waiting import HANG, until
 
-CONSOLE = ROOT / "engine/lumen/console"
+CONSOLE = ROOT / "engine/lumen/features/console"
 NEVER_ON_A_PAGE = (
     "access.py",
     "day_csv.py",

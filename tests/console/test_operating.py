@@ -6,7 +6,7 @@ import pytest
 from selenium.webdriver import ActionChains
 from selenium.webdriver.common.keys import Keys
 
-from lumen.console.people import Role
+from lumen.features.console.people import Role
 from tests.console.conftest import Hosted
 from tests.console.pages import Served
 from tests.console.viewer import Viewer

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from lumen.console.orders import order_of
-from lumen.console.robot_keys import RobotKeys
+from lumen.features.console.orders import order_of
+from lumen.features.console.robot_keys import RobotKeys
 from lumen.errors import UsageError
 from tests.tables import for_each
 

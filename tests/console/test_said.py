@@ -12,8 +12,8 @@ import pytest
 import yaml
 from selenium.webdriver.common.keys import Keys
 
-from lumen.console.day import Day, day_of
-from lumen.console.kept_days import KeptDays
+from lumen.features.console.day import Day, day_of
+from lumen.features.console.kept_days import KeptDays
 from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry, entry_data
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition

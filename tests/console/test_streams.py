@@ -4,10 +4,10 @@ import socket
 
 import pytest
 
-from lumen.console import gate
-from lumen.console.entry_clock import ToldPage
-from lumen.console.entry_ring import EntryRing
-from lumen.console.streams import positions_in
+from lumen.features.console import gate
+from lumen.features.console.entry_clock import ToldPage
+from lumen.features.console.entry_ring import EntryRing
+from lumen.features.console.streams import positions_in
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Served, Stream
 from tests.waiting import until

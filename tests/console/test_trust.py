@@ -8,8 +8,8 @@ from threading import Thread
 
 import pytest
 
-from lumen.console.orders import NEEDS
-from lumen.console.people import Role
+from lumen.features.console.orders import NEEDS
+from lumen.features.console.people import Role
 from tests.console.chromium import Chromium
 from tests.console.conftest import Hosted
 from tests.console.pages import JSON, Browser, Served, Stream

@@ -7,7 +7,7 @@ import pytest
 from tests import ROOT
 from tests.fetched import fetched
 
-PAGES = ROOT / "engine/lumen/console/pages"
+PAGES = ROOT / "engine/lumen/features/console/pages"
 CARRIED = {
     "htm-preact.js": "htm/preact/standalone.module.js",
     "htm.LICENSE": "htm/LICENSE",

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 import lumen
-from lumen.console.day import day_of
+from lumen.features.console.day import day_of
 from lumen.errors import UsageError
 from lumen.insight.replay.entries import JournalInput
 from lumen.language.command_data import command_data

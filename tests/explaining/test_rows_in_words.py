@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from lumen.console.day import understood
+from lumen.features.console.day import understood
 from lumen.features.formats_charts.diagrams.transition_rows import rows_of
 from lumen.insight.changes.machines import machine_changes
 from lumen.insight.explaining.words import of_transition

@@ -78,7 +78,7 @@ SERVICES = {
 """Services that several parts share."""
 PROGRAMS = {
     "lumen.run.reload.validation_process": "(the process that judges files)",
-    "lumen.console.job": "(the console's job)",
+    "lumen.features.console.job": "(the console's job)",
 }
 """Modules that run as programs."""
 DEPTH = 4

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from lumen.language.console_settings import ConsoleSettings
-from lumen.language.show import Show
+from lumen.features.show.settings import Show
+from lumen.features.console.settings import ConsoleSettings
 from lumen.project.building import main_settings
 from lumen.project.settings import Settings
 from tests.tables import for_each

@@ -16,10 +16,11 @@ from pythonosc.osc_server import ThreadingOSCUDPServer
 from pythonosc.udp_client import SimpleUDPClient
 
 from lumen.bus import connect
+from lumen.features.show import health, mqtt
+from lumen.features.show.module import ShowControl
+from lumen.features.show.settings import AddressMapping, DmxLink, MqttLink, OscLink, Show, TopicMapping
 from lumen.language.projects import Project
 from lumen.language.routes import Carried, Direction, Route
-from lumen.language.show import AddressMapping, DmxLink, MqttLink, OscLink, Show, TopicMapping
-from lumen.modules.show import ShowControl, health, mqtt
 from lumen.upkeep.drops import MAX_KEYS, TELL_PERIOD, Drops
 from tests.modules.conftest import Stand
 from tests.rabbitmq import RabbitMQ

@@ -12,7 +12,7 @@ import pytest
 import lumen
 from lumen.bus.memory import MemoryBus
 from lumen.cli.main import main
-from lumen.console.entry_words import OTHERS, text_of
+from lumen.features.console.entry_words import OTHERS, text_of
 from lumen.language.commands import Say, Start, Wake
 from lumen.language.events import HELD, Event
 from lumen.ports import Message, Perform

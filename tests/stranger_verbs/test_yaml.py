@@ -8,7 +8,7 @@ import pytest
 from written_distribution import on_path, write_distribution
 
 from lumen.cli.main import main
-from lumen.console.entry_words import told_of
+from lumen.features.console.entry_words import told_of
 from lumen.features.editor.schemas import description_at, keys_at, values_at
 from lumen.insight.changes.actions import described
 from lumen.insight.explaining.words import of_deed

@@ -8,7 +8,7 @@ from typing import Any
 
 from lumen.cli.run_choices import alert_desk, language_of
 from lumen.errors import BusUnreachableError
-from lumen.language.console_settings import ConsoleSettings
+from lumen.features.console.settings import ConsoleSettings
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock

@@ -4,17 +4,17 @@ from lumen.feature import Feature, Section, Subcommand
 
 FEATURE = Feature(
     name="console",
-    rules=("lumen.rules.console:check",),
+    rules=("lumen.features.console.rules:check",),
     subcommands={
         "console": Subcommand(
             "show a running exhibition in a browser, and control it from there",
-            "lumen.cli.console",
+            "lumen.features.console.command",
             after="record",
         ),
     },
     sections={
         "console": Section(
-            read="lumen.loading.console:read_console",
+            read="lumen.features.console.reading:read_console",
             title="the console",
             risk="restart",
             of_house=True,

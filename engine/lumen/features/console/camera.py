@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import suppress
 from typing import Any
 
-from lumen.console.watch import Watch
+from lumen.features.console.watch import Watch
 from lumen.errors import BusError
 from lumen.ports import Bus, Message
 

@@ -8,7 +8,7 @@ from functools import partial
 
 from lumen.cli.reach import configure_reach
 from lumen.extras import demand
-from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
+from lumen.features.console.settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
 from lumen.project.building import main_settings
 from lumen.project.running_project import project_to_run
 from lumen.run.reaching import reach_exhibition
@@ -37,8 +37,8 @@ def run(options: argparse.Namespace) -> int:
     """0 once it was ended. It goes on without the exhibition, and with the next one."""
     demand("console", "`lumen console`", "starlette", "uvicorn")
     give_back()
-    from lumen.console.access import pins_from
-    from lumen.console.serving import Console
+    from lumen.features.console.access import pins_from
+    from lumen.features.console.serving import Console
 
     root, reach = project_to_run(options.project), partial(reach_exhibition, options.project, options.bus)
     found = main_settings(root)

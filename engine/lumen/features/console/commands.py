@@ -8,13 +8,13 @@ from typing import Any
 
 import orjson
 
-from lumen.console.exchanges import Exchange
-from lumen.console.known_robot import KnownRobot
-from lumen.console.orders import REST, Fields, Order, order_of
-from lumen.console.people import Person
-from lumen.console.requests import ALL
-from lumen.console.streams import Streams
-from lumen.console.watch import Watch
+from lumen.features.console.exchanges import Exchange
+from lumen.features.console.known_robot import KnownRobot
+from lumen.features.console.orders import REST, Fields, Order, order_of
+from lumen.features.console.people import Person
+from lumen.features.console.requests import ALL
+from lumen.features.console.streams import Streams
+from lumen.features.console.watch import Watch
 from lumen.errors import BusError, BusUnreachableError
 from lumen.language.operator_requests import NOTE
 from lumen.run.presence import ROBOT_PART

@@ -4,7 +4,7 @@ import csv
 import io
 from typing import Any
 
-from lumen.console.day import COUNTED, Day
+from lumen.features.console.day import COUNTED, Day
 
 RISKY = ("=", "+", "-", "@", "\t", "\r")
 """What a cell may not begin with: a spreadsheet would take it for a formula."""

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import orjson
 
-from lumen.console.entry_clock import EntryClock, ToldPage
-from lumen.console.entry_words import told_of
+from lumen.features.console.entry_clock import EntryClock, ToldPage
+from lumen.features.console.entry_words import told_of
 
 KEPT = 2_000
 """Entries."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from lumen.console.bus_link import BusLink
+from lumen.features.console.bus_link import BusLink
 from lumen.errors import BusClosedError, BusUnreachableError
 from lumen.language.causes import MessageOrigin
 from lumen.ports import Message

@@ -7,8 +7,8 @@ from starlette.responses import Response
 from starlette.routing import Route
 
 from lumen.app.fleet.keys import ORDER
-from lumen.console.people import Role
-from lumen.console.requests import DeniedError, Reception, as_json
+from lumen.features.console.people import Role
+from lumen.features.console.requests import DeniedError, Reception, as_json
 from lumen.errors import BusError
 
 ANSWER_TIMEOUT = 5.0

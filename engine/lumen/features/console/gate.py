@@ -10,7 +10,7 @@ from urllib.parse import urlsplit
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from lumen.console.connections import READ_TIMEOUT, cut_off
+from lumen.features.console.connections import READ_TIMEOUT, cut_off
 
 MAX_BODY = 65_536
 """Of what is posted [bytes]."""

@@ -1,4 +1,4 @@
-"""One job of the console: `python -m lumen.console.job JOB PROJECT [ARGUMENTS]`; the last two as a folder and JSON,
+"""One job of the console: `python -m lumen.features.console.job JOB PROJECT [ARGUMENTS]`; the last two as a folder and JSON,
 of which the first is a robot of `robots:`, empty where there is one.
 
 It is run by a `JudgeProcess`, and answers with JSON. Its memory and its time are limited; the system ends it if it
@@ -16,9 +16,9 @@ from typing import Any
 
 import orjson
 
-from lumen.console.day_csv import day_csv
-from lumen.console.job_promises import JOB_TIME, NOTHING
-from lumen.console.kept_days import KeptDays
+from lumen.features.console.day_csv import day_csv
+from lumen.features.console.job_promises import JOB_TIME, NOTHING
+from lumen.features.console.kept_days import KeptDays
 from lumen.errors import LumenError
 from lumen.language.sayings import Saying
 from lumen.lint import check_files
@@ -76,14 +76,14 @@ def saying(
 
 def shape(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
     """What the robot's links look like, and its stage."""
-    from lumen.console.drawing import Drawing
+    from lumen.features.console.drawing import Drawing
 
     yield orjson.dumps(Drawing(root, robot).shape())
 
 
 def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
     """The poses of its links, one for each question with joint angles; `null` for any other question."""
-    from lumen.console.drawing import Drawing
+    from lumen.features.console.drawing import Drawing
 
     drawing = Drawing(root, robot)
     limit_time(0.0)

@@ -8,12 +8,12 @@ from typing import Any
 
 import orjson
 
-from lumen.console.job_promises import JOB_TIME
-from lumen.console.requests import DeniedError
+from lumen.features.console.job_promises import JOB_TIME
+from lumen.features.console.requests import DeniedError
 from lumen.errors import LumenError
 from lumen.upkeep.judge_process import Fault, JudgeProcess, NoAnswerError
 
-PROGRAM = "lumen.console.job"
+PROGRAM = "lumen.features.console.job"
 MAX_WAITING = 8
 """Jobs under way or waiting; one more is refused."""
 MAX_ANSWER = 64 << 20
@@ -21,7 +21,7 @@ MAX_ANSWER = 64 << 20
 
 
 class Jobs:
-    """Does jobs (`lumen.console.job` has them) for the project in `root`. Everything raises DeniedError."""
+    """Does jobs (`lumen.features.console.job` has them) for the project in `root`. Everything raises DeniedError."""
 
     def __init__(self, root: Path) -> None:
         self.root, self._turn = root, asyncio.Lock()

@@ -4,9 +4,9 @@ from collections.abc import AsyncIterator
 
 import orjson
 
-from lumen.console.entry_ring import EncodedEntry
-from lumen.console.known_robot import KnownRobot
-from lumen.console.watch import Watch
+from lumen.features.console.entry_ring import EncodedEntry
+from lumen.features.console.known_robot import KnownRobot
+from lumen.features.console.watch import Watch
 
 MAX_REMOTE = 40_000
 """Entries that are asked of an exhibition for its day, the last ones."""

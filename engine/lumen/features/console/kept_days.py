@@ -5,7 +5,7 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Any
 
-from lumen.console.day import Day, day_of
+from lumen.features.console.day import Day, day_of
 from lumen.errors import JournalError
 from lumen.insight.replay.entries import RecordedEntry, read_entry
 from lumen.interpreters.retrieval.words import words

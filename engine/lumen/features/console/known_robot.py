@@ -6,8 +6,8 @@ from typing import Any
 
 import orjson
 
-from lumen.console.entry_ring import EntryRing
-from lumen.console.spoken_names import SpokenNames
+from lumen.features.console.entry_ring import EntryRing
+from lumen.features.console.spoken_names import SpokenNames
 from lumen.language.iso_time import iso_time, time_of
 from lumen.language.numbers import is_number
 from lumen.run.presence import HERE, LEAVES, LOST_AFTER

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from lumen.console.people import Role
-from lumen.console.robot_keys import RobotKeys
+from lumen.features.console.people import Role
+from lumen.features.console.robot_keys import RobotKeys
 from lumen.errors import UsageError
 from lumen.language.operator_requests import APPROVE, AUTONOMY, EVENT, GOTO, MARK, MODEL, OperatorRequest
 from lumen.run.resting import rest_body, resume_body

@@ -5,10 +5,10 @@ from collections.abc import AsyncIterator
 
 import orjson
 
-from lumen.console.jobs import Jobs, why_none
-from lumen.console.known_robot import KnownRobot
-from lumen.console.requests import DeniedError
-from lumen.console.watch import Watch
+from lumen.features.console.jobs import Jobs, why_none
+from lumen.features.console.known_robot import KnownRobot
+from lumen.features.console.requests import DeniedError
+from lumen.features.console.watch import Watch
 from lumen.errors import LumenError
 from lumen.upkeep.judge_process import JudgeProcess, NoAnswerError
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.console_settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
+from lumen.features.console.settings import CONSOLE_HOST, CONSOLE_PORT, ConsoleSettings
 from lumen.project.document_report import DocumentReport
 
 

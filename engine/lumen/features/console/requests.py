@@ -7,11 +7,11 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import Response
 
-from lumen.console.access import COOKIE, Access, TooFastError
-from lumen.console.gate import json_object, refused
-from lumen.console.known_robot import KnownRobot
-from lumen.console.people import Person, Role
-from lumen.console.watch import Watch
+from lumen.features.console.access import COOKIE, Access, TooFastError
+from lumen.features.console.gate import json_object, refused
+from lumen.features.console.known_robot import KnownRobot
+from lumen.features.console.people import Person, Role
+from lumen.features.console.watch import Watch
 from lumen.upkeep.ratelimit import RateLimiter
 
 NO_STORE = {"Cache-Control": "no-store"}

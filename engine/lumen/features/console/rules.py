@@ -2,7 +2,7 @@
 
 import re
 
-from lumen.language.console_settings import ConsoleSettings
+from lumen.features.console.settings import ConsoleSettings
 from lumen.language.diagnostics import ERROR, Code
 from lumen.lint.routes import PASSWORD_IN_FILE
 from lumen.project.draft import ProjectDraft

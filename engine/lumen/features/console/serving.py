@@ -11,12 +11,12 @@ from pathlib import Path
 
 import uvicorn
 
-from lumen.console.access import Access, secret_in
-from lumen.console.connections import KnownConnection
-from lumen.console.gate import LOOPBACK, Gate
-from lumen.console.people import Role
-from lumen.console.site import Site
-from lumen.console.watch import Watch
+from lumen.features.console.access import Access, secret_in
+from lumen.features.console.connections import KnownConnection
+from lumen.features.console.gate import LOOPBACK, Gate
+from lumen.features.console.people import Role
+from lumen.features.console.site import Site
+from lumen.features.console.watch import Watch
 from lumen.errors import UsageError
 from lumen.run.reaching import Reached
 

@@ -4,12 +4,12 @@ from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
 from starlette.routing import Route
 
-from lumen.console.camera import MEDIA_TYPE, Cameras
-from lumen.console.jobs import Jobs
-from lumen.console.known_robot import KnownRobot
-from lumen.console.people import Role
-from lumen.console.poses import Poses
-from lumen.console.requests import NO_STORE, DeniedError, Reception
+from lumen.features.console.camera import MEDIA_TYPE, Cameras
+from lumen.features.console.jobs import Jobs
+from lumen.features.console.known_robot import KnownRobot
+from lumen.features.console.people import Role
+from lumen.features.console.poses import Poses
+from lumen.features.console.requests import NO_STORE, DeniedError, Reception
 
 STREAM = "text/event-stream"
 

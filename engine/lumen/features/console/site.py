@@ -14,18 +14,18 @@ from starlette.responses import FileResponse, Response, StreamingResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from lumen.console.access import COOKIE, MAX_NAME, SESSION_TIME, Access, TooFastError
-from lumen.console.commands import Commands, PageCommand
-from lumen.console.fleet_pages import FleetPages
-from lumen.console.jobs import Jobs
-from lumen.console.known_robot import KnownRobot
-from lumen.console.orders import NEEDS, REST
-from lumen.console.past import Past
-from lumen.console.people import Person, Role
-from lumen.console.requests import ALL, NO_STORE, DeniedError, Reception, address_of, as_json, say_why_not
-from lumen.console.sights import STREAM, Sights
-from lumen.console.streams import Listener, Streams, positions_in
-from lumen.console.watch import Watch
+from lumen.features.console.access import COOKIE, MAX_NAME, SESSION_TIME, Access, TooFastError
+from lumen.features.console.commands import Commands, PageCommand
+from lumen.features.console.fleet_pages import FleetPages
+from lumen.features.console.jobs import Jobs
+from lumen.features.console.known_robot import KnownRobot
+from lumen.features.console.orders import NEEDS, REST
+from lumen.features.console.past import Past
+from lumen.features.console.people import Person, Role
+from lumen.features.console.requests import ALL, NO_STORE, DeniedError, Reception, address_of, as_json, say_why_not
+from lumen.features.console.sights import STREAM, Sights
+from lumen.features.console.streams import Listener, Streams, positions_in
+from lumen.features.console.watch import Watch
 from lumen.errors import UsageError
 from lumen.language.iso_time import iso_time
 from lumen.project.project_folders import FLEET_FILE

@@ -5,9 +5,9 @@ from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from lumen.console.entry_ring import EncodedEntry
-from lumen.console.known_robot import KnownRobot
-from lumen.console.watch import Watch
+from lumen.features.console.entry_ring import EncodedEntry
+from lumen.features.console.known_robot import KnownRobot
+from lumen.features.console.watch import Watch
 from lumen.errors import BusError
 
 HEARTBEAT = 1.0

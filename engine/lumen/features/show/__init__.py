@@ -4,13 +4,13 @@ from lumen.feature import Feature, ModuleRow, Section
 
 FEATURE = Feature(
     name="show",
-    rules=("lumen.rules.show:check",),
+    rules=("lumen.features.show.rules:check",),
     sections={
         "modules.show": Section(
-            read="lumen.loading.show:read_show",
+            read="lumen.features.show.reading:read_show",
             title="the output to lamps, screens and sound desks (`modules.show`)",
             risk="wiring",
         )
     },
-    modules={"show": ModuleRow("lumen.modules.show:ShowControl")},
+    modules={"show": ModuleRow("lumen.features.show.module:ShowControl")},
 )

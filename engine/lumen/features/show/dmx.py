@@ -9,9 +9,9 @@ from contextlib import suppress
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.language.show import DmxLink
-from lumen.modules.show.channels import CHANNELS, PORT, channel_level, data_packet, multicast_group
-from lumen.modules.show.health import LinkHealth
+from lumen.features.show.channels import CHANNELS, PORT, channel_level, data_packet, multicast_group
+from lumen.features.show.health import LinkHealth
+from lumen.features.show.settings import DmxLink
 from lumen.project.message_fields import SchemaField
 
 KEEP_ALIVE = 0.8

@@ -7,6 +7,6 @@ osc.py            a device that takes OSC   arguments.py  bodies as its argument
 dmx.py            a universe over sACN      channels.py   bodies as its channels, and the packet
 """
 
-from lumen.modules.show.show_control import ShowControl
+from lumen.features.show.show_control import ShowControl
 
 __all__ = ["ShowControl"]

@@ -11,11 +11,11 @@ from paho.mqtt.client import Client, MQTTMessage
 from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode, MQTTProtocolVersion
 
 from lumen.errors import ModuleError
+from lumen.features.show.device_link import TakeFromDevice
+from lumen.features.show.health import LinkHealth
+from lumen.features.show.payloads import body_of_payload, payload_of
+from lumen.features.show.settings import MqttLink
 from lumen.language.routes import Carried, Route
-from lumen.language.show import MqttLink
-from lumen.modules.show.device_link import TakeFromDevice
-from lumen.modules.show.health import LinkHealth
-from lumen.modules.show.payloads import body_of_payload, payload_of
 from lumen.project.message_fields import SchemaField
 from lumen.upkeep.drops import Drops
 from lumen.upkeep.threads import WatchedThread

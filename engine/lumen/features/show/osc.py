@@ -7,10 +7,10 @@ from contextlib import suppress
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.language.show import OscLink
-from lumen.modules.show.arguments import body_of_arguments, message_of, messages_of
-from lumen.modules.show.device_link import TakeFromDevice
-from lumen.modules.show.health import LinkHealth
+from lumen.features.show.arguments import body_of_arguments, message_of, messages_of
+from lumen.features.show.device_link import TakeFromDevice
+from lumen.features.show.health import LinkHealth
+from lumen.features.show.settings import OscLink
 from lumen.project.message_fields import SchemaField
 from lumen.upkeep.drops import Drops
 from lumen.upkeep.threads import WatchedThread

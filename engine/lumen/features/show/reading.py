@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.modules import SHOW
-from lumen.language.show import (
+from lumen.features.show.settings import (
     MQTT_PORT,
     MQTT_TLS_PORT,
     AddressMapping,
@@ -14,6 +13,7 @@ from lumen.language.show import (
     Show,
     TopicMapping,
 )
+from lumen.language.modules import SHOW
 from lumen.project.document_report import DocumentReport
 
 

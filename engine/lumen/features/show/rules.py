@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 
+from lumen.features.show.settings import SHOW_PATH, DmxLink, MqttLink, OscLink, Show, may_come_from_devices
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.routes import Direction, Route
-from lumen.language.show import SHOW_PATH, DmxLink, MqttLink, OscLink, Show, may_come_from_devices
 from lumen.lint.references import known_route
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft

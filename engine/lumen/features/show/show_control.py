@@ -8,12 +8,12 @@ from functools import partial
 from typing import Any
 
 from lumen.errors import BusError, ModuleError
+from lumen.features.show.device_link import DeviceLink
+from lumen.features.show.health import LinkHealth
+from lumen.features.show.settings import MqttLink, Show, TopicMapping, may_come_from_devices
 from lumen.language.modules import SHOW
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
-from lumen.language.show import MqttLink, Show, TopicMapping, may_come_from_devices
-from lumen.modules.show.device_link import DeviceLink
-from lumen.modules.show.health import LinkHealth
 from lumen.ports import Bus, Message, MessageHandler, UsesBroker
 from lumen.project.message_fields import SchemaField, message_fields
 from lumen.run.module import Module
@@ -111,7 +111,7 @@ class ShowControl(Module):
     def _mqtt(self, show: Show) -> DeviceLink | None:
         if show.mqtt is None:
             return None
-        from lumen.modules.show.mqtt import MqttBroker
+        from lumen.features.show.mqtt import MqttBroker
 
         link = replace(show.mqtt, routes=self._foreign(show.mqtt))
         return MqttBroker(
@@ -128,7 +128,7 @@ class ShowControl(Module):
     def _osc(self, show: Show) -> DeviceLink | None:
         if show.osc is None:
             return None
-        from lumen.modules.show.osc import OscDevice
+        from lumen.features.show.osc import OscDevice
 
         link = show.osc
         fields = {}
@@ -141,7 +141,7 @@ class ShowControl(Module):
     def _dmx(self, show: Show) -> DeviceLink | None:
         if show.dmx is None:
             return None
-        from lumen.modules.show.dmx import DmxUniverse
+        from lumen.features.show.dmx import DmxUniverse
 
         link = show.dmx
         fields = {name: self._fields(name) for name in link.routes}

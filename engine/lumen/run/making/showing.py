@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumen.app.parts.console import ConsolePart
+from lumen.features.console.part import ConsolePart
 from lumen.features.film.part import FilmPart
 from lumen.features.film.progress import FilmProgress
 from lumen.run.audio_track import AudioTrack
