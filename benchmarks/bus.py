@@ -30,7 +30,7 @@ import lumen
 from lumen.bus import Bus, connect
 from lumen.bus.bodies import decode, encode
 from lumen.bus.validated import validated
-from lumen.buses.packing import packed, unpacked
+from lumen.features.rabbitmq.packing import packed, unpacked
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE, Carried, Direction, Route
 from lumen.ports import Image, Joints, Sense
 from lumen.robot.recording import RecordingRobot

@@ -11,17 +11,17 @@ import tempfile
 import time
 from pathlib import Path
 
-from lumen.app.fleet.centre import Centre
-from lumen.app.fleet.centre_journal import CentreJournal
-from lumen.app.fleet.fleet_log import FleetLog
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.keys import desired_key, presence_key
-from lumen.app.fleet.signing import Signer, generate
 from lumen.bus.memory import MemoryBus
-from lumen.interpreters.fleet.presence import RobotPresence
-from lumen.interpreters.fleet.rollout import begin
-from lumen.interpreters.fleet.state import CentreState
-from lumen.language.fleet import Fleet, FleetHouse, FleetMeasure, RolloutPlan, StepTarget
+from lumen.features.fleet.centre import Centre
+from lumen.features.fleet.centre_journal import CentreJournal
+from lumen.features.fleet.fleet_log import FleetLog
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.keys import desired_key, presence_key
+from lumen.features.fleet.rollouts.presence import RobotPresence
+from lumen.features.fleet.rollouts.rollout import begin
+from lumen.features.fleet.rollouts.state import CentreState
+from lumen.features.fleet.settings import Fleet, FleetHouse, FleetMeasure, RolloutPlan, StepTarget
+from lumen.features.fleet.signing import Signer, generate
 from lumen.project.home import Home
 
 HOUSE = 10

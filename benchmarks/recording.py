@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import lumen
-from lumen.formats.recordings.reading import read_recording
-from lumen.formats.recordings.recorded import RecordedMessage
+from lumen.features.mcap.files.reading import read_recording
+from lumen.features.mcap.files.recorded import RecordedMessage
 from lumen.language.retention import RecordingSettings
 from lumen.run.exhibition import Exhibition
 from lumen.run.loop import TICK_PERIOD

@@ -21,7 +21,7 @@ from tests.rabbitmq import LentBroker, RabbitMQ
 
 PHYSICS = ("lumen.robots.simulation", "mujoco", "dm_control")
 """What lives in MuJoCo's world."""
-NETWORK = ("http.", "socket", "lumen.features.console.serving", "lumen.buses.broker", "lumen.bus.local")
+NETWORK = ("http.", "socket", "lumen.features.console.serving", "lumen.features.rabbitmq.broker", "lumen.bus.local")
 """What opens ports or connections."""
 BROWSER = "tests.console.browser"
 OWN_SERVERS = "own servers"

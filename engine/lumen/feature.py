@@ -34,7 +34,7 @@ BUILT_IN = (
     "lumen.features.show:FEATURE",
     "lumen.features.answers:FEATURE",
     "lumen.features.journal:FEATURE",
-    "lumen.features.recording:FEATURE",
+    "lumen.features.mcap:FEATURE",
     "lumen.features.reload:FEATURE",
     "lumen.features.console:FEATURE",
     "lumen.features.editor:FEATURE",

@@ -11,7 +11,7 @@ import pytest
 from pika.heartbeat import HeartbeatChecker
 
 from lumen.bus import Bus, BusError, Message, connect
-from lumen.buses.outbox import OutgoingMessage
+from lumen.features.rabbitmq.outbox import OutgoingMessage
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
 from tests.waiting import HANG, Collector, finished, threads, until

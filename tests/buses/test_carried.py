@@ -9,8 +9,8 @@ import pika
 import pytest
 
 from lumen.bus import Bus, BusError, Message, Refused, connect
-from lumen.buses.consumer import PREFETCH
-from lumen.buses.polled import PolledConnection
+from lumen.features.rabbitmq.consumer import PREFETCH
+from lumen.features.rabbitmq.polled import PolledConnection
 from lumen.language.routes import Carried, Direction, Route
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay

@@ -11,9 +11,9 @@ import pytest
 
 from lumen.bus import Bus, connect
 from lumen.bus import intake as taking
-from lumen.buses.intake import SPENT_BATCH, Intake
-from lumen.buses.properties import MessageProperties
-from lumen.buses.subscriptions import Delivery, Subscription
+from lumen.features.rabbitmq.intake import SPENT_BATCH, Intake
+from lumen.features.rabbitmq.properties import MessageProperties
+from lumen.features.rabbitmq.subscriptions import Delivery, Subscription
 from lumen.language.routes import MAX_RATE, USUAL_RATE, Carried, Direction, Route
 from lumen.upkeep.ratelimit import BURST, RateLimiter
 from tests.rabbitmq import RabbitMQ

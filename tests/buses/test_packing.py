@@ -18,7 +18,7 @@ from PIL import Image as Picture
 import lumen
 from lumen.bus import connect, publisher
 from lumen.bus.validated import validated
-from lumen.buses.packing import packed, unpacked
+from lumen.features.rabbitmq.packing import packed, unpacked
 from lumen.language.projects import Project
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE, Direction, Route
 from lumen.ports import Image, Reading, Sense

@@ -7,7 +7,7 @@ from socket import socketpair
 
 import pytest
 
-from lumen.buses.poll_loop import PollLoop
+from lumen.features.rabbitmq.poll_loop import PollLoop
 
 
 @pytest.fixture

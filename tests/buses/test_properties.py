@@ -10,10 +10,10 @@ import pika
 import pytest
 
 from lumen.bus import connect
-from lumen.buses.outbox import OutgoingMessage
-from lumen.buses.polled import PolledConnection
-from lumen.buses.properties import MessageProperties, header_fields, read_properties
-from lumen.buses.publisher import Publisher
+from lumen.features.rabbitmq.outbox import OutgoingMessage
+from lumen.features.rabbitmq.polled import PolledConnection
+from lumen.features.rabbitmq.properties import MessageProperties, header_fields, read_properties
+from lumen.features.rabbitmq.publisher import Publisher
 from tests.attack.messages import PROPERTIES, HostileMessage, Stranger, encoded, header, nested
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import Collector, until

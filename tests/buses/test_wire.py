@@ -10,8 +10,8 @@ from pika import frame, spec
 from pika.adapters.select_connection import IOLoop
 from pika.exceptions import InvalidFrameError
 
-from lumen.buses.properties import MessageProperties, read_properties, write_properties
-from lumen.buses.wire import WireConnection
+from lumen.features.rabbitmq.properties import MessageProperties, read_properties, write_properties
+from lumen.features.rabbitmq.wire import WireConnection
 from tests.tables import for_each
 
 PIECE = 50

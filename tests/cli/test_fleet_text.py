@@ -1,7 +1,7 @@
 """What `lumen fleet log` prints for people."""
 
-from lumen.cli.fleet_text import log_lines
 from lumen.cli.tables import table
+from lumen.features.fleet.text import log_lines
 
 
 def test_a_log_says_what_happened_when_and_what_was_counted_with_each_bundle() -> None:

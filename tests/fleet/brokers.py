@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from lumen.app.fleet.brokers import CENTRE, OPERATORS, PLUGINS, ROBOTS, write_settings
-from lumen.language.fleet import Fleet, FleetHouse
+from lumen.features.fleet.brokers import CENTRE, OPERATORS, PLUGINS, ROBOTS, write_settings
+from lumen.features.fleet.settings import Fleet, FleetHouse
 from tests.certificates import certify
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from lumen.app.fleet.brokers import CENTRE
 from lumen.cli.main import main
+from lumen.features.fleet.brokers import CENTRE
 from tests.fleet.brokers import FleetBrokers
 from tests.guarded import run_guarded
 

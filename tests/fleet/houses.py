@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from lumen.app.fleet.agent import FleetAgent
-from lumen.app.fleet.bundle import messages_of
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.memory import AgentMemory
-from lumen.app.fleet.signing import ORDER, Signer
-from lumen.interpreters.fleet.orders import DesiredState
+from lumen.features.fleet.agent import FleetAgent
+from lumen.features.fleet.bundle import messages_of
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.memory import AgentMemory
+from lumen.features.fleet.rollouts.orders import DesiredState
+from lumen.features.fleet.signing import ORDER, Signer
 from lumen.project.files import fingerprint, read_files
 from tests import ROOT
 

@@ -5,15 +5,15 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from lumen.app.fleet.agent import FleetAgent
-from lumen.app.fleet.brokers import CENTRE
-from lumen.app.fleet.bundle import messages_of
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.keys import bundle_key, desired_key, presence_key
-from lumen.app.fleet.memory import AgentMemory
-from lumen.app.fleet.serving import ServedCentre
-from lumen.app.fleet.signing import Signer, generate
 from lumen.bus import connect
+from lumen.features.fleet.agent import FleetAgent
+from lumen.features.fleet.brokers import CENTRE
+from lumen.features.fleet.bundle import messages_of
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.keys import bundle_key, desired_key, presence_key
+from lumen.features.fleet.memory import AgentMemory
+from lumen.features.fleet.serving import ServedCentre
+from lumen.features.fleet.signing import Signer, generate
 from lumen.project.files import read_files
 from tests.fleet.brokers import HOUSES, FleetBrokers
 from tests.fleet.houses import Taker, project

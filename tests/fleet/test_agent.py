@@ -9,14 +9,14 @@ from typing import Any
 
 import pytest
 
-from lumen.app.fleet.bundle import messages_of, packed
-from lumen.app.fleet.house_keys import at_home
-from lumen.app.fleet.installing import all_have, finish
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.memory import AgentMemory, keep, remember
-from lumen.app.fleet.signing import BUNDLE, ORDER, Signer, generate, verified
 from lumen.errors import UsageError
-from lumen.interpreters.fleet.presence import presence_from
+from lumen.features.fleet.bundle import messages_of, packed
+from lumen.features.fleet.house_keys import at_home
+from lumen.features.fleet.installing import all_have, finish
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.memory import AgentMemory, keep, remember
+from lumen.features.fleet.rollouts.presence import presence_from
+from lumen.features.fleet.signing import BUNDLE, ORDER, Signer, generate, verified
 from lumen.project.files import FLEET_FILE, fingerprint, read_files
 from lumen.project.home import Home, home_of
 from tests.fleet.houses import House, changed, ordered, project

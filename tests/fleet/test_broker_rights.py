@@ -4,9 +4,9 @@ import copy
 from collections.abc import Callable
 from typing import Any
 
-from lumen.app.fleet.broker_rights import compare
-from lumen.app.fleet.brokers import ROBOTS, UP, house_settings
-from lumen.language.fleet import Fleet, FleetHouse
+from lumen.features.fleet.broker_rights import compare
+from lumen.features.fleet.brokers import ROBOTS, UP, house_settings
+from lumen.features.fleet.settings import Fleet, FleetHouse
 from tests.tables import for_each
 
 FLEET = Fleet("amqps://centre.example/", houses={"itb": FleetHouse("amqps://itb.example/", ("nao1",))})

@@ -12,13 +12,13 @@ import pika
 import pytest
 from pika.exceptions import ChannelClosedByBroker
 
-from lumen.app.fleet.broker_finding import BrokerFinding
-from lumen.app.fleet.broker_links import check_links
-from lumen.app.fleet.brokers import CENTRE, UP, write_settings
-from lumen.app.fleet.keys import EXCHANGE, incident_key
-from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.bus import connect
 from lumen.cli.main import main
+from lumen.features.fleet.broker_finding import BrokerFinding
+from lumen.features.fleet.broker_links import check_links
+from lumen.features.fleet.brokers import CENTRE, UP, write_settings
+from lumen.features.fleet.keys import EXCHANGE, incident_key
+from lumen.features.fleet.rabbitmqctl import RabbitMQControl
 from tests.fleet.brokers import HOUSES, FleetBrokers
 from tests.fleet.checking import checked, ctl, mended, wrong
 from tests.fleet.houses import changed
@@ -207,7 +207,7 @@ def test_what_the_centre_lacks_is_told(
     assert wrong(found) == {}
     assert found["the certificate"]["note"].startswith("it is valid until ")
     ctl(own_broker, CENTRE, "clear_topic_permissions", "itb", EXCHANGE)
-    monkeypatch.setattr("lumen.app.fleet.broker_certificate.NOTICE", 100)
+    monkeypatch.setattr("lumen.features.fleet.broker_certificate.NOTICE", 100)
     found = checked(own_broker, museums.root, CENTRE, capsys)
     assert wrong(found).keys() == {"the certificate", f"the topic permissions of the user itb on {EXCHANGE}"}
     assert re.fullmatch(r"it expires on \d{4}-\d\d-\d\d, in \d+ days", found["the certificate"]["wrong"])
@@ -228,7 +228,7 @@ def test_what_was_not_looked_at_is_not_well(
     where = ["--project", str(museums.root), "--bus", own_broker.url(CENTRE)]
     assert main(["fleet", "check", "itb", *where, "--rabbitmqctl", "false"]) == 1
     assert f"!! the queue {UP}: it is missing\n   rabbitmqctl import_definitions" in capsys.readouterr().out
-    monkeypatch.setattr("lumen.cli.fleet.ANSWER_TIMEOUT", 0.2)
+    monkeypatch.setattr("lumen.features.fleet.command.ANSWER_TIMEOUT", 0.2)
     museums.served._desk.close()
     assert main(["fleet", "status", *where]) == 2
     assert "no centre answers on 127.0.0.1" in capsys.readouterr().err

@@ -9,16 +9,16 @@ from typing import Any
 
 import pytest
 
-from lumen.app.fleet.agent import FleetAgent
-from lumen.app.fleet.bundle import messages_of
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.keys import bundle_key, desired_key, incident_key, presence_key
-from lumen.app.fleet.memory import AgentMemory
-from lumen.app.fleet.serving import ServedCentre, fleet_in
-from lumen.app.fleet.signing import Signer, generate
 from lumen.bus.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.errors import UsageError
+from lumen.features.fleet.agent import FleetAgent
+from lumen.features.fleet.bundle import messages_of
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.keys import bundle_key, desired_key, incident_key, presence_key
+from lumen.features.fleet.memory import AgentMemory
+from lumen.features.fleet.serving import ServedCentre, fleet_in
+from lumen.features.fleet.signing import Signer, generate
 from lumen.project.files import fingerprint, read_files
 from tests.fleet.houses import Taker, changed, project
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lumen.interpreters.fleet.conditions import condition_faults, holds, meant
+from lumen.features.fleet.rollouts.conditions import condition_faults, holds, meant
 from tests.tables import for_each
 
 MEASURES = {"falls": None, "errors": None}

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.fleet.fleet_log import FleetLog
-from lumen.buses.stream_reader import StreamEntry
-from lumen.language.fleet import FleetMeasure
+from lumen.features.fleet.fleet_log import FleetLog
+from lumen.features.fleet.settings import FleetMeasure
+from lumen.features.rabbitmq.stream_reader import StreamEntry
 from lumen.project.home import Home
 
 NOW = 1_800_000_000.0

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lumen.interpreters.fleet.rollout import abort, allowed, begin, decide, step, take_over
-from lumen.interpreters.fleet.state import ABORTED, FINISHED, PERSON
-from lumen.language.fleet import FleetGroup, RolloutPlan, StepTarget
+from lumen.features.fleet.rollouts.rollout import abort, allowed, begin, decide, step, take_over
+from lumen.features.fleet.rollouts.state import ABORTED, FINISHED, PERSON
+from lumen.features.fleet.settings import FleetGroup, RolloutPlan, StepTarget
 from tests.fleet.world import OLD, PLAN, World
 
 NEW, NEXT = "b" * 64, "c" * 64

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.fleet.bundle import messages_of
-from lumen.app.fleet.memory import memory_file
-from lumen.app.fleet.signing import Signer, generate
 from lumen.bus.memory import MemoryBus
+from lumen.features.fleet.bundle import messages_of
+from lumen.features.fleet.memory import memory_file
+from lumen.features.fleet.signing import Signer, generate
 from lumen.project import load
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import home_of

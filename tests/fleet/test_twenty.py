@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.fleet.brokers import CENTRE
-from lumen.app.fleet.bundle import messages_of
-from lumen.app.fleet.installing import finish
-from lumen.app.fleet.part import FleetPart
-from lumen.app.fleet.serving import ServedCentre
-from lumen.app.fleet.signing import Signer, generate
 from lumen.bus import connect
-from lumen.interpreters.fleet.rollout import allowed
+from lumen.features.fleet.brokers import CENTRE
+from lumen.features.fleet.bundle import messages_of
+from lumen.features.fleet.installing import finish
+from lumen.features.fleet.part import FleetPart
+from lumen.features.fleet.rollouts.rollout import allowed
+from lumen.features.fleet.serving import ServedCentre
+from lumen.features.fleet.signing import Signer, generate
 from lumen.project.files import fingerprint, read_files
 from lumen.run.exhibition import Exhibition
 from lumen.run.plan import Plan

@@ -3,11 +3,11 @@
 import random
 from dataclasses import dataclass, field, replace
 
-from lumen.interpreters.fleet.orders import NOT, DesiredState, FollowedOrder, heed
-from lumen.interpreters.fleet.presence import PROBATION, PROVED, REFUSED, ROLLED_BACK, SAME, RobotPresence
-from lumen.interpreters.fleet.rollout import begin, decide, step
-from lumen.interpreters.fleet.state import PERSON, CentreState, HeardPresence, state_from_json, state_to_json
-from lumen.language.fleet import Fleet, FleetHouse, FleetMeasure, RolloutPlan, StepTarget
+from lumen.features.fleet.rollouts.orders import NOT, DesiredState, FollowedOrder, heed
+from lumen.features.fleet.rollouts.presence import PROBATION, PROVED, REFUSED, ROLLED_BACK, SAME, RobotPresence
+from lumen.features.fleet.rollouts.rollout import begin, decide, step
+from lumen.features.fleet.rollouts.state import PERSON, CentreState, HeardPresence, state_from_json, state_to_json
+from lumen.features.fleet.settings import Fleet, FleetHouse, FleetMeasure, RolloutPlan, StepTarget
 
 OLD = "a" * 64
 PERIOD = 10.0

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from lumen.bus import connect
-from lumen.buses.consumer import Consumer
+from lumen.features.rabbitmq.consumer import Consumer
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.run.loop import Observer

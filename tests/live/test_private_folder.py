@@ -18,7 +18,7 @@ from tests.scanning import matching
 ENGINE = ROOT / "engine/lumen"
 MAKERS = {
     "upkeep/private_folder.py": "the one function",
-    "app/fleet/installing.py": "a folder of the project, which is to be committed",
+    "features/fleet/installing.py": "a folder of the project, which is to be committed",
     "run/new_passage.py": "knowledge/ of the project, which is to be committed",
     "run/new_saying.py": "behaviors/sayings/ of the project, which is to be committed",
     "run/linting/outcome_cache.py": "a folder within a private one",

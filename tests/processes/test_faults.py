@@ -99,7 +99,7 @@ def test_a_brain_that_is_killed_goes_on_where_it_was_with_a_file_edited_in_betwe
 
 DYING = """
 import os, signal, sys
-from lumen.buses.consumer import Consumer
+from lumen.features.rabbitmq.consumer import Consumer
 from lumen.cli.main import main
 from lumen.robot.recording import RecordingRobot
 perform = RecordingRobot.start

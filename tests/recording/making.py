@@ -11,9 +11,9 @@ from mcap.reader import make_reader
 from mcap.records import Message as McapMessage
 from mcap.stream_reader import StreamReader
 
-from lumen.formats.recordings.encoding import MessageEncoder, origin_of
-from lumen.formats.recordings.recorded import RecordedMessage
-from lumen.formats.recordings.recording_file import RecordingFile
+from lumen.features.mcap.files.encoding import MessageEncoder, origin_of
+from lumen.features.mcap.files.recorded import RecordedMessage
+from lumen.features.mcap.files.recording_file import RecordingFile
 from lumen.ports import Message
 
 BEGAN = 1_790_000_000.0

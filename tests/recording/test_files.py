@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 from lumen.cli.main import main
 from lumen.errors import RecordingError
-from lumen.formats.recordings.encoding import origin_of
-from lumen.formats.recordings.foxglove import form_class
-from lumen.formats.recordings.reading import read_recording, whole
-from lumen.formats.recordings.recorded import RecordedFile, RecordedMessage, RecordedNotes
-from lumen.formats.recordings.recording_file import RecordingFile, writable
-from lumen.formats.recordings.rewriting import recover, rewrite
+from lumen.features.mcap.files.encoding import origin_of
+from lumen.features.mcap.files.foxglove import form_class
+from lumen.features.mcap.files.reading import read_recording, whole
+from lumen.features.mcap.files.recorded import RecordedFile, RecordedMessage, RecordedNotes
+from lumen.features.mcap.files.recording_file import RecordingFile, writable
+from lumen.features.mcap.files.rewriting import recover, rewrite
 from lumen.language.projects import Project
 from tests.journal.making import minimal
 from tests.recording.making import BEGAN, JPEG, bodies, encoded, picture, readable, said, write
@@ -51,7 +51,7 @@ def test_a_message_has_its_route_s_schema() -> None:
 
     import orjson
 
-    from lumen.formats.recordings.encoding import MessageEncoder
+    from lumen.features.mcap.files.encoding import MessageEncoder
 
     project: Project = minimal()
     schema = {"type": "object", "properties": {"result": {"type": "string"}}, "required": ["result"]}

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import orjson
 
-from lumen.app.recording.recordings_folder import RecordingsFolder
-from lumen.formats.recordings.reading import read_recording
-from lumen.formats.recordings.recorded import RecordedMessage
+from lumen.features.mcap.files.reading import read_recording
+from lumen.features.mcap.files.recorded import RecordedMessage
+from lumen.features.mcap.recordings_folder import RecordingsFolder
 from lumen.run.forgetting.files import forget_in
 from lumen.run.forgetting.report import Forgetting
 from tests.recording.making import bodies, encoded, picture, said, write

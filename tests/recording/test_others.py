@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.formats.recordings.foxglove import form_class
-from lumen.formats.recordings.rewriting import recover
+from lumen.features.mcap.files.foxglove import form_class
+from lumen.features.mcap.files.rewriting import recover
 from lumen.run.exhibition import Exhibition
 from lumen.run.plan import Plan
 from lumen.run.recovery.run_directory import RunDirectory

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.recording import recorder as recording
-from lumen.app.recording.happenings import happening
-from lumen.app.recording.recorder import Recorder
-from lumen.app.recording.recordings_folder import RecordingsFolder
-from lumen.app.recording.tape_file import FileTape
 from lumen.bus.memory import MemoryBus
-from lumen.formats.recordings.recorded import Recorded
-from lumen.formats.recordings.recording_file import RecordingFile
+from lumen.features.mcap import recorder as recording
+from lumen.features.mcap.files.recorded import Recorded
+from lumen.features.mcap.files.recording_file import RecordingFile
+from lumen.features.mcap.happenings import happening
+from lumen.features.mcap.recorder import Recorder
+from lumen.features.mcap.recordings_folder import RecordingsFolder
+from lumen.features.mcap.tape_file import FileTape
 from lumen.language.causes import MessageOrigin
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
@@ -111,7 +111,7 @@ def test_a_full_disk_is_told_once_and_what_was_written_is_recovered(
     assert "no space left" in recorder.trouble
     assert len([line for line in caplog.messages if "can't be written" in line]) == 1
     monkeypatch.undo()
-    from lumen.formats.recordings.rewriting import recover
+    from lumen.features.mcap.files.rewriting import recover
 
     assert recover(path) == 1
 

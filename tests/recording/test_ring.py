@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from lumen.app.recording import ring as ringing
-from lumen.app.recording.recordings_folder import RecordingsFolder
-from lumen.app.recording.recovering import RecordingRescue
-from lumen.app.recording.ring import RingTape
+from lumen.features.mcap import ring as ringing
+from lumen.features.mcap.recordings_folder import RecordingsFolder
+from lumen.features.mcap.recovering import RecordingRescue
+from lumen.features.mcap.ring import RingTape
 from lumen.language.people import PersonName
 from lumen.language.retention import RecordingSettings
 from tests.recording.making import BEGAN, bodies, encoded, said, write

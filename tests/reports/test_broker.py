@@ -18,18 +18,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen import load
-from lumen.app.fleet.broker_check import check_broker
-from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.bus import connect
 from lumen.bus.bodies import JSON, TEXT, decode
 from lumen.bus.checking import SchemaCheck
 from lumen.bus.validated import validated
-from lumen.buses.broker import BrokerAddress, shortage
-from lumen.buses.probe import BrokerProbe
 from lumen.cli.main import main
 from lumen.errors import BusAddressError, BusUnreachableError
+from lumen.features.fleet.broker_check import check_broker
+from lumen.features.fleet.rabbitmqctl import RabbitMQControl
+from lumen.features.fleet.settings import Fleet, FleetHouse
+from lumen.features.rabbitmq.broker import BrokerAddress, shortage
+from lumen.features.rabbitmq.probe import BrokerProbe
 from lumen.language.addresses import public
-from lumen.language.fleet import Fleet, FleetHouse
 from lumen.lint import check_files
 from lumen.ports import BlockableBus, UsesBroker
 from lumen.project.files import read_files
@@ -188,9 +188,9 @@ def silent_port() -> Iterator[int]:
 @pytest.fixture
 def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorten the waits for a broker that never answers."""
-    monkeypatch.setattr("lumen.buses.polled.BROKER_TIMEOUT", 0.2)
-    monkeypatch.setattr("lumen.buses.broker.SOCKET_TIMEOUT", 0.2)
-    monkeypatch.setattr("lumen.buses.broker.BROKER_TIMEOUT", 0.2)
+    monkeypatch.setattr("lumen.features.rabbitmq.polled.BROKER_TIMEOUT", 0.2)
+    monkeypatch.setattr("lumen.features.rabbitmq.broker.SOCKET_TIMEOUT", 0.2)
+    monkeypatch.setattr("lumen.features.rabbitmq.broker.BROKER_TIMEOUT", 0.2)
     monkeypatch.setattr("lumen.cli.doctor.LISTENING", 0.2)
 
 
@@ -226,7 +226,7 @@ def test_a_broker_that_hangs_after_the_login_is_reported(
     with closing(relay), closing(BrokerProbe(f"amqp://guest:guest@{broker.place(relay.port)}")) as probe:
         assert ask(probe) == ""
         relay.cut()
-        monkeypatch.setattr("lumen.buses.polled.BROKER_TIMEOUT", 0.2)
+        monkeypatch.setattr("lumen.features.rabbitmq.polled.BROKER_TIMEOUT", 0.2)
         with pytest.raises(BusUnreachableError, match="does not answer"):
             ask(probe)
 

@@ -12,10 +12,10 @@ import pytest
 from lumen.bus import connect
 from lumen.bus import intake as taking
 from lumen.bus.validated import validated
-from lumen.buses.dispatcher import Dispatcher
-from lumen.buses.intake import Intake
-from lumen.buses.properties import MessageProperties
-from lumen.buses.subscriptions import Delivery, Subscription
+from lumen.features.rabbitmq.dispatcher import Dispatcher
+from lumen.features.rabbitmq.intake import Intake
+from lumen.features.rabbitmq.properties import MessageProperties
+from lumen.features.rabbitmq.subscriptions import Delivery, Subscription
 from lumen.language.causes import MessageOrigin
 from lumen.language.commands import Rest, Say, Stop
 from lumen.language.motions import MotionDefinition

@@ -9,12 +9,12 @@ from unittest.mock import patch
 
 import pytest
 
-from lumen.app.fleet.house_keys import at_home
 from lumen.cli.main import main
 from lumen.feature import resolve
 from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.completion import complete
 from lumen.features.editor.hover import hover
+from lumen.features.fleet.house_keys import at_home
 from lumen.insight.changes import changes, live
 from lumen.language.projects import Project
 from lumen.lint import check_files

@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 from lumen.bus import connect
 from lumen.bus.addresses import is_rabbitmq, within_process
 from lumen.bus.validated import by_key
-from lumen.buses.probe import BrokerProbe
-from lumen.buses.queues import SIDE_QUEUES
 from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
+from lumen.features.rabbitmq.probe import BrokerProbe
+from lumen.features.rabbitmq.queues import SIDE_QUEUES
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
 from lumen.lint import check_files

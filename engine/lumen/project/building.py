@@ -7,6 +7,7 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 from unicodedata import normalize
 
+from lumen.features.fleet.reading import build_fleet
 from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
 from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
@@ -15,7 +16,6 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.language.shared import SharedKeys
-from lumen.loading.fleet import build_fleet
 from lumen.loading.knowledge import build_passage, build_questions
 from lumen.loading.markdown import MARKDOWN_SUFFIX
 from lumen.project.behaviors import build_machine

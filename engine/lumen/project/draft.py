@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ProjectError
+from lumen.features.fleet.settings import Fleet
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
-from lumen.language.fleet import Fleet
 from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.gestures import GestureLibrary
 from lumen.language.knowledge import Passage, QuestionSet

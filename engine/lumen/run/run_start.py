@@ -7,8 +7,8 @@ from pathlib import Path
 
 from lumen.app.alerts.alert import Origin
 from lumen.app.alerts.desk import AlertDesk
-from lumen.app.fleet.installing import finish as finish_installing
 from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotError, UsageError
+from lumen.features.fleet.installing import finish as finish_installing
 from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project

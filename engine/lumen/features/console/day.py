@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from datetime import date, datetime
 from typing import Any, NamedTuple
 
-from lumen.app.recording.happenings import FALLEN
 from lumen.features.console.entry_words import ENDS, ENGLISH, MARK, OFTEN
 from lumen.features.console.heard_sentences import HeardSentence, heard_sentence
+from lumen.features.mcap.happenings import FALLEN
 from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.insight.replay.journal_clock import JournalClock
 from lumen.insight.replay.replaying import MachineSource, ReplayedStep, Replayer

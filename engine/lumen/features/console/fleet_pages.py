@@ -6,10 +6,10 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from lumen.app.fleet.keys import ORDER
+from lumen.errors import BusError
 from lumen.features.console.people import Role
 from lumen.features.console.requests import DeniedError, Reception, as_json
-from lumen.errors import BusError
+from lumen.features.fleet.keys import ORDER
 
 ANSWER_TIMEOUT = 5.0
 """How long a centre may take [s]."""

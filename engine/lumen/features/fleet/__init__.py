@@ -4,9 +4,11 @@ from lumen.feature import Feature, Subcommand
 
 FEATURE = Feature(
     name="fleet",
-    rules=("lumen.rules.fleet:check",),
-    codes=("lumen.loading.fleet",),
+    rules=("lumen.features.fleet.rules:check",),
+    codes=("lumen.features.fleet.reading",),
     subcommands={
-        "fleet": Subcommand("update the robots of many houses, step by step", "lumen.cli.fleet", after="doctor"),
+        "fleet": Subcommand(
+            "update the robots of many houses, step by step", "lumen.features.fleet.command", after="doctor"
+        ),
     },
 )

@@ -9,15 +9,14 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
-from lumen.app.fleet.bundle import BadBundleError, BundleParts
-from lumen.app.fleet.bundle_trial import BundleTrial, FileTrier, refusal
-from lumen.app.fleet.house_keys import as_started, fitted
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.memory import AgentMemory
-from lumen.app.fleet.signing import ORDER, verified
 from lumen.errors import UsageError
-from lumen.interpreters.fleet.orders import NOT, desired_from, heed
-from lumen.interpreters.fleet.presence import (
+from lumen.features.fleet.bundle import BadBundleError, BundleParts
+from lumen.features.fleet.bundle_trial import BundleTrial, FileTrier, refusal
+from lumen.features.fleet.house_keys import as_started, fitted
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.memory import AgentMemory
+from lumen.features.fleet.rollouts.orders import NOT, desired_from, heed
+from lumen.features.fleet.rollouts.presence import (
     BROKEN,
     CHECKING,
     FETCHING,
@@ -30,6 +29,7 @@ from lumen.interpreters.fleet.presence import (
     WAITING,
     RobotPresence,
 )
+from lumen.features.fleet.signing import ORDER, verified
 from lumen.project.files import fingerprint
 
 MOST_TRIES = 2

@@ -6,8 +6,8 @@ import time
 from datetime import UTC, datetime
 from typing import Any
 
-from lumen.app.fleet.broker_finding import BrokerFinding
-from lumen.buses.broker import BrokerAddress
+from lumen.features.fleet.broker_finding import BrokerFinding
+from lumen.features.rabbitmq.broker import BrokerAddress
 
 NOTICE = 30
 """How long before its end a certificate is told as wrong [days]."""

@@ -5,17 +5,17 @@ from contextlib import closing
 from typing import Any
 from urllib.parse import quote
 
-from lumen.app.fleet.broker_certificate import check_certificate
-from lumen.app.fleet.broker_finding import BrokerFinding
-from lumen.app.fleet.broker_links import check_links
-from lumen.app.fleet.broker_rights import IMPORT, compare
-from lumen.app.fleet.brokers import CENTRE, OPERATORS, ROBOTS, UP, centre_settings, house_settings
-from lumen.app.fleet.keys import EXCHANGE
-from lumen.app.fleet.rabbitmqctl import RabbitMQControl
-from lumen.buses.broker import BrokerAddress
-from lumen.buses.probe import BrokerProbe
 from lumen.errors import BusError
-from lumen.language.fleet import Fleet
+from lumen.features.fleet.broker_certificate import check_certificate
+from lumen.features.fleet.broker_finding import BrokerFinding
+from lumen.features.fleet.broker_links import check_links
+from lumen.features.fleet.broker_rights import IMPORT, compare
+from lumen.features.fleet.brokers import CENTRE, OPERATORS, ROBOTS, UP, centre_settings, house_settings
+from lumen.features.fleet.keys import EXCHANGE
+from lumen.features.fleet.rabbitmqctl import RabbitMQControl
+from lumen.features.fleet.settings import Fleet
+from lumen.features.rabbitmq.broker import BrokerAddress
+from lumen.features.rabbitmq.probe import BrokerProbe
 
 CALLED = "pass the command for this broker: --rabbitmqctl 'sudo rabbitmqctl', or 'ssh HOST sudo rabbitmqctl'"
 

@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from lumen.app.fleet.broker_finding import BrokerFinding
-from lumen.app.fleet.broker_rights import IMPORT
-from lumen.app.fleet.brokers import UP
-from lumen.app.fleet.keys import EXCHANGE
-from lumen.app.fleet.rabbitmqctl import RabbitMQControl
 from lumen.errors import BusError
+from lumen.features.fleet.broker_finding import BrokerFinding
+from lumen.features.fleet.broker_rights import IMPORT
+from lumen.features.fleet.brokers import UP
+from lumen.features.fleet.keys import EXCHANGE
+from lumen.features.fleet.rabbitmqctl import RabbitMQControl
 
 ENABLE = "rabbitmq-plugins enable rabbitmq_federation rabbitmq_shovel"
 RUNNING = "running"

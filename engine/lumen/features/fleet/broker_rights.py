@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
-from lumen.app.fleet.broker_finding import BrokerFinding
-from lumen.app.fleet.brokers import UP
+from lumen.features.fleet.broker_finding import BrokerFinding
+from lumen.features.fleet.brokers import UP
 
 DefinitionRow = Mapping[str, Any]
 BrokerDefinitions = Mapping[str, list[dict[str, Any]]]

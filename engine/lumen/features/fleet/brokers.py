@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote, urlsplit
 
-from lumen.app.fleet.keys import BUNDLE, DESIRED, EXCHANGE, KEPT, PRESENCE, bundle_key, desired_key
 from lumen.errors import UsageError
-from lumen.language.fleet import Fleet
+from lumen.features.fleet.keys import BUNDLE, DESIRED, EXCHANGE, KEPT, PRESENCE, bundle_key, desired_key
+from lumen.features.fleet.settings import Fleet
 from lumen.upkeep.private_folder import private_folder
 
 CENTRE = "centre"

@@ -8,8 +8,8 @@ import zipfile
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.app.fleet.signing import BUNDLE, Signer, verified
 from lumen.errors import UsageError
+from lumen.features.fleet.signing import BUNDLE, Signer, verified
 from lumen.project.files import MAX_PROJECT_BYTES, belongs, fingerprint
 from lumen.project.project_folders import FLEET_FILE
 from lumen.run.snapshot_store import DAMAGED_BUNDLE

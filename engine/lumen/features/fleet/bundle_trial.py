@@ -3,10 +3,10 @@
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
-from lumen.app.fleet.house_keys import fitted
-from lumen.app.fleet.kept_bundles import BundleFolder
 from lumen.errors import UsageError
-from lumen.interpreters.fleet.presence import DIFFER, MAX_TEXT, REFUSED, SAME
+from lumen.features.fleet.house_keys import fitted
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.rollouts.presence import DIFFER, MAX_TEXT, REFUSED, SAME
 
 
 class FileTrier(Protocol):

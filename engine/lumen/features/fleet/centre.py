@@ -7,21 +7,21 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from lumen.app.fleet.bundle import messages_of
-from lumen.app.fleet.centre_journal import CentreJournal
-from lumen.app.fleet.fleet_log import FleetLog
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.keys import KEPT, PRESENCE, bundle_key, desired_key, robot_of
-from lumen.app.fleet.overview import overview
-from lumen.app.fleet.signing import ORDER, Signer
-from lumen.buses.stream_reader import StreamEntry, StreamReader
 from lumen.errors import BusError, UsageError
-from lumen.interpreters.fleet.orders import DesiredState
-from lumen.interpreters.fleet.presence import presence_from
-from lumen.interpreters.fleet.rollout import step
-from lumen.interpreters.fleet.state import CentreState, HeardPresence
+from lumen.features.fleet.bundle import messages_of
+from lumen.features.fleet.centre_journal import CentreJournal
+from lumen.features.fleet.fleet_log import FleetLog
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.keys import KEPT, PRESENCE, bundle_key, desired_key, robot_of
+from lumen.features.fleet.overview import overview
+from lumen.features.fleet.rollouts.orders import DesiredState
+from lumen.features.fleet.rollouts.presence import presence_from
+from lumen.features.fleet.rollouts.rollout import step
+from lumen.features.fleet.rollouts.state import CentreState, HeardPresence
+from lumen.features.fleet.settings import Fleet
+from lumen.features.fleet.signing import ORDER, Signer
+from lumen.features.rabbitmq.stream_reader import StreamEntry, StreamReader
 from lumen.language.counts import counted
-from lumen.language.fleet import Fleet
 from lumen.ports import Bus, Message
 
 TELL_PERIOD = 10.0

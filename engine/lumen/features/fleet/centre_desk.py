@@ -6,16 +6,16 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from lumen.app.fleet.bundle import BundleParts
-from lumen.app.fleet.centre import Centre
-from lumen.app.fleet.keys import ORDER
 from lumen.errors import BusError, UsageError
-from lumen.interpreters.fleet.conditions import condition_faults
-from lumen.interpreters.fleet.rollout import abort, begin, decide, take_over
-from lumen.interpreters.fleet.state import GOING, PAUSED
+from lumen.features.fleet.bundle import BundleParts
+from lumen.features.fleet.centre import Centre
+from lumen.features.fleet.keys import ORDER
+from lumen.features.fleet.rollouts.conditions import condition_faults
+from lumen.features.fleet.rollouts.rollout import abort, begin, decide, take_over
+from lumen.features.fleet.rollouts.state import GOING, PAUSED
+from lumen.features.fleet.settings import RolloutPlan, step_target
 from lumen.language.causes import UNNAMED_PROGRAM
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.fleet import RolloutPlan, step_target
 from lumen.ports import Bus, Message
 
 MAX_STEPS = 20

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from lumen.interpreters.fleet.state import CentreState, state_from_json, state_to_json
+from lumen.features.fleet.rollouts.state import CentreState, state_from_json, state_to_json
 from lumen.language.iso_time import iso_time
 from lumen.upkeep.private_folder import private_folder
 

@@ -9,17 +9,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from lumen.app.fleet.broker_check import check_broker
-from lumen.app.fleet.brokers import CENTRE, write_settings
-from lumen.app.fleet.bundle import messages_of
-from lumen.app.fleet.keys import ORDER
-from lumen.app.fleet.rabbitmqctl import USUAL, RabbitMQControl
-from lumen.app.fleet.serving import ServedCentre, fleet_in
-from lumen.app.fleet.signing import Signer, generate
 from lumen.bus import Bus, connect
-from lumen.cli.fleet_text import fleet_lines, log_lines
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import BusUnreachableError, ProjectError, UsageError
+from lumen.features.fleet.broker_check import check_broker
+from lumen.features.fleet.brokers import CENTRE, write_settings
+from lumen.features.fleet.bundle import messages_of
+from lumen.features.fleet.keys import ORDER
+from lumen.features.fleet.rabbitmqctl import USUAL, RabbitMQControl
+from lumen.features.fleet.serving import ServedCentre, fleet_in
+from lumen.features.fleet.signing import Signer, generate
+from lumen.features.fleet.text import fleet_lines, log_lines
 from lumen.insight.changes import changes, risk, summary
 from lumen.language.counts import counted
 from lumen.lint import check_files

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
 
-from lumen.language.fleet import FleetMeasure
+from lumen.features.fleet.settings import FleetMeasure
 from lumen.run.loop import Observer
 from lumen.statechart import Step
 

@@ -5,8 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.memory import AgentMemory, keep, memory_file, remember
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.memory import AgentMemory, keep, memory_file, remember
 from lumen.project.files import belongs, on_disk, read_files
 from lumen.project.home import Home, home_of
 from lumen.project.project_folders import FLEET_FILE

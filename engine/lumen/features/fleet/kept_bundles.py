@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.app.fleet.bundle import HASH, BadBundleError, packed, unpacked
+from lumen.features.fleet.bundle import HASH, BadBundleError, packed, unpacked
 from lumen.project.files import fingerprint
 from lumen.upkeep.private_folder import private_folder
 from lumen.upkeep.regular_files import read_regular

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from lumen.interpreters.fleet.orders import FollowedOrder
+from lumen.features.fleet.rollouts.orders import FollowedOrder
 from lumen.project.home import Home
 
 MAX_KEPT = 6

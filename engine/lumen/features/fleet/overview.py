@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.interpreters.fleet.counting import rates
-from lumen.interpreters.fleet.rollout import allowed
-from lumen.interpreters.fleet.state import CentreState, HeardPresence, Rollout
-from lumen.interpreters.fleet.trying import FRESH, counted
-from lumen.language.fleet import Fleet
+from lumen.features.fleet.rollouts.counting import rates
+from lumen.features.fleet.rollouts.rollout import allowed
+from lumen.features.fleet.rollouts.state import CentreState, HeardPresence, Rollout
+from lumen.features.fleet.rollouts.trying import FRESH, counted
+from lumen.features.fleet.settings import Fleet
 from lumen.language.iso_time import iso_time
 
 MOST_SKEW = 30.0

@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath
-from lumen.language.fleet import (
+from lumen.features.fleet.settings import (
     DEFAULT_PAUSE,
     Fleet,
     FleetGroup,
@@ -15,6 +14,7 @@ from lumen.language.fleet import (
     StepTarget,
     step_target,
 )
+from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath
 from lumen.project.built_file import BuiltFile, read_file
 from lumen.project.document_report import DocumentReport
 from lumen.project.files import MAX_FILE_BYTES

@@ -5,10 +5,10 @@ import binascii
 from collections.abc import Iterable, Mapping
 from urllib.parse import urlsplit
 
-from lumen.interpreters.fleet.conditions import condition_faults
+from lumen.features.fleet.rollouts.conditions import condition_faults
+from lumen.features.fleet.settings import Fleet
 from lumen.language.addresses import credentials_of
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
-from lumen.language.fleet import Fleet
 from lumen.lint.routes import PASSWORD_IN_FILE
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft

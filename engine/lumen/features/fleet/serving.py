@@ -6,20 +6,20 @@ import uuid
 from collections.abc import Callable
 from pathlib import Path
 
-from lumen.app.fleet.brokers import STREAM
-from lumen.app.fleet.centre import Centre
-from lumen.app.fleet.centre_desk import CentreDesk
-from lumen.app.fleet.centre_journal import CentreJournal
-from lumen.app.fleet.fleet_log import FleetLog
-from lumen.app.fleet.kept_bundles import BundleFolder
-from lumen.app.fleet.signing import Signer
 from lumen.bus.addresses import is_rabbitmq
-from lumen.buses.stream_reader import StreamReader, has_stream
 from lumen.errors import UsageError
-from lumen.interpreters.fleet.state import CentreState
+from lumen.features.fleet.brokers import STREAM
+from lumen.features.fleet.centre import Centre
+from lumen.features.fleet.centre_desk import CentreDesk
+from lumen.features.fleet.centre_journal import CentreJournal
+from lumen.features.fleet.fleet_log import FleetLog
+from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.reading import read_fleet
+from lumen.features.fleet.rollouts.state import CentreState
+from lumen.features.fleet.settings import Fleet
+from lumen.features.fleet.signing import Signer
+from lumen.features.rabbitmq.stream_reader import StreamReader, has_stream
 from lumen.language.diagnostics import has_errors
-from lumen.language.fleet import Fleet
-from lumen.loading.fleet import read_fleet
 from lumen.ports import Bus
 from lumen.project.home import Home, home_of
 from lumen.upkeep.private_folder import private_folder

@@ -7,7 +7,7 @@ FEATURE = Feature(
     subcommands={
         "record": Subcommand(
             "record the messages of a running exhibition, for Foxglove and Lichtblick",
-            "lumen.cli.record",
+            "lumen.features.mcap.command",
             after="topic",
         ),
     },

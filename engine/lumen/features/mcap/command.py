@@ -8,18 +8,18 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from lumen.app.recording.notes import bundle_files, journal_files, notes_of
-from lumen.app.recording.recorder import Recorder
-from lumen.app.recording.recordings_folder import SUFFIX, RecordingsFolder
-from lumen.app.recording.recovering import remove_drafts
-from lumen.app.recording.robot_view import RobotView
-from lumen.app.recording.tape_file import FileTape
 from lumen.cli.progress import progress
 from lumen.cli.reach import reach
 from lumen.errors import BusError, UsageError
-from lumen.formats.recordings.recorded import Recorded
-from lumen.formats.recordings.recording_file import renamed, writable
-from lumen.formats.recordings.rewriting import recover
+from lumen.features.mcap.files.recorded import Recorded
+from lumen.features.mcap.files.recording_file import renamed, writable
+from lumen.features.mcap.files.rewriting import recover
+from lumen.features.mcap.notes import bundle_files, journal_files, notes_of
+from lumen.features.mcap.recorder import Recorder
+from lumen.features.mcap.recordings_folder import SUFFIX, RecordingsFolder
+from lumen.features.mcap.recovering import remove_drafts
+from lumen.features.mcap.robot_view import RobotView
+from lumen.features.mcap.tape_file import FileTape
 from lumen.language.counts import counted
 from lumen.language.iso_time import file_stamp
 from lumen.language.operator_requests import MARK, STATUS

@@ -9,8 +9,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from lumen.errors import LumenError
-from lumen.formats.recordings.foxglove import NANO
-from lumen.formats.recordings.recorded import RecordedFile, RecordedNotes
+from lumen.features.mcap.files.foxglove import NANO
+from lumen.features.mcap.files.recorded import RecordedFile, RecordedNotes
 from lumen.journal.journal_file import JOURNAL_SUFFIX
 from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.iso_time import iso_time

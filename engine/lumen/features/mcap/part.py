@@ -5,19 +5,19 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.app.recording.notes import NOTES, bundle_files, journal_files, notes_of
-from lumen.app.recording.recorder import Recorder, RecordingTape
-from lumen.app.recording.recordings_folder import RecordingsFolder
-from lumen.app.recording.recovering import RecordingRescue
-from lumen.app.recording.ring import PIECE_PERIOD, RingTape
-from lumen.app.recording.robot_view import RobotView
-from lumen.app.recording.tape_file import FileTape
 from lumen.bus.validated import ValidatedBus
 from lumen.errors import LumenError, RecordingError, UsageError
 from lumen.extras import MissingExtraError
-from lumen.formats.recordings.reading import read_recording
-from lumen.formats.recordings.recorded import Recorded, RecordedNotes
-from lumen.formats.recordings.recording_file import demand_recording, renamed, writable
+from lumen.features.mcap.files.reading import read_recording
+from lumen.features.mcap.files.recorded import Recorded, RecordedNotes
+from lumen.features.mcap.files.recording_file import demand_recording, renamed, writable
+from lumen.features.mcap.notes import NOTES, bundle_files, journal_files, notes_of
+from lumen.features.mcap.recorder import Recorder, RecordingTape
+from lumen.features.mcap.recordings_folder import RecordingsFolder
+from lumen.features.mcap.recovering import RecordingRescue
+from lumen.features.mcap.ring import PIECE_PERIOD, RingTape
+from lumen.features.mcap.robot_view import RobotView
+from lumen.features.mcap.tape_file import FileTape
 from lumen.language.counts import counted
 from lumen.language.projects import Project
 from lumen.language.retention import RecordingSettings

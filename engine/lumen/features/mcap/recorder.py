@@ -7,11 +7,11 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple, Protocol
 
-from lumen.app.recording.happenings import happening
-from lumen.app.recording.notes import notes_of
 from lumen.bus.aliases import COPY
-from lumen.formats.recordings.encoding import MessageEncoder
-from lumen.formats.recordings.recorded import Recorded
+from lumen.features.mcap.files.encoding import MessageEncoder
+from lumen.features.mcap.files.recorded import Recorded
+from lumen.features.mcap.happenings import happening
+from lumen.features.mcap.notes import notes_of
 from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
 from lumen.language.routing_keys import DEFAULT_KEYS, INTERNAL_KEYS, key_of_robot

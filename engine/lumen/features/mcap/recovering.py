@@ -4,12 +4,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from lumen.app.recording.recordings_folder import RecordingsFolder
-from lumen.app.recording.ring import kept_as
 from lumen.errors import LumenError, RecordingError
-from lumen.formats.recordings.reading import whole
-from lumen.formats.recordings.recorded import Recorded
-from lumen.formats.recordings.rewriting import recover, rewrite
+from lumen.features.mcap.files.reading import whole
+from lumen.features.mcap.files.recorded import Recorded
+from lumen.features.mcap.files.rewriting import recover, rewrite
+from lumen.features.mcap.recordings_folder import RecordingsFolder
+from lumen.features.mcap.ring import kept_as
 from lumen.language.counts import counted
 from lumen.upkeep.threads import WatchedThread
 

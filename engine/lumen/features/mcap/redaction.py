@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 import orjson
 
-from lumen.formats.recordings.encoding import json_bytes
-from lumen.formats.recordings.foxglove import NANO
-from lumen.formats.recordings.reading import read_recording
-from lumen.formats.recordings.recorded import Recorded, RecordedFile, RecordedMessage
-from lumen.formats.recordings.rewriting import Changed
+from lumen.features.mcap.files.encoding import json_bytes
+from lumen.features.mcap.files.foxglove import NANO
+from lumen.features.mcap.files.reading import read_recording
+from lumen.features.mcap.files.recorded import Recorded, RecordedFile, RecordedMessage
+from lumen.features.mcap.files.rewriting import Changed
 from lumen.journal.journal_file import JOURNAL_SUFFIX
 from lumen.journal.redaction import redact
 from lumen.language.people import PersonName

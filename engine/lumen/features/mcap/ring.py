@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.app.recording.recordings_folder import SUFFIX, RecordingsFolder
-from lumen.app.recording.redaction import redacted
 from lumen.errors import LumenError
-from lumen.formats.recordings.recorded import Recorded
-from lumen.formats.recordings.recording_file import RecordingFile, writable
-from lumen.formats.recordings.rewriting import rewrite
+from lumen.features.mcap.files.recorded import Recorded
+from lumen.features.mcap.files.recording_file import RecordingFile, writable
+from lumen.features.mcap.files.rewriting import rewrite
+from lumen.features.mcap.recordings_folder import SUFFIX, RecordingsFolder
+from lumen.features.mcap.redaction import redacted
 from lumen.language.iso_time import file_stamp
 from lumen.language.people import PersonName
 from lumen.language.retention import RecordingSettings

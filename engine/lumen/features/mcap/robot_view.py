@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from lumen.errors import LumenError
 from lumen.extras import demand
-from lumen.formats.recordings.encoding import nanoseconds
-from lumen.formats.recordings.foxglove import NANO, form_class, foxglove_channel, stamp
-from lumen.formats.recordings.recorded import RecordedMessage
+from lumen.features.mcap.files.encoding import nanoseconds
+from lumen.features.mcap.files.foxglove import NANO, form_class, foxglove_channel, stamp
+from lumen.features.mcap.files.recorded import RecordedMessage
 from lumen.language.projects import Project
 from lumen.ports import Joints, Message, Sense
 from lumen.project.lending import model_files

@@ -5,12 +5,12 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from lumen.app.recording.recordings_folder import RecordingsFolder
-from lumen.app.recording.redaction import redacted
 from lumen.errors import LumenError
-from lumen.formats.recordings.recorded import Recorded
-from lumen.formats.recordings.recording_file import RecordingFile
-from lumen.formats.recordings.rewriting import reopened
+from lumen.features.mcap.files.recorded import Recorded
+from lumen.features.mcap.files.recording_file import RecordingFile
+from lumen.features.mcap.files.rewriting import reopened
+from lumen.features.mcap.recordings_folder import RecordingsFolder
+from lumen.features.mcap.redaction import redacted
 from lumen.language.people import PersonName
 
 _log = logging.getLogger(__name__)

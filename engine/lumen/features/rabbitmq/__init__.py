@@ -2,7 +2,7 @@
 
 from lumen.feature import BusRow, Feature
 
-_OPEN = "lumen.buses.amqp:AmqpBus"
+_OPEN = "lumen.features.rabbitmq.amqp:AmqpBus"
 
 FEATURE = Feature(
     name="rabbitmq",

@@ -14,13 +14,13 @@ from typing import Any
 
 from lumen.bus.bodies import JSON, check_key, check_subscription, encode
 from lumen.bus.identities import origin_of
-from lumen.buses.broker import BrokerAddress
-from lumen.buses.connection import OutageLog
-from lumen.buses.outbox import OutgoingMessage
-from lumen.buses.packing import packed
-from lumen.buses.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of
-from lumen.buses.transport import Transport
 from lumen.errors import BusClosedError, BusError
+from lumen.features.rabbitmq.broker import BrokerAddress
+from lumen.features.rabbitmq.connection import OutageLog
+from lumen.features.rabbitmq.outbox import OutgoingMessage
+from lumen.features.rabbitmq.packing import packed
+from lumen.features.rabbitmq.queues import EXCHANGE, MAX_LENGTH_TELEMETRY, journal_of
+from lumen.features.rabbitmq.transport import Transport
 from lumen.language.counts import counted
 from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing

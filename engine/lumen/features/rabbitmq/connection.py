@@ -10,8 +10,8 @@ from typing import Any
 
 from pika.exceptions import AMQPError, ChannelClosedByBroker
 
-from lumen.buses.broker import BrokerAddress
-from lumen.buses.polled import PolledConnection
+from lumen.features.rabbitmq.broker import BrokerAddress
+from lumen.features.rabbitmq.polled import PolledConnection
 from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 

@@ -8,15 +8,15 @@ from typing import Any
 from pika.exceptions import AMQPChannelError, ConsumerCancelled
 
 from lumen.bus.bodies import MAX_BODY_BYTES, MAX_KEY_BYTES
-from lumen.buses.broker import BrokerAddress
-from lumen.buses.connection import BrokerConnection, OutageLog
-from lumen.buses.declarer import QueueDeclarer
-from lumen.buses.intake import Intake
-from lumen.buses.properties import MessageProperties
-from lumen.buses.queues import UNROUTED, queue_of
-from lumen.buses.subscriptions import Delivery, Subscription, Subscriptions
-from lumen.buses.wire import MessageReader
 from lumen.errors import BusRefusedError
+from lumen.features.rabbitmq.broker import BrokerAddress
+from lumen.features.rabbitmq.connection import BrokerConnection, OutageLog
+from lumen.features.rabbitmq.declarer import QueueDeclarer
+from lumen.features.rabbitmq.intake import Intake
+from lumen.features.rabbitmq.properties import MessageProperties
+from lumen.features.rabbitmq.queues import UNROUTED, queue_of
+from lumen.features.rabbitmq.subscriptions import Delivery, Subscription, Subscriptions
+from lumen.features.rabbitmq.wire import MessageReader
 from lumen.language.routes import Route
 from lumen.ports import MessageHandler
 from lumen.upkeep.drops import DropLog

@@ -5,10 +5,10 @@ from contextlib import suppress
 
 from pika.exceptions import ChannelClosedByBroker
 
-from lumen.buses.asked_channel import AskedChannel
-from lumen.buses.polled import PolledConnection
-from lumen.buses.queues import EXCHANGE, QUORUM_SETTLE_TIME, Queue, queue_of
-from lumen.buses.subscriptions import Subscription
+from lumen.features.rabbitmq.asked_channel import AskedChannel
+from lumen.features.rabbitmq.polled import PolledConnection
+from lumen.features.rabbitmq.queues import EXCHANGE, QUORUM_SETTLE_TIME, Queue, queue_of
+from lumen.features.rabbitmq.subscriptions import Subscription
 
 PRECONDITION_FAILED = 406
 """AMQP's code for a queue that exists with other arguments."""

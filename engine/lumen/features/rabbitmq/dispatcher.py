@@ -9,11 +9,11 @@ from collections.abc import Callable
 
 from lumen.bus.bodies import JSON, decode
 from lumen.bus.identities import believed
-from lumen.buses.packing import unpacked
-from lumen.buses.properties import header_fields
-from lumen.buses.queues import UNROUTED
-from lumen.buses.subscriptions import Delivery, Subscription
 from lumen.errors import Refused
+from lumen.features.rabbitmq.packing import unpacked
+from lumen.features.rabbitmq.properties import header_fields
+from lumen.features.rabbitmq.queues import UNROUTED
+from lumen.features.rabbitmq.subscriptions import Delivery, Subscription
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE, Carried
 from lumen.ports import Message
 from lumen.upkeep.drops import DropLog, ReasonLog

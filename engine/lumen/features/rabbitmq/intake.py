@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Callable
 
-from lumen.buses.subscriptions import Delivery
+from lumen.features.rabbitmq.subscriptions import Delivery
 from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import RateLimiter
 

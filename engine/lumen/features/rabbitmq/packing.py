@@ -12,8 +12,8 @@ from sys import byteorder
 from typing import Any, NamedTuple
 
 from lumen.bus.bodies import MAX_BODY_BYTES, copied
-from lumen.buses.properties import CAUSE_HEADER
 from lumen.errors import BadMessageError
+from lumen.features.rabbitmq.properties import CAUSE_HEADER
 from lumen.language.data_url import JPEG_URL, DataUrl
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 

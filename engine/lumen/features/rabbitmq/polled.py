@@ -18,11 +18,11 @@ from pika.exceptions import (
     ConnectionBlockedTimeout,
 )
 
-from lumen.buses.asked_channel import AskedChannel
-from lumen.buses.broker import BROKER_TIMEOUT, shortage
-from lumen.buses.poll_loop import PollLoop
-from lumen.buses.turn_clock import TurnClock
-from lumen.buses.wire import MessageReader, WireConnection
+from lumen.features.rabbitmq.asked_channel import AskedChannel
+from lumen.features.rabbitmq.broker import BROKER_TIMEOUT, shortage
+from lumen.features.rabbitmq.poll_loop import PollLoop
+from lumen.features.rabbitmq.turn_clock import TurnClock
+from lumen.features.rabbitmq.wire import MessageReader, WireConnection
 
 
 class PolledConnection:

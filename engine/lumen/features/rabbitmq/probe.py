@@ -7,11 +7,18 @@ from typing import Any, NamedTuple
 import pika
 from pika.exceptions import ChannelClosedByBroker
 
-from lumen.buses.asked_channel import AskedChannel
-from lumen.buses.broker import BrokerAddress
-from lumen.buses.polled import PolledConnection
-from lumen.buses.queues import EXCHANGE, OTHERWISE, SIDE_EXCHANGE, SIDE_QUEUE_LIMITS, declared_otherwise, queue_of
 from lumen.errors import BusUnreachableError
+from lumen.features.rabbitmq.asked_channel import AskedChannel
+from lumen.features.rabbitmq.broker import BrokerAddress
+from lumen.features.rabbitmq.polled import PolledConnection
+from lumen.features.rabbitmq.queues import (
+    EXCHANGE,
+    OTHERWISE,
+    SIDE_EXCHANGE,
+    SIDE_QUEUE_LIMITS,
+    declared_otherwise,
+    queue_of,
+)
 from lumen.language.routes import Route
 
 FORGED_USER = "lumen doctor"

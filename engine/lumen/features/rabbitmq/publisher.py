@@ -7,13 +7,20 @@ from typing import Any, NamedTuple
 
 from pika.exceptions import AMQPChannelError, AMQPConnectionError, AMQPError, ChannelClosedByBroker
 
-from lumen.buses.asked_channel import AskedChannel
-from lumen.buses.broker import BrokerAddress
-from lumen.buses.connection import BrokerConnection, OutageLog
-from lumen.buses.outbox import Outbox, OutgoingMessage
-from lumen.buses.polled import PolledConnection
-from lumen.buses.properties import CAUSE_HEADER, write_properties
-from lumen.buses.queues import OTHERWISE, SIDE_QUEUES, UNROUTED, Queue, declare_side_queues, declared_otherwise
+from lumen.features.rabbitmq.asked_channel import AskedChannel
+from lumen.features.rabbitmq.broker import BrokerAddress
+from lumen.features.rabbitmq.connection import BrokerConnection, OutageLog
+from lumen.features.rabbitmq.outbox import Outbox, OutgoingMessage
+from lumen.features.rabbitmq.polled import PolledConnection
+from lumen.features.rabbitmq.properties import CAUSE_HEADER, write_properties
+from lumen.features.rabbitmq.queues import (
+    OTHERWISE,
+    SIDE_QUEUES,
+    UNROUTED,
+    Queue,
+    declare_side_queues,
+    declared_otherwise,
+)
 from lumen.language.counts import counted
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from lumen.buses.asked_channel import AskedChannel
+from lumen.features.rabbitmq.asked_channel import AskedChannel
 from lumen.language.routes import Carried, Route
 
 EXCHANGE = "amq.topic"

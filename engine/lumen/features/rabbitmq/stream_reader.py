@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 from pika.exceptions import ConsumerCancelled
 
 from lumen.bus.bodies import JSON, decode
-from lumen.buses.broker import BrokerAddress
-from lumen.buses.connection import BrokerConnection, OutageLog
-from lumen.buses.probe import BrokerProbe
-from lumen.buses.properties import MessageProperties
+from lumen.features.rabbitmq.broker import BrokerAddress
+from lumen.features.rabbitmq.connection import BrokerConnection, OutageLog
+from lumen.features.rabbitmq.probe import BrokerProbe
+from lumen.features.rabbitmq.properties import MessageProperties
 
 PREFETCH = 200
 """How many messages the broker sends ahead: a stream wants a bound."""

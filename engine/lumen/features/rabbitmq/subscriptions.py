@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from lumen.buses.properties import MessageProperties
-from lumen.buses.queues import EXCHANGE
+from lumen.features.rabbitmq.properties import MessageProperties
+from lumen.features.rabbitmq.queues import EXCHANGE
 from lumen.language.routes import Route
 from lumen.ports import MessageHandler
 

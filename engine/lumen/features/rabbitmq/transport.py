@@ -6,14 +6,14 @@ from typing import Any
 
 from lumen.bus.bodies import JSON, MAX_BODY_BYTES, TEXT, encode
 from lumen.bus.identities import new_id
-from lumen.buses.broker import BrokerAddress
-from lumen.buses.connection import OutageLog
-from lumen.buses.consumer import Consumer
-from lumen.buses.dispatcher import FLUSH_MARK, Dispatcher
-from lumen.buses.outbox import OutgoingMessage
-from lumen.buses.publisher import Publisher
-from lumen.buses.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY
-from lumen.buses.subscriptions import Delivery
+from lumen.features.rabbitmq.broker import BrokerAddress
+from lumen.features.rabbitmq.connection import OutageLog
+from lumen.features.rabbitmq.consumer import Consumer
+from lumen.features.rabbitmq.dispatcher import FLUSH_MARK, Dispatcher
+from lumen.features.rabbitmq.outbox import OutgoingMessage
+from lumen.features.rabbitmq.publisher import Publisher
+from lumen.features.rabbitmq.queues import DEAD_LETTERS, EXCHANGE, MAX_LENGTH_TELEMETRY
+from lumen.features.rabbitmq.subscriptions import Delivery
 from lumen.language.causes import MessageOrigin
 from lumen.language.routing_keys import KEY_PREFIXES
 from lumen.upkeep.drops import DropLog

@@ -12,7 +12,7 @@ from typing import Any
 
 from pika import spec
 
-from lumen.buses.properties import MessageProperties, TolerantConnection, read_properties, short_text
+from lumen.features.rabbitmq.properties import MessageProperties, TolerantConnection, read_properties, short_text
 
 FLUSH_BYTES = 8 * 1024
 """From how many bytes on frames are sent at once; what is less is sent at the next turn."""

@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.app.recording.recordings_folder import RecordingsFolder
-from lumen.app.recording.redaction import redacted
 from lumen.errors import JournalError, LumenError, ModuleError
 from lumen.features.eyes.eyes import FACES_FILE
+from lumen.features.mcap.files.rewriting import rewrite
+from lumen.features.mcap.recordings_folder import RecordingsFolder
+from lumen.features.mcap.redaction import redacted
 from lumen.features.visitors.memory import DATABASE_FILE
 from lumen.features.visitors.module import Store
-from lumen.formats.recordings.rewriting import rewrite
 from lumen.journal.forgotten_snapshots import forgetful_data
 from lumen.journal.journal_file import JOURNAL_SUFFIX, read_journal
 from lumen.journal.journal_folder import JOURNAL_FOLDER, newest

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from lumen.buses.queues import SIDE_QUEUES
 from lumen.feature import distribution_of, rows
+from lumen.features.rabbitmq.queues import SIDE_QUEUES
 from lumen.language.routes import Carried, Direction, Route
 
 

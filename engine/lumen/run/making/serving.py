@@ -1,7 +1,7 @@
 """The parts that serve the behaviour: its journal, people to forget, saved files, and operators."""
 
 from lumen.app.parts.alerting import AlertPart
-from lumen.app.parts.recording import RecordingPart
+from lumen.features.mcap.part import RecordingPart
 from lumen.journal.journal_writer import JournalWriter
 from lumen.motion.bounds import analyse
 from lumen.project.project_folders import FLEET_FILE
@@ -56,7 +56,7 @@ def fleet(services: Services) -> Part | None:
     directory = directory_of(services)
     if directory is None or services.plan.story or not (directory.root / FLEET_FILE).exists():
         return None
-    from lumen.app.fleet.part import fleet_part  # few exhibitions are of a fleet
+    from lumen.features.fleet.part import fleet_part  # few exhibitions are of a fleet
 
     reloader, tell = services[Reloader], services.tell("fleet")
     return fleet_part(directory.root, services.bus, services.behavior, reloader, directory.home, tell, services.needs)

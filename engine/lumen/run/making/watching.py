@@ -4,8 +4,8 @@ from pathlib import Path
 
 from lumen.app.alerts.desk import AlertDesk
 from lumen.app.parts.alerting import AlertPart
-from lumen.app.parts.recording import RecordingPart
 from lumen.app.reload.alerting import RefusalPart
+from lumen.features.mcap.part import RecordingPart
 from lumen.project.home import home_of
 from lumen.run.making.serving import directory_of
 from lumen.run.parts.hosted_robot import HostedRobotPart

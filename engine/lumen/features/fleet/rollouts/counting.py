@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Mapping
 
-from lumen.interpreters.fleet.presence import HOURS
-from lumen.language.fleet import FleetMeasure
+from lumen.features.fleet.rollouts.presence import HOURS
+from lumen.features.fleet.settings import FleetMeasure
 
 
 def rates(counts: Iterable[Mapping[str, float]], measures: Mapping[str, FleetMeasure]) -> dict[str, float]:

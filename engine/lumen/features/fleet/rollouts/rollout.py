@@ -8,13 +8,13 @@ from collections.abc import Iterable
 from dataclasses import replace
 from itertools import zip_longest
 
-from lumen.interpreters.fleet.conditions import holds
-from lumen.interpreters.fleet.counting import rates
-from lumen.interpreters.fleet.orders import NOT
-from lumen.interpreters.fleet.presence import PROVED, REFUSED, ROLLED_BACK
-from lumen.interpreters.fleet.state import ABORTED, FINISHED, GOING, PERSON, CentreState, Rollout
-from lumen.interpreters.fleet.trying import HeardRobots, begin_steps, fresh, tried
-from lumen.language.fleet import Fleet, RolloutPlan, StepTarget
+from lumen.features.fleet.rollouts.conditions import holds
+from lumen.features.fleet.rollouts.counting import rates
+from lumen.features.fleet.rollouts.orders import NOT
+from lumen.features.fleet.rollouts.presence import PROVED, REFUSED, ROLLED_BACK
+from lumen.features.fleet.rollouts.state import ABORTED, FINISHED, GOING, PERSON, CentreState, Rollout
+from lumen.features.fleet.rollouts.trying import HeardRobots, begin_steps, fresh, tried
+from lumen.features.fleet.settings import Fleet, RolloutPlan, StepTarget
 
 LONGEST_LOOK = 30.0
 """How much time one look may count [s]: a clock that is set, or a centre that was dead, hurries nothing."""

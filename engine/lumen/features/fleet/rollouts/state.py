@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
-from lumen.interpreters.fleet.presence import RobotPresence
-from lumen.language.fleet import RolloutPlan, StepTarget
+from lumen.features.fleet.rollouts.presence import RobotPresence
+from lumen.features.fleet.settings import RolloutPlan, StepTarget
 
 GOING, PAUSED, PERSON, ABORTED, FINISHED = "going", "paused", "a person decides", "aborted", "finished"
 UNDER_WAY = (GOING, PAUSED, PERSON)

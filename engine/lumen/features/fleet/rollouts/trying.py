@@ -6,9 +6,9 @@ No visit leaves its house: what comes back is whether they came out as they were
 from collections.abc import Mapping
 from dataclasses import replace
 
-from lumen.interpreters.fleet.presence import REFUSED, TRIED, RobotPresence
-from lumen.interpreters.fleet.state import GOING, PERSON, CentreState, HeardPresence, Rollout
-from lumen.language.fleet import Fleet
+from lumen.features.fleet.rollouts.presence import REFUSED, TRIED, RobotPresence
+from lumen.features.fleet.rollouts.state import GOING, PERSON, CentreState, HeardPresence, Rollout
+from lumen.features.fleet.settings import Fleet
 
 FRESH = 60.0
 """For how long a robot counts as there after it was heard [s]."""

@@ -7,8 +7,8 @@ from typing import Any
 
 import orjson
 
-from lumen.formats.recordings.foxglove import NANO, compressed_image, foxglove_channel
-from lumen.formats.recordings.recorded import RecordedChannel, RecordedMessage
+from lumen.features.mcap.files.foxglove import NANO, compressed_image, foxglove_channel
+from lumen.features.mcap.files.recorded import RecordedChannel, RecordedMessage
 from lumen.language.projects import Project
 from lumen.ports import Message
 

@@ -3,7 +3,7 @@
 from functools import cache
 from typing import Any
 
-from lumen.formats.recordings.recorded import RecordedChannel
+from lumen.features.mcap.files.recorded import RecordedChannel
 
 NANO = 1_000_000_000
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.errors import RecordingError
 from lumen.extras import demand
-from lumen.formats.recordings.recorded import Recorded, RecordedChannel, RecordedFile, RecordedMessage, RecordedNotes
+from lumen.features.mcap.files.recorded import Recorded, RecordedChannel, RecordedFile, RecordedMessage, RecordedNotes
 
 MAGIC = b"\x89MCAP0\r\n"
 END_BYTES = 8 + 9 + 20

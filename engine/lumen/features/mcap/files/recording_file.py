@@ -8,7 +8,7 @@ from typing import Any, assert_never
 
 from lumen.errors import RecordingError
 from lumen.extras import demand
-from lumen.formats.recordings.recorded import Recorded, RecordedChannel, RecordedFile, RecordedMessage, RecordedNotes
+from lumen.features.mcap.files.recorded import Recorded, RecordedChannel, RecordedFile, RecordedMessage, RecordedNotes
 from lumen.upkeep.private_folder import NO_LINK
 
 CHUNK_BYTES = 64_000

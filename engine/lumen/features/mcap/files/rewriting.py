@@ -6,9 +6,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from lumen.errors import RecordingError
-from lumen.formats.recordings.reading import read_recording, whole
-from lumen.formats.recordings.recorded import Recorded
-from lumen.formats.recordings.recording_file import RecordingFile
+from lumen.features.mcap.files.reading import read_recording, whole
+from lumen.features.mcap.files.recorded import Recorded
+from lumen.features.mcap.files.recording_file import RecordingFile
 
 Changed = Callable[[Recorded], Recorded | None]
 """What becomes of an item of a recording; None where it is left out."""
