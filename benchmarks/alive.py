@@ -18,17 +18,17 @@ from typing import Any
 
 import lumen
 from lumen.bus.memory import MemoryBus
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.settings import PERFECT
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
 from lumen.language.gestures import merged
-from lumen.language.imperfections import PERFECT
 from lumen.language.projects import Project
 from lumen.ports import Message
 from lumen.project.lending import model_files
 from lumen.robot.command_table import speech_duration
 from lumen.robot.gesture_player import GesturePlayer
 from lumen.robot.life_layer import LifeLayer
-from lumen.robots.simulation import SimulatedRobot
 from lumen.run.exhibition import Exhibition
 from lumen.run.loop import Observer
 from lumen.run.plan import Plan

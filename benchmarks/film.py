@@ -19,9 +19,9 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.guarded import run_guarded
 
 import lumen
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.rendering import FILM_QUALITY, RenderQuality, RenderState, SceneRenderer
 from lumen.project.lending import model_files
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.rendering import FILM_QUALITY, RenderQuality, RenderState, SceneRenderer
 
 QUALITIES = {
     "plain": RenderQuality(),

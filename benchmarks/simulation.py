@@ -19,13 +19,13 @@ from numpy.typing import NDArray
 
 import lumen
 from lumen.clock.simulated import SimulatedClock
+from lumen.features.simulation.offers import SimulatedRobot, available
+from lumen.features.simulation.world import CONTROL_PERIOD, World
 from lumen.language.commands import Walk
 from lumen.language.projects import Project
 from lumen.language.routes import SIZES, Size
 from lumen.language.stories import Visitor
 from lumen.ports import Image, Perform, RobotCommand, Sense
-from lumen.robots.simulation import SimulatedRobot, available
-from lumen.robots.simulation.world import CONTROL_PERIOD, World
 from lumen.run.exhibition import Exhibition
 from lumen.run.plan import Plan
 from lumen.run.rehearsal import rehearse

@@ -22,9 +22,9 @@ sys.path.insert(0, str(ROOT))
 from tests.simulation.bodies import shipped  # noqa: E402
 from tests.simulation.walks import RESTED, any_robot, bump, ramp, strayed, truth, walk  # noqa: E402
 
+from lumen.features.simulation.offers import SimulatedRobot  # noqa: E402
 from lumen.language.commands import Move, Walk  # noqa: E402
 from lumen.motion.gait import Pose  # noqa: E402
-from lumen.robots.simulation import SimulatedRobot  # noqa: E402
 
 SECONDS = 8.0
 Start = Callable[[int], SimulatedRobot]

@@ -21,9 +21,9 @@ from tests.cpu_time import cpu_time
 from tests.workers.clusters import dask_cluster
 
 import lumen
-from lumen.language.imperfections import Imperfections
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.trials.cases import cases
 from lumen.project.files import read_files
-from lumen.rules.physics.cases import cases
 from lumen.run.linting.physics import play_case
 from lumen.run.workers.work_kit import WorkKit, models_in
 from lumen.run.workers.workers import Workers, cores, workers_of

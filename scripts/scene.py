@@ -11,7 +11,7 @@ import mujoco
 import numpy as np
 
 import lumen
-from lumen.robots.simulation.entity import Nao
+from lumen.features.simulation.entity import Nao
 
 ROOT = Path(__file__).parents[1]
 POSTURES = ("Stand", "StandInit", "StandZero", "Crouch")

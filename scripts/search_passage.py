@@ -24,6 +24,9 @@ import yaml
 
 import lumen
 from lumen.errors import LumenError
+from lumen.features.simulation.model_terms import Variation
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.world import CONTROL_PERIOD
 from lumen.language.commands import Posture
 from lumen.language.robots import Body
 from lumen.motion import Motion
@@ -31,9 +34,6 @@ from lumen.motion.limits import beyond_limits, overspeed
 from lumen.motion.trajectories import Trajectory
 from lumen.project.files import read_files
 from lumen.project.lending import MODELS
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.model_terms import Variation
-from lumen.robots.simulation.world import CONTROL_PERIOD
 from lumen.run.workers.tasks import engine
 from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in, name_of
 from lumen.run.workers.workers import Workers, workers_of

@@ -14,12 +14,12 @@ import numpy as np
 from PIL import Image
 
 import lumen
+from lumen.features.simulation.offers import SimulatedRobot, available
+from lumen.features.simulation.rendering import RenderQuality, RenderState, SceneRenderer
 from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.project.chosen_model import choose
 from lumen.project.lending import model_files
-from lumen.robots.simulation import SimulatedRobot, available
-from lumen.robots.simulation.rendering import RenderQuality, RenderState, SceneRenderer
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent

@@ -26,6 +26,8 @@ from PIL import Image, ImageDraw, ImageFont
 
 import lumen
 from lumen.clock.simulated import SimulatedClock
+from lumen.features.simulation.offers import SimulatedRobot, available
+from lumen.features.simulation.rendering import RenderQuality, RenderState, SceneRenderer
 from lumen.fuzzy import Controller
 from lumen.language.commands import Posture, Walk
 from lumen.language.motions import MotionDefinition
@@ -35,8 +37,6 @@ from lumen.ports import Image as Frame
 from lumen.ports import Perform, Sense
 from lumen.project.formats.plots import controller_sheet, curves_sheet, draw, explained_sheet
 from lumen.project.lending import model_files
-from lumen.robots.simulation import SimulatedRobot, available
-from lumen.robots.simulation.rendering import RenderQuality, RenderState, SceneRenderer
 from lumen.run.exhibition import Exhibition
 from lumen.run.plan import Plan
 from lumen.run.setup import Setup

@@ -18,7 +18,7 @@ import imageio_ffmpeg
 import numpy as np
 from PIL import Image
 
-from lumen.robots.simulation.lettering import VISITOR_COLOUR, subtitle
+from lumen.features.simulation.lettering import VISITOR_COLOUR, subtitle
 
 ROOT = Path(__file__).parents[2]
 PROJECT = ("lumen.yaml", "behaviors", "knowledge", "fuzzy", "motions", "models", "schemas")

@@ -9,7 +9,7 @@ from dm_control import mjcf
 from dm_control.locomotion.arenas import floors
 
 import lumen
-from lumen.robots.simulation.entity import Nao
+from lumen.features.simulation.entity import Nao
 
 HERE = Path(__file__).parents[2]
 

@@ -14,8 +14,8 @@ from dm_control.composer.variation import noises
 from dm_control.locomotion.arenas import floors
 
 import lumen
-from lumen.robots.simulation.entity import Nao
-from lumen.robots.simulation.imperfections import ENCODER_NOISE, GYRO_NOISE
+from lumen.features.simulation.entity import Nao
+from lumen.features.simulation.imperfections import ENCODER_NOISE, GYRO_NOISE
 
 PROJECT = Path(__file__).parents[2]
 CONTROL_PERIOD, PHYSICS_PERIOD = 0.02, 0.002

@@ -6,13 +6,13 @@ from math import radians
 from pathlib import Path
 
 from lumen.bus import connect
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.settings import Imperfections
 from lumen.language.commands import Look, Track
-from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.motion.projection import centring
 from lumen.robot.server import RobotServer
-from lumen.robots.simulation import SimulatedRobot
 from lumen.run.perception import FaceDetector
 from lumen.run.tracking import LocalTracking
 from tests.fuzzy.closed_loop import Pose, Run

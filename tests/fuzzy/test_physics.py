@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 import lumen
-from lumen.language.imperfections import PERFECT
+from lumen.features.simulation.settings import PERFECT
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from tests.fuzzy.closed_loop import Pose, Run

@@ -104,7 +104,7 @@ def rehearsed_on(project: Project, story: str, robot: str) -> Rehearsal:
 
 def nao() -> type:
     """The NAO for dm_control."""
-    from lumen.robots.simulation.entity import Nao
+    from lumen.features.simulation.entity import Nao
 
     return Nao
 

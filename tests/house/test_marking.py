@@ -8,7 +8,7 @@ import mujoco
 import pytest
 from hypothesis import given, strategies
 
-from lumen.robots.simulation import SimulatedRobot
+from lumen.features.simulation.offers import SimulatedRobot
 from tests.fetched import fetched
 from tests.marking import marks
 from tests.rabbitmq import RabbitMQ

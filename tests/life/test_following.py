@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import lumen
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.body_parts import HEAD, WHOLE_BODY
 from lumen.language.life import LifeStyle
 from lumen.language.stories import Visitor
@@ -15,7 +16,6 @@ from lumen.motion.projection import Vector3, centring, seen
 from lumen.motion.tracking import Tracker
 from lumen.ports import Live
 from lumen.robot.life_layer import LifeLayer
-from lumen.robots.simulation import SimulatedRobot
 from tests import ROOT
 from tests.fuzzy import physical_loop
 

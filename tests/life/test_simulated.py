@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import lumen
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.subject import subject
 from lumen.language.commands import Leds, Rest, Say
 from lumen.language.stories import Visitor
 from lumen.ports import Live, Perform
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.subject import subject
 from tests import ROOT
 
 PROJECT = lumen.load(ROOT)

@@ -27,7 +27,7 @@ MAKERS = {
     "run/starting.py": "a project, which is to be committed",
     "project/running_project.py": "the shipped exhibition, in the state folder",
     "cli/writing.py": "where the user says",
-    "robots/simulation/shells.py": "the robot's shape",
+    "features/simulation/shells.py": "the robot's shape",
 }
 """Who makes folders that stay, and why that is no leak."""
 

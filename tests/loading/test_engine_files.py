@@ -8,7 +8,7 @@ import pytest
 from lumen.project import engine_files
 from lumen.run.linting import outcome_cache
 
-DECIDE = ("lumen.motion.gait", "lumen.motion.life", "lumen.robot.executor", "lumen.rules.physics.trial")
+DECIDE = ("lumen.motion.gait", "lumen.motion.life", "lumen.robot.executor", "lumen.features.simulation.trials.trial")
 """Modules that decide whether a motion falls, at different depths."""
 
 

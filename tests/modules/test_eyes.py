@@ -19,11 +19,11 @@ from lumen.errors import ModuleError
 from lumen.features.eyes.detector import PersonDetector
 from lumen.features.eyes.gallery import FaceGallery
 from lumen.features.eyes.module import Eyes
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.modules import module_names
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.ports import Sense
-from lumen.robots.simulation import SimulatedRobot
 from lumen.run.exhibition import Exhibition
 from lumen.run.making.modules import ModulesPlan
 from lumen.run.plan import Plan

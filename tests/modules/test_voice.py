@@ -10,12 +10,12 @@ import pytest
 from lumen.cli.main import main
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import ModuleError, UsageError
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.features.voice.module import Espeak, Voice, espeak
 from lumen.features.voice.speaker import Speaker, voiced
 from lumen.language.commands import Say, Volume
 from lumen.language.projects import Project
 from lumen.robot.none import NoRobot
-from lumen.robots.simulation import SimulatedRobot
 from lumen.run.setup import Setup
 from lumen.run.sound import Sound, sound_of, wav
 from tests.modules.conftest import Stand

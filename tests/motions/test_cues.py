@@ -9,12 +9,12 @@ import pytest
 
 import lumen
 from lumen.clock.simulated import SimulatedClock
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Command, PlaySound, Say, Start
 from lumen.language.events import CUE, Event
 from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.robot.recording import RecordingRobot
-from lumen.robots.simulation import SimulatedRobot
 from lumen.run.exhibition import Exhibition
 from lumen.run.loop import Observer
 from lumen.run.setup import Setup

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from lumen.features.simulation.model_terms import ROBOT_PREFIX, Variation
+from lumen.features.simulation.robot import SimulatedRobot
 from lumen.motion import Motion
 from lumen.ports import Perform
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX, Variation
-from lumen.robots.simulation.robot import SimulatedRobot
 from tests import ROOT
 from tests.motions.making import SHIPPED, nao
 

@@ -7,10 +7,10 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
+from lumen.features.simulation.trials import DONE, FELL, Case, CaseResult, Outcome
+from lumen.features.simulation.trials.cases import cases
+from lumen.features.simulation.trials.verdict import findings
 from lumen.project.chosen_model import MODEL_VARIABLE
-from lumen.rules.physics import DONE, FELL, Case, CaseResult, Outcome
-from lumen.rules.physics.cases import cases
-from lumen.rules.physics.verdict import findings
 from lumen.run.linting.outcome_cache import OutcomeCache
 from tests import ROOT
 from tests.motions.making import SHIPPED

@@ -8,6 +8,7 @@ import pytest
 
 import lumen
 from lumen.clock.simulated import SimulatedClock
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Command, Publish, Start, Volume
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlaces
@@ -15,7 +16,6 @@ from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.files import read_files
 from lumen.project.lending import model_files
-from lumen.robots.simulation import SimulatedRobot
 from lumen.run.exploring import explored
 from lumen.run.loop import Observer
 from lumen.run.rehearsal import rehearse

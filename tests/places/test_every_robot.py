@@ -5,6 +5,7 @@ from math import hypot
 
 import pytest
 
+from lumen.features.simulation.odometry import DRIFT_AFTER_SITTING
 from lumen.language.commands import Posture
 from lumen.language.events import Event
 from lumen.language.hall_places import HallPlace, HallPlaces
@@ -12,7 +13,6 @@ from lumen.language.projects import Project
 from lumen.language.robots import Body as RobotBody
 from lumen.motion.dead_reckoning import turned
 from lumen.ports import Joints, Robot, Sense, Whereabouts
-from lumen.robots.simulation.odometry import DRIFT_AFTER_SITTING
 from lumen.run.navigator import Navigator
 from tests.seams.test_robot import ROBOTS, Body
 from tests.simulation.conftest import body

@@ -7,6 +7,7 @@ import pytest
 
 from lumen.bus.memory import MemoryBus
 from lumen.clock.simulated import SimulatedClock
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.insight.migration import MigrationDelay, MigrationPlan
 from lumen.language.events import Event
 from lumen.language.machines import MachineDefinition
@@ -16,7 +17,6 @@ from lumen.language.routes import Direction, Route
 from lumen.language.stories import Visitor
 from lumen.project import load
 from lumen.robot.recording import RecordingRobot
-from lumen.robots.simulation import SimulatedRobot
 from lumen.run.approvals import Approvals
 from lumen.run.loop import TICK_PERIOD, BehaviorLoop, Observer
 from lumen.run.setup import Setup

@@ -666,7 +666,7 @@ def test_without_pictures_everything_else_still_runs(setting: dict[str, str], wh
 
 @pytest.mark.physics
 def test_a_backend_without_its_library_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    from lumen.robots.simulation import gl  # imported here: it takes 0.5 s
+    from lumen.features.simulation import gl  # imported here: it takes 0.5 s
 
     monkeypatch.setattr(gl, "_loads", lambda library: False)
     assert gl._fault("osmesa") == (

@@ -13,12 +13,12 @@ import lumen
 from lumen.bus.memory import MemoryBus
 from lumen.cli.main import main
 from lumen.features.console.entry_words import OTHERS, text_of
+from lumen.features.simulation.robot import SimulatedRobot
 from lumen.language.commands import Say, Start, Wake
 from lumen.language.events import HELD, Event
 from lumen.ports import Message, Perform
 from lumen.robot.command_reports import CommandRecord, CommandReports
 from lumen.robot.person_hold import StoppedBy
-from lumen.robots.simulation.robot import SimulatedRobot
 from lumen.run.compose import begin
 from lumen.run.exhibition import Exhibition
 from lumen.run.parts.brain import BrainPart

@@ -21,11 +21,11 @@ from lumen.errors import (
 from lumen.features.naoqi.offers import NaoqiRobot
 from lumen.features.naoqi.sensors import NaoqiSensors
 from lumen.features.naoqi.session import NaoqiSession
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Posture, Rest, Walk
 from lumen.language.projects import Project
 from lumen.ports import RobotCommand, Whereabouts
 from lumen.robot.command_codec import decode_command
-from lumen.robots.simulation import SimulatedRobot
 from tests import ROOT
 from tests.naoqi.fake import FakeNao
 from tests.tables import for_each

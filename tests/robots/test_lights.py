@@ -9,9 +9,9 @@ from PIL import ImageColor
 import lumen
 from lumen.features.naoqi.hardware import NAO, PEPPER
 from lumen.features.naoqi.lights import NAOQI_COLOURS, fades
+from lumen.features.simulation.lights import RENDERED_COLOURS, rendered
 from lumen.language.lights import COLOURS, LIGHT_GROUPS, LIGHTS, light_fault, rgb
 from lumen.project.schema import load_schema
-from lumen.robots.simulation.lights import RENDERED_COLOURS, rendered
 from tests.tables import for_each
 
 

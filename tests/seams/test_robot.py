@@ -10,6 +10,7 @@ import pytest
 import lumen
 from lumen.bus import connect
 from lumen.bus.validated import validated
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake
 from lumen.language.events import Event
 from lumen.language.motions import Keyframe, MotionDefinition
@@ -18,7 +19,6 @@ from lumen.language.stories import Visitor
 from lumen.ports import Aim, Battery, Hall, Joints, Live, Perform, Record, Robot, RobotCommand, Sense, Sonar, Tactile
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.remote import RemoteHall, RemoteRobot, RobotHost
-from lumen.robots.simulation import SimulatedRobot
 from tests import ROOT
 from tests.naoqi.lockstep import Lockstep
 

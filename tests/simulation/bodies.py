@@ -3,11 +3,11 @@
 from functools import cache
 from typing import Any
 
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.robots import Body
 from lumen.project.bodies import build_body
 from lumen.project.document_report import DocumentReport
 from lumen.project.yaml_reader import parse
-from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import MODELS
 from tests.simulation.walks import on_the_floor
 

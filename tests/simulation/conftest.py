@@ -5,12 +5,12 @@ from collections.abc import Callable, Sequence
 import pytest
 
 import lumen
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Look
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.motion.projection import centring
 from lumen.ports import RobotCommand
-from lumen.robots.simulation import SimulatedRobot
 from tests import ROOT
 
 MODELS = ROOT / "models"

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Move
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.ports import Perform
-from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.walks import Push, any_robot
 
 SETTLE = 1.0

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from dm_control import mjcf
 
+from lumen.features.simulation.added_servos import add_servos
 from lumen.language.robots import Body, Joint
-from lumen.robots.simulation.added_servos import add_servos
 
 MODEL = """
 <mujoco>

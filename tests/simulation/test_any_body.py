@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lumen.features.simulation.film import Film
+from lumen.features.simulation.link_frames import LinkFrames
+from lumen.features.simulation.subject import subject
 from lumen.language.commands import Leds, Posture
 from lumen.language.robots import Body
 from lumen.ports import Image, Joints, Sense
-from lumen.robots.simulation.film import Film
-from lumen.robots.simulation.link_frames import LinkFrames
-from lumen.robots.simulation.subject import subject
 from tests.simulation.bodies import shipped, standing
 from tests.simulation.conftest import MODELS, answer, until_answered
 from tests.simulation.walks import floor

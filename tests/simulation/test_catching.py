@@ -5,11 +5,12 @@ from math import hypot, inf, pi
 import numpy as np
 import pytest
 
+from lumen.features.simulation import catching, skills
+from lumen.features.simulation.balance import LEAN
+from lumen.features.simulation.odometry import DRIFT_AFTER_CATCH
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Walk
 from lumen.language.robots import Body
-from lumen.robots.simulation import SimulatedRobot, catching, skills
-from lumen.robots.simulation.balance import LEAN
-from lumen.robots.simulation.odometry import DRIFT_AFTER_CATCH
 from tests.simulation.conftest import answer, until_answered
 from tests.simulation.pushes import PushTrial, standing, upright
 from tests.simulation.walks import Push, any_robot, truth

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from lumen.errors import RobotError
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Look, Posture, Say, Stop, Walk
 from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
 from lumen.ports import Aim, Perform, RobotCommand
-from lumen.robots.simulation import SimulatedRobot
 from tests.scanning import matching
 from tests.simulation.conftest import MODELS, Do, answer, until_answered
 

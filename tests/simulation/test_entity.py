@@ -8,8 +8,8 @@ from dm_control import mjcf
 from dm_control.locomotion.arenas import floors
 
 from lumen.errors import RobotError
+from lumen.features.simulation.entity import Nao
 from lumen.language.robots import Body
-from lumen.robots.simulation.entity import Nao
 from tests.simulation.bodies import shipped
 from tests.simulation.conftest import MODELS
 

@@ -4,9 +4,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lumen.features.simulation.joint_envelope import JointEnvelope
 from lumen.language.robots import Body
 from lumen.motion.limits import coupled_range
-from lumen.robots.simulation.joint_envelope import JointEnvelope
 
 DT = 0.01
 

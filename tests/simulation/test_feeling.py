@@ -4,11 +4,11 @@ from math import pi
 
 import pytest
 
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Posture, Walk
 from lumen.ports import Joints, Sense
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.sense_codec import decode_reading, encode_reading
-from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import until_answered
 
 WEIGHT = 5.30535

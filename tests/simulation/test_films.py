@@ -11,11 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lumen.features.film.progress import FilmProgress
-from lumen.language.stories import Visitor
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.film import Film
-from lumen.robots.simulation.lettering import MAX_LINES, ROBOT_COLOUR, subtitle, subtitle_pages
-from lumen.robots.simulation.shots import (
+from lumen.features.simulation.film import Film
+from lumen.features.simulation.lettering import MAX_LINES, ROBOT_COLOUR, subtitle, subtitle_pages
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.shots import (
     FIELD_OF_VIEW,
     LONGEST_SHOT,
     SHORTEST_SHOT,
@@ -28,6 +27,7 @@ from lumen.robots.simulation.shots import (
     camera_place,
     free_camera,
 )
+from lumen.language.stories import Visitor
 
 HEAD: HallPoint = (0.0, 0.0, 1.0)
 TORSO: HallPoint = (0.0, 0.0, 0.83)

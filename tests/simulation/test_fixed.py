@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Look, Posture, Rest, Say, Wake, Walk
 from lumen.ports import Joints, RobotCommand, Sense
-from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.bodies import standing
 from tests.simulation.conftest import answer, until_answered
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from lumen.errors import UsageError
+from lumen.features.simulation.battery_and_heat import BatteryAndHeat
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Look, Say, Wake, Walk
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.ports import Battery, Joints, Sense, Sonar, Tactile
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
 from tests.simulation.conftest import MODELS, Do, answer, look_at_face, until_answered
 
 

@@ -5,12 +5,12 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from lumen.language.imperfections import IMPERFECTIONS, PERFECT, Imperfections, only
+from lumen.features.simulation.imperfections import BACKLASH, EMPTY_VOLTAGE, NOMINAL_VOLTAGE, voltage
+from lumen.features.simulation.motor_torques import MotorTorques
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.settings import IMPERFECTIONS, PERFECT, Imperfections, only
 from lumen.language.robots import Body
 from lumen.ports import Joints, Sense
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.imperfections import BACKLASH, EMPTY_VOLTAGE, NOMINAL_VOLTAGE, voltage
-from lumen.robots.simulation.motor_torques import MotorTorques
 from tests.simulation.conftest import MODELS
 
 

@@ -12,7 +12,7 @@ from dm_control.locomotion.tasks import go_to_target
 from gymnasium.utils.env_checker import check_env
 
 import lumen
-from lumen.robots.simulation.entity import Nao
+from lumen.features.simulation.entity import Nao
 from tests import ROOT
 
 pytestmark = pytest.mark.rest  # dear

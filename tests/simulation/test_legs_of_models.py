@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import RobotModelError
+from lumen.features.simulation.leg_geometry import read_legs
+from lumen.features.simulation.mass_model import MassModel
 from lumen.language.robots import Body
 from lumen.motion.gait import FOUND, LegGeometry, paces_of
-from lumen.robots.simulation.leg_geometry import read_legs
-from lumen.robots.simulation.mass_model import MassModel
 from tests.simulation.conftest import MODELS
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.rendering import FILM_QUALITY, RenderState, SceneRenderer
 from lumen.language.commands import Leds, Rest, Say
 from lumen.language.motions import Cue, Keyframe, MotionDefinition
 from lumen.ports import Perform
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.rendering import FILM_QUALITY, RenderState, SceneRenderer
 from tests.simulation.conftest import Do, answer, until_answered
 
 NOD = MotionDefinition(

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from lumen.features.simulation.model import load
+from lumen.features.simulation.model_terms import Variation
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Look
 from lumen.language.robots import Body
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.model import load
-from lumen.robots.simulation.model_terms import Variation
 from tests.simulation.conftest import MODELS
 from tests.simulation.published import JOINTS, LINKS, TOTAL_MASS
 

@@ -5,12 +5,12 @@ from math import nan
 import numpy as np
 import pytest
 
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Move, Posture, Stop, Walk
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.motion.gait import FOUND, Footstep, GaitParameters, corners, fastest
 from lumen.motion.gait.poses import wrap
-from lumen.robots.simulation import SimulatedRobot
 from tests.gait.nao_legs import NAO_LEGS
 from tests.simulation.conftest import MODELS, answer, until_answered
 from tests.simulation.walks import Push, any_robot, feet, on_the_floor, truth

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from lumen.errors import RobotError
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.robots import Body
-from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import MODELS
 
 

@@ -6,9 +6,9 @@ from math import pi
 
 import pytest
 
+from lumen.features.simulation.biped import Biped
 from lumen.language.commands import Look, Move, Posture, Rest, Wake, Walk
 from lumen.ports import Joints, RobotCommand, Sense
-from lumen.robots.simulation.biped import Biped
 from tests.simulation.bodies import shipped, standing
 from tests.simulation.conftest import answer, until_answered
 from tests.simulation.walks import any_robot, truth, walk

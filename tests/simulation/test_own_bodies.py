@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import yaml
 
+from lumen.features.simulation.model_terms import Variation
+from lumen.features.simulation.world_model import physics
 from lumen.language.roles import BaseKind
 from lumen.project.bodies import build_body
 from lumen.project.document_report import DocumentReport
 from lumen.project.yaml_reader import parse
-from lumen.robots.simulation.model_terms import Variation
-from lumen.robots.simulation.world_model import physics
 from tests import ROOT
 
 MODELS = ROOT / "models"

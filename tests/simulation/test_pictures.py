@@ -12,15 +12,15 @@ import pytest
 from numpy.typing import NDArray
 
 from lumen.errors import RobotError
+from lumen.features.simulation.culling import FrustumCulling
+from lumen.features.simulation.film import FILM_RATE, Film
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.shells import write
 from lumen.language.commands import Look
 from lumen.language.robots import Body
 from lumen.language.routes import Size
 from lumen.language.stories import Visitor
 from lumen.ports import Image, Sense
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.culling import FrustumCulling
-from lumen.robots.simulation.film import FILM_RATE, Film
-from lumen.robots.simulation.shells import write
 from tests.guarded import run_guarded
 from tests.simulation.conftest import MODELS, Do, look_at_face
 from tests.waiting import HANG
@@ -120,7 +120,7 @@ from lumen.project.bodies import build_body
 from lumen.project.document_report import DocumentReport
 from lumen.project.yaml_reader import parse
 from lumen.ports import Sense
-from lumen.robots.simulation import SimulatedRobot, available
+from lumen.features.simulation.offers import SimulatedRobot, available
 models = pathlib.Path({str(MODELS)!r})
 document, _ = parse("models/nao.yaml", (models / "nao.yaml").read_bytes())
 robot = SimulatedRobot(build_body(document.data, DocumentReport(document), name="nao"), models, "hall.xml")

@@ -8,13 +8,13 @@ import mujoco
 import numpy as np
 import pytest
 
+from lumen.features.simulation.balance import LEAN
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Posture, Rest, Stop, Wake, Walk
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.robots import Body
 from lumen.motion.postures import RESTFUL, UPRIGHT, route
 from lumen.ports import Perform
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.balance import LEAN
 from tests.simulation.conftest import Do, answer, until_answered
 from tests.simulation.walks import any_robot
 

@@ -7,7 +7,7 @@ from dm_control import mjcf
 from scripts.scene import POSTURES, scene
 
 import lumen
-from lumen.robots.simulation.model import alone
+from lumen.features.simulation.model import alone
 from tests import ROOT
 
 MODELS = ROOT / "models"

@@ -6,11 +6,11 @@ from itertools import chain, permutations
 import numpy as np
 import pytest
 
+from lumen.features.simulation.balance import LEAN
+from lumen.features.simulation.model_terms import Variation
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Look, Posture, Rest, Wake
 from lumen.language.robots import Body
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.balance import LEAN
-from lumen.robots.simulation.model_terms import Variation
 from tests.simulation.conftest import MODELS, Do, until_answered
 
 STANDING = ("Stand", "StandInit", "StandZero", "Crouch")

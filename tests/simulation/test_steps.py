@@ -3,9 +3,9 @@
 import mujoco
 import numpy as np
 
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Walk
 from lumen.language.robots import Body
-from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import MODELS
 
 ISLANDS = int(mujoco.mjtDisableBit.mjDSBL_ISLAND)

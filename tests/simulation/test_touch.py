@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.robots import Body
-from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import MODELS
 
 RADIUS = 0.02

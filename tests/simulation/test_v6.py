@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import lumen
+from lumen.features.simulation.mass_model import MassModel
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Walk
 from lumen.language.robots import Body
 from lumen.project.building import draft
 from lumen.project.files import read_files
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.mass_model import MassModel
 from tests.simulation.conftest import MODELS, answer, until_answered
 
 TOTAL = 5.35975

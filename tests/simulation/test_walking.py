@@ -6,6 +6,7 @@ from math import degrees, inf, nan, pi
 import numpy as np
 import pytest
 
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Walk
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Stage
@@ -13,7 +14,6 @@ from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.motion.gait.footsteps import Footstep
 from lumen.ports import Aim, Perform
-from lumen.robots.simulation import SimulatedRobot
 from tests.simulation.conftest import MODELS, answer, until_answered
 from tests.simulation.walks import TARGETS, Push, Walked, any_robot, on_the_floor, truth, walk
 

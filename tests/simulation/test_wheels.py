@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from lumen.errors import RobotModelError
+from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.settings import PERFECT
+from lumen.features.simulation.wheels import Wheels
 from lumen.language.commands import Look, Move, Posture, Rest, Stop, Wake, Walk
-from lumen.language.imperfections import PERFECT
 from lumen.language.projects import Stage
 from lumen.language.roles import Base, BaseKind
 from lumen.motion.gait import Pose
 from lumen.motion.gait.poses import wrap
 from lumen.ports import Joints, Sense
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.wheels import Wheels
 from tests.simulation.bodies import shipped, standing
 from tests.simulation.conftest import MODELS, answer, until_answered
 from tests.simulation.walks import START

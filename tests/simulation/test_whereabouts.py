@@ -5,13 +5,13 @@ from math import degrees, pi
 import pytest
 
 from lumen.errors import RobotError
+from lumen.features.simulation.odometry import DRIFT_AFTER_FALL, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_SITTING, Odometry
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Posture, Wake, Walk
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.motion.gait import Footstep, Pose, middle
 from lumen.motion.gait.poses import wrap
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.odometry import DRIFT_AFTER_FALL, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_SITTING, Odometry
 from tests.gait.nao_legs import NAO_LEGS
 from tests.simulation.conftest import answer, until_answered
 from tests.simulation.test_postures import shoved

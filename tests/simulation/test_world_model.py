@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import lumen
+from lumen.features.simulation import model
+from lumen.features.simulation.model_terms import Variation
+from lumen.features.simulation.world_model import physics
 from lumen.project import memoization
-from lumen.robots.simulation import model
-from lumen.robots.simulation.model_terms import Variation
-from lumen.robots.simulation.world_model import physics
 from tests import ROOT
 
 

@@ -10,13 +10,13 @@ from typing import Any
 import mujoco
 import numpy as np
 
+from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Walk
 from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.motion.gait import SIDES, Feet, Pose, Side, middle
 from lumen.motion.gait.legs import SIDE_ROLES
-from lumen.robots.simulation import SimulatedRobot
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 from tests.simulation.conftest import MODELS, answer
 
 START = (3.0, -3.0)

@@ -201,7 +201,7 @@ def fingerprints() -> dict[str, str]:
     """Return what findings, worlds, outcomes of motions and workers depend on."""
     return {
         "findings": engine_files.engine(),
-        "worlds": engine_files.files_hash(PACKAGE / "robots/simulation"),
+        "worlds": engine_files.files_hash(PACKAGE / "features/simulation"),
         "outcomes": engine_files.code_hash(*outcome_cache.CODE),
         "workers": tasks.engine(),
     }

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.projects import Project
 from lumen.language.stories import Arrive, Expect, Story, StoryPause, StoryStep, Visitor, VisitorAction
-from lumen.robots.simulation import SimulatedRobot
 from tests.tour.playing import play
 
 

@@ -5,8 +5,8 @@ import signal
 import time
 from pathlib import Path
 
-from lumen.language.imperfections import Imperfections
-from lumen.rules.physics import Outcome
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.trials import Outcome
 from lumen.run.linting.physics import play_case
 from lumen.run.workers.work_kit import UnpackedKit
 

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 
 from lumen.bus.addresses import within_process
-from lumen.cli.imperfection_options import imperfections_of
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import chosen_story, period_of
@@ -16,6 +15,7 @@ from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, Ru
 from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
 from lumen.errors import LumenError, UsageError
+from lumen.features.simulation.options import imperfections_of
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock

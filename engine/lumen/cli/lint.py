@@ -4,13 +4,13 @@ import argparse
 import sys
 from collections.abc import Mapping, Sequence
 
-from lumen.cli.imperfection_options import configure_imperfections, imperfections_of
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.printing import show, verdict
 from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
 from lumen.cli.workers_option import configure_workers
 from lumen.errors import UsageError
+from lumen.features.simulation.options import configure_imperfections, imperfections_of
 from lumen.language.diagnostics import Diagnostic
 from lumen.run.linting.findings import Findings
 from lumen.run.linting.targets import FindingsOf, LintTarget, Wanted, lint, lint_targets

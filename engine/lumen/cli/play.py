@@ -7,13 +7,13 @@ from typing import Any
 
 from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.formats import configure_format, one_object
-from lumen.cli.imperfection_options import configure_imperfections, imperfections_of
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import ProgressListener, progress
 from lumen.cli.projects import shown_project
 from lumen.errors import ProjectError, UsageError
 from lumen.features.film.options import configure_size, film_path, film_size
 from lumen.features.formats_motion.offers import read_gesture
+from lumen.features.simulation.options import configure_imperfections, imperfections_of
 from lumen.language.commands import Posture
 from lumen.language.diagnostics import did_you_mean, has_errors
 from lumen.language.motions import MotionDefinition
@@ -119,8 +119,8 @@ class _Player:
     """The simulated robot with nobody in charge of it: one command after another, each to its end."""
 
     def __init__(self, project: Project, speed: str, video: Path | None, size: tuple[int, int]) -> None:
-        from lumen.robots.simulation import SimulatedRobot
-        from lumen.robots.simulation.film import Film
+        from lumen.features.simulation.film import Film
+        from lumen.features.simulation.offers import SimulatedRobot
 
         chosen = set_up("simulation", project, speed)
         assert isinstance(chosen.robot, SimulatedRobot)

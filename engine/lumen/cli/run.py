@@ -8,7 +8,6 @@ from pathlib import Path
 
 from lumen.bus.addresses import examples, within_process
 from lumen.cli.formats import configure_format, one_object
-from lumen.cli.imperfection_options import configure_imperfections, set_up_robot
 from lumen.cli.main import ready
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.performance import GREETING, Performance
@@ -22,6 +21,7 @@ from lumen.clock.following import FollowingClock
 from lumen.errors import UsageError
 from lumen.feature import table
 from lumen.features.film.options import configure_size, film_path, film_progress, film_size
+from lumen.features.simulation.options import configure_imperfections, set_up_robot
 from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.language.stories import Story
 from lumen.ports import Clock

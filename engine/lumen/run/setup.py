@@ -7,7 +7,7 @@ from lumen.clock.real import RealClock
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import LumenError, UsageError
 from lumen.feature import Feature, RobotOption, RobotRow, distribution_of, owner, table
-from lumen.language.imperfections import Imperfections
+from lumen.features.simulation.settings import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, Robot

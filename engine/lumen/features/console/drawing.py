@@ -24,7 +24,7 @@ class Drawing:
 
     def __init__(self, root: Path, robot: str = "") -> None:
         demand("simulation", "the view of the robot in its hall", "mujoco", "dm_control")
-        from lumen.robots.simulation.link_frames import LinkFrames
+        from lumen.features.simulation.link_frames import LinkFrames
 
         self._project = lumen.load(root, robot=robot)
         self._links = LinkFrames(self._project.body, model_files(self._project)[0])

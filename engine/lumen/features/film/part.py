@@ -36,9 +36,9 @@ class FilmPart(Part, Observer):
         title: str = "",
         progress: FilmProgress | None = None,
     ) -> None:
-        from lumen.robots.simulation import SimulatedRobot
-        from lumen.robots.simulation.film import FILM_SIZE, Film
-        from lumen.robots.simulation.shots import FilmMoment
+        from lumen.features.simulation.film import FILM_SIZE, Film
+        from lumen.features.simulation.offers import SimulatedRobot
+        from lumen.features.simulation.shots import FilmMoment
 
         if not isinstance(robot, SimulatedRobot):
             raise UsageError("only the simulated robot can be recorded on video")

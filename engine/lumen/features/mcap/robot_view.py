@@ -15,7 +15,7 @@ from lumen.project.lending import model_files
 from lumen.robot.sense_codec import decode_reading
 
 if TYPE_CHECKING:
-    from lumen.robots.simulation.link_frames import LinkFrames, LinkShape
+    from lumen.features.simulation.link_frames import LinkFrames, LinkShape
 
 FRAMES, LOOK = ".frames", ".look"
 """What follows the joints' topic for the frames of the links, and for what they look like."""
@@ -29,7 +29,7 @@ class RobotView:
         self._links: "LinkFrames | None" = None  # noqa: UP037  imported where it is wanted
         try:
             demand("simulation", "the robot's shape in a recording", "mujoco", "dm_control")
-            from lumen.robots.simulation.link_frames import LinkFrames
+            from lumen.features.simulation.link_frames import LinkFrames
 
             self._links = LinkFrames(self._body, model_files(project)[0])
         except LumenError as error:

@@ -6,7 +6,7 @@ FEATURE = Feature(
     name="simulation",
     sections={
         "imperfections": Section(
-            read="lumen.loading.imperfections:read_imperfections",
+            read="lumen.features.simulation.reading:read_imperfections",
             title="the robot's imperfections",
             risk="restart",
             of_house=True,
@@ -15,7 +15,7 @@ FEATURE = Feature(
     extras=("simulation",),
     robots={
         "simulation": RobotRow(
-            "lumen.app.robots.simulated:set_up", "lumen.app.robots.simulated:set_up_house", bounded=True
+            "lumen.features.simulation.set_up:set_up", "lumen.features.simulation.set_up:set_up_house", bounded=True
         )
     },
 )

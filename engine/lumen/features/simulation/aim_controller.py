@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
+from lumen.features.simulation.motors import Motors
 from lumen.ports import Aim
-from lumen.robots.simulation.motors import Motors
 
 
 class AimController:

@@ -2,9 +2,9 @@
 
 from dm_control import mjcf
 
+from lumen.features.simulation.imperfections import BACKLASH
+from lumen.features.simulation.model_terms import PLAY_SUFFIX
 from lumen.language.robots import Body
-from lumen.robots.simulation.imperfections import BACKLASH
-from lumen.robots.simulation.model_terms import PLAY_SUFFIX
 
 _GEAR_INERTIA, _GEAR_DAMPING = 0.01, 0.01
 """Of the gears' last wheel [kg m^2], [N m s/rad]; chosen: with less the robot rattles where it rests."""

@@ -2,15 +2,15 @@
 
 import numpy as np
 
+from lumen.features.simulation.falling_sense import FallingSense
+from lumen.features.simulation.joint_envelope import JointVector
+from lumen.features.simulation.motors import Motors
+from lumen.features.simulation.world import CONTROL_PERIOD
 from lumen.language.roles import Roles
 from lumen.motion.gait import SIDES, LegGeometry, Side
 from lumen.motion.gait.legs import SIDE_ROLES
 from lumen.motion.gait.legs import sign as outward
 from lumen.motion.gait.parameters import scale_of
-from lumen.robots.simulation.falling_sense import FallingSense
-from lumen.robots.simulation.joint_envelope import JointVector
-from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.world import CONTROL_PERIOD
 
 BALANCE_GAIN = 0.05
 """Ankle angle for each unit of the torso's turning speed [rad per rad/s]: the toes press where it falls to."""

@@ -2,11 +2,11 @@
 
 from typing import Protocol
 
+from lumen.features.simulation.contact_shadows import Soles
+from lumen.features.simulation.joint_envelope import JointVector
 from lumen.language.commands import Move, Walk
 from lumen.ports import Whereabouts
 from lumen.robot.executor import Activity
-from lumen.robots.simulation.contact_shadows import Soles
-from lumen.robots.simulation.joint_envelope import JointVector
 
 
 class RobotBase(Protocol):

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from lumen.features.simulation.imperfections import voltage
 from lumen.language.events import Event
-from lumen.robots.simulation.imperfections import voltage
 
 BATTERY_CAPACITY = 48.6 * 3600
 """A full battery [J]: 48.6 Wh, from NAO V5's data sheet."""

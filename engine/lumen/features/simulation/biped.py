@@ -2,25 +2,25 @@
 
 from collections.abc import Callable
 
+from lumen.features.simulation.balance import BalanceController
+from lumen.features.simulation.catching import FallCatcher
+from lumen.features.simulation.contact_shadows import Soles
+from lumen.features.simulation.falling_sense import FallingSense
+from lumen.features.simulation.hazards import Hazards
+from lumen.features.simulation.joint_envelope import JointVector
+from lumen.features.simulation.leg_geometry import read_legs
+from lumen.features.simulation.mass_model import MassModel
+from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.motors import Motors
+from lumen.features.simulation.odometry import Odometry
+from lumen.features.simulation.sensors import BodySensors
+from lumen.features.simulation.walking import WalkController
 from lumen.language.commands import Move, Walk
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.motion.gait import paces_of
 from lumen.ports import Whereabouts
 from lumen.robot.executor import Activity
-from lumen.robots.simulation.balance import BalanceController
-from lumen.robots.simulation.catching import FallCatcher
-from lumen.robots.simulation.contact_shadows import Soles
-from lumen.robots.simulation.falling_sense import FallingSense
-from lumen.robots.simulation.hazards import Hazards
-from lumen.robots.simulation.joint_envelope import JointVector
-from lumen.robots.simulation.leg_geometry import read_legs
-from lumen.robots.simulation.mass_model import MassModel
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX
-from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.odometry import Odometry
-from lumen.robots.simulation.sensors import BodySensors
-from lumen.robots.simulation.walking import WalkController
 
 
 class Biped:

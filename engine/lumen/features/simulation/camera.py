@@ -1,11 +1,11 @@
 """What the robot's camera sees."""
 
+from lumen.features.simulation.rendering import CAMERA_QUALITY, PixelArray, RenderState, SceneRenderer, available
+from lumen.features.simulation.world import World
 from lumen.language.robots import Camera
 from lumen.language.routes import Size
 from lumen.motion.projection import project
 from lumen.ports import Image
-from lumen.robots.simulation.rendering import CAMERA_QUALITY, PixelArray, RenderState, SceneRenderer, available
-from lumen.robots.simulation.world import World
 
 
 class RobotCamera:

@@ -5,12 +5,12 @@ from math import atan2, pi, sin
 
 import numpy as np
 
+from lumen.features.simulation.falling_sense import FallingSense
 from lumen.motion.gait import SIDES, GaitParameters, LegGeometry, Side
 from lumen.motion.gait.capture import CapturePoint, hold_level, landing
 from lumen.motion.gait.legs import other
 from lumen.motion.gait.parameters import scale_of, time_scale_of
 from lumen.motion.gait.swing import smooth
-from lumen.robots.simulation.falling_sense import FallingSense
 
 STEP_TIME, STEP_BACK_TIME = 0.17, 0.2
 """How long such a step takes [s], forward or aside, and backwards, on legs as long as those it was found with."""

@@ -2,15 +2,15 @@
 
 from collections.abc import Callable, Mapping
 
+from lumen.features.simulation.balance import BalanceController
+from lumen.features.simulation.catch_step import CatchStep
+from lumen.features.simulation.falling_sense import FallingSense
+from lumen.features.simulation.motors import Motors
+from lumen.features.simulation.odometry import Odometry
+from lumen.features.simulation.sensors import BodySensors
 from lumen.motion.gait import SIDES, CentreOfMass, Gait, LegGeometry, Paces, Side, Velocity, middle
 from lumen.motion.gait.parameters import scale_of, time_scale_of
 from lumen.motion.gait.swing import smooth
-from lumen.robots.simulation.balance import BalanceController
-from lumen.robots.simulation.catch_step import CatchStep
-from lumen.robots.simulation.falling_sense import FallingSense
-from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.odometry import Odometry
-from lumen.robots.simulation.sensors import BodySensors
 
 BEYOND_TOES, BEYOND_HEELS = -0.01, -0.008
 """The DCM is that far beyond the feet's edge where a step helps [m], on legs as long as those

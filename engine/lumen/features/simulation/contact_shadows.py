@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 import mujoco
 import numpy as np
 
-from lumen.robots.simulation.visitor_figure import VISITOR_BODY
+from lumen.features.simulation.visitor_figure import VISITOR_BODY
 
 Soles = Mapping[str, tuple[float, float]]
 """The sites below a robot's ankles, and half the length and half the width of each sole [m]."""

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
+from lumen.features.simulation.world import World
 from lumen.motion.gait.pendulum import GRAVITY
-from lumen.robots.simulation.world import World
 
 TIPPING_SHARE = 0.25
 """That part of what would tip the robot over, and of what its motors could, is what it speeds up or brakes with."""

@@ -6,12 +6,12 @@ from math import atan2, copysign, hypot, sqrt
 import numpy as np
 
 from lumen.errors import RobotError, RobotFailedError
+from lumen.features.simulation.drive_geometry import DriveGeometry
+from lumen.features.simulation.hazards import Hazards
+from lumen.features.simulation.walking import ARRIVAL_TOLERANCE, HAZARD_CHECK_PERIOD, HEADING_TOLERANCE
+from lumen.features.simulation.wheel_odometry import WheelOdometry
+from lumen.features.simulation.world import CONTROL_PERIOD, World
 from lumen.motion.gait import Pose, Velocity
-from lumen.robots.simulation.drive_geometry import DriveGeometry
-from lumen.robots.simulation.hazards import Hazards
-from lumen.robots.simulation.walking import ARRIVAL_TOLERANCE, HAZARD_CHECK_PERIOD, HEADING_TOLERANCE
-from lumen.robots.simulation.wheel_odometry import WheelOdometry
-from lumen.robots.simulation.world import CONTROL_PERIOD, World
 
 NEAR, FACING = 0.008, 0.015
 """So near to where it should be [m], [rad] the robot need not drive or turn on."""

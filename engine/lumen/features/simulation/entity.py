@@ -8,11 +8,11 @@ from dm_control import mjcf
 from dm_control.locomotion.walkers import base, legacy_base
 from dm_control.locomotion.walkers.initializers import WalkerInitializer
 
+from lumen.features.simulation.model import alone
+from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.observables import NaoObservables
 from lumen.language.robots import Body
 from lumen.language.roles import SIDES
-from lumen.robots.simulation.model import alone
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX
-from lumen.robots.simulation.observables import NaoObservables
 
 
 class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types

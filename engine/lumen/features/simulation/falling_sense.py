@@ -5,12 +5,12 @@ from math import hypot, sqrt
 import numpy as np
 from numpy.typing import NDArray
 
+from lumen.features.simulation.mass_model import MassModel
+from lumen.features.simulation.sensors import BodySensors
+from lumen.features.simulation.world import CONTROL_PERIOD
 from lumen.motion.gait import LegGeometry
 from lumen.motion.gait.parameters import scale_of
 from lumen.motion.gait.pendulum import GRAVITY
-from lumen.robots.simulation.mass_model import MassModel
-from lumen.robots.simulation.sensors import BodySensors
-from lumen.robots.simulation.world import CONTROL_PERIOD
 
 _SMOOTHING = 0.65
 _LOWEST = 0.15

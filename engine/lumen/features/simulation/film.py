@@ -14,12 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
-from lumen.robot.command_table import speech_duration
-from lumen.robots.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, subtitle_pages, title
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX
-from lumen.robots.simulation.rendering import FILM_QUALITY, PixelArray, RenderState, SceneRenderer, available
-from lumen.robots.simulation.robot import SimulatedRobot
-from lumen.robots.simulation.shots import (
+from lumen.features.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, subtitle_pages, title
+from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.rendering import FILM_QUALITY, PixelArray, RenderState, SceneRenderer, available
+from lumen.features.simulation.robot import SimulatedRobot
+from lumen.features.simulation.shots import (
     FIELD_OF_VIEW,
     CameraPlace,
     FilmMoment,
@@ -30,6 +29,7 @@ from lumen.robots.simulation.shots import (
     camera_place,
     free_camera,
 )
+from lumen.robot.command_table import speech_duration
 
 FILM_RATE = 25
 FilmSize = tuple[int, int]

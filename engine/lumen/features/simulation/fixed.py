@@ -3,10 +3,10 @@
 import numpy as np
 
 from lumen.errors import RobotRefusedError
+from lumen.features.simulation.contact_shadows import NO_SOLES
+from lumen.features.simulation.joint_envelope import JointVector
 from lumen.language.commands import Move, Walk
 from lumen.robot.executor import Activity
-from lumen.robots.simulation.contact_shadows import NO_SOLES
-from lumen.robots.simulation.joint_envelope import JointVector
 
 
 class Fixed:

@@ -6,8 +6,8 @@ from itertools import compress
 import mujoco
 import numpy as np
 
+from lumen.features.simulation.model_terms import ROBOT_PREFIX
 from lumen.language.roles import Roles
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 
 NEWTONS_PER_KILOGRAM = 9.81
 """ALMemory counts these forces in kilograms: newtons divided by this."""

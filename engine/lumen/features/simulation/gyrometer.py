@@ -5,9 +5,8 @@ from math import exp
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.language.imperfections import Imperfections
-from lumen.robots.simulation.gyro_calibration import GyroCalibration
-from lumen.robots.simulation.imperfections import (
+from lumen.features.simulation.gyro_calibration import GyroCalibration
+from lumen.features.simulation.imperfections import (
     GYRO_BIAS,
     GYRO_DRIFT,
     GYRO_NOISE,
@@ -15,7 +14,8 @@ from lumen.robots.simulation.imperfections import (
     WARMING,
     WARMING_TIME,
 )
-from lumen.robots.simulation.world import CONTROL_PERIOD
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.world import CONTROL_PERIOD
 
 
 class Gyrometer:

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
+from lumen.features.simulation.sonar import Sonars
 from lumen.robot.hazards import danger
-from lumen.robots.simulation.sonar import Sonars
 
 
 class Hazards:

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable, Mapping
 
+from lumen.features.simulation.motors import Motors
 from lumen.robot.joint_ways import way_duration
-from lumen.robots.simulation.motors import Motors
 
 MIN_TRANSITION_TIME, MAX_TRANSITION_TIME = 0.6, 2.0
 """How long a change of posture takes [s] at speed 1 and when slow: between these it never fell."""

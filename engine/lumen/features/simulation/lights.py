@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lumen.features.simulation.model_terms import ROBOT_PREFIX
 from lumen.language.lights import rgb
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 
 RENDERED_COLOURS: Mapping[object, int] = {
     "off": 0x202428, "black": 0x202428, "white": 0xF4F6FF, "red": 0xFF3020, "green": 0x30E040, "blue": 0x2060FF,

@@ -10,9 +10,9 @@ import numpy as np
 from dm_control import mjcf
 from numpy.typing import NDArray
 
+from lumen.features.simulation.model import alone
 from lumen.language.robots import Body
 from lumen.ports import Joints
-from lumen.robots.simulation.model import alone
 
 LinkNumbers = NDArray[np.float64]
 FLOOR = "hall"

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.robots.simulation.world import CONTROL_PERIOD
+from lumen.features.simulation.world import CONTROL_PERIOD
 
 
 class MeanRates:

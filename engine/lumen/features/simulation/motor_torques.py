@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.robots.simulation.imperfections import NOMINAL_VOLTAGE
-from lumen.robots.simulation.world import World
+from lumen.features.simulation.imperfections import NOMINAL_VOLTAGE
+from lumen.features.simulation.world import World
 
 _WITHOUT_BOUND = 1e9
 """The stall torque [N m] of a motor that names none; infinity times a speed of 0 would be no number."""

@@ -7,11 +7,11 @@ from math import isfinite
 import numpy as np
 
 from lumen.errors import BadCommandError
-from lumen.language.imperfections import Imperfections
-from lumen.robots.simulation.imperfections import FULL_VOLTAGE, LATENCY, NOMINAL_VOLTAGE
-from lumen.robots.simulation.joint_envelope import JointEnvelope, JointVector
-from lumen.robots.simulation.motor_torques import MotorTorques
-from lumen.robots.simulation.world import World
+from lumen.features.simulation.imperfections import FULL_VOLTAGE, LATENCY, NOMINAL_VOLTAGE
+from lumen.features.simulation.joint_envelope import JointEnvelope, JointVector
+from lumen.features.simulation.motor_torques import MotorTorques
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.world import World
 
 LIMP_STIFFNESS = 0.5
 """Below this stiffness a joint may be anywhere but at its goal."""

@@ -19,7 +19,7 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
     """What a NAO, or another biped, feels and sees, besides what any Walker has: `joints_pos` and `joints_vel` are in
     the body's order. What it has no sensor for is left out.
 
-    Without noise: `lumen.robots.simulation.imperfections` has what encoders and gyrometer of a real one add, as the
+    Without noise: `lumen.features.simulation.imperfections` has what encoders and gyrometer of a real one add, as the
     `corruptor` of an observable.
     """
 

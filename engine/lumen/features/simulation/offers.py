@@ -3,9 +3,9 @@
 Raises MissingExtraError where they are not installed.
 """
 
-from lumen.robots.simulation import gl as gl  # first of all: it chooses what mujoco draws with
-from lumen.robots.simulation import installed as installed  # then: it says what may not be there
-from lumen.robots.simulation.rendering import available
-from lumen.robots.simulation.robot import SimulatedRobot
+from lumen.features.simulation import gl as gl  # first of all: it chooses what mujoco draws with
+from lumen.features.simulation import installed as installed  # then: it says what may not be there
+from lumen.features.simulation.rendering import available
+from lumen.features.simulation.robot import SimulatedRobot
 
 __all__ = ["SimulatedRobot", "available"]

@@ -4,8 +4,8 @@ import argparse
 from typing import TYPE_CHECKING
 
 from lumen.errors import UsageError
+from lumen.features.simulation.settings import IMPERFECTIONS, PERFECT, Imperfections, only
 from lumen.language.diagnostics import did_you_mean
-from lumen.language.imperfections import IMPERFECTIONS, PERFECT, Imperfections, only
 
 if TYPE_CHECKING:
     from lumen.language.projects import Project

@@ -2,15 +2,15 @@
 
 from collections.abc import Mapping
 
+from lumen.features.simulation.joint_transition import JointTransition
+from lumen.features.simulation.lights import Lights
+from lumen.features.simulation.motors import Motors
+from lumen.features.simulation.speech_playback import SpeechPlayback
 from lumen.language.commands import Say
 from lumen.language.motions import Cue, MotionDefinition
 from lumen.motion.trajectories import Trajectory
 from lumen.robot.cues import CueNotifier, EventSink
 from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from
-from lumen.robots.simulation.joint_transition import JointTransition
-from lumen.robots.simulation.lights import Lights
-from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.speech_playback import SpeechPlayback
 
 _START_POSTURE_TOLERANCE = 0.05
 

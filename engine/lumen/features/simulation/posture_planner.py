@@ -6,12 +6,12 @@ from math import cos, pi
 from typing import Protocol
 
 from lumen.errors import RobotFailedError, RobotRefusedError
+from lumen.features.simulation.joint_transition import JointTransition, duration
+from lumen.features.simulation.motors import Motors
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.motion.postures import lies, passage, route
 from lumen.motion.trajectories import Trajectory
-from lumen.robots.simulation.joint_transition import JointTransition, duration
-from lumen.robots.simulation.motors import Motors
 
 MAX_ATTEMPTS = 3
 """How often a robot that ends on the floor tries again."""

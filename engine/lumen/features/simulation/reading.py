@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.language.imperfections import Imperfections
+from lumen.features.simulation.settings import Imperfections
 from lumen.project.document_report import DocumentReport
 
 

@@ -9,9 +9,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.robots.simulation import gl
-from lumen.robots.simulation.contact_shadows import NO_SOLES, ContactShadows, Soles
-from lumen.robots.simulation.culling import FrustumCulling
+from lumen.features.simulation import gl
+from lumen.features.simulation.contact_shadows import NO_SOLES, ContactShadows, Soles
+from lumen.features.simulation.culling import FrustumCulling
 
 PixelArray = NDArray[np.uint8]
 """Shape (height, width, 3), RGB."""

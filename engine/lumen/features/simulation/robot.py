@@ -9,12 +9,34 @@ from typing import assert_never
 import numpy as np
 
 from lumen.errors import RobotRefusedError, UsageError
+from lumen.features.simulation.aim_controller import AimController
+from lumen.features.simulation.base import RobotBase
+from lumen.features.simulation.battery_and_heat import BatteryAndHeat
+from lumen.features.simulation.biped import Biped
+from lumen.features.simulation.camera import RobotCamera
+from lumen.features.simulation.fixed import Fixed
+from lumen.features.simulation.force_sensors import ForceSensors
+from lumen.features.simulation.hazards import Hazards
+from lumen.features.simulation.lights import Lights
+from lumen.features.simulation.mass_model import MassModel
+from lumen.features.simulation.model_terms import Variation
+from lumen.features.simulation.motors import Motors
+from lumen.features.simulation.playback import SpeechActivity
+from lumen.features.simulation.sensors import BodySensors
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.skills import SimulatedSkills
+from lumen.features.simulation.sonar import Sonars
+from lumen.features.simulation.sound_playback import SoundPlayback
+from lumen.features.simulation.speech_playback import SpeechPlayback
+from lumen.features.simulation.tactile_sensors import TactileSensors
+from lumen.features.simulation.visitor_figure import VisitorFigure
+from lumen.features.simulation.wheels import Wheels
+from lumen.features.simulation.world import CONTROL_PERIOD, FALLEN_TILT, World
 from lumen.language.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.language.causes import VISITOR, Cause
 from lumen.language.commands import Rest, Say
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
-from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
 from lumen.language.roles import HEAD_ROLES, BaseKind
@@ -27,28 +49,6 @@ from lumen.robot.command_bounds import CommandBounds
 from lumen.robot.executor import Activity, ExecutingRobot, Executor
 from lumen.robot.life_layer import LifeLayer
 from lumen.robot.skill_runner import SkillRunner
-from lumen.robots.simulation.aim_controller import AimController
-from lumen.robots.simulation.base import RobotBase
-from lumen.robots.simulation.battery_and_heat import BatteryAndHeat
-from lumen.robots.simulation.biped import Biped
-from lumen.robots.simulation.camera import RobotCamera
-from lumen.robots.simulation.fixed import Fixed
-from lumen.robots.simulation.force_sensors import ForceSensors
-from lumen.robots.simulation.hazards import Hazards
-from lumen.robots.simulation.lights import Lights
-from lumen.robots.simulation.mass_model import MassModel
-from lumen.robots.simulation.model_terms import Variation
-from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.playback import SpeechActivity
-from lumen.robots.simulation.sensors import BodySensors
-from lumen.robots.simulation.skills import SimulatedSkills
-from lumen.robots.simulation.sonar import Sonars
-from lumen.robots.simulation.sound_playback import SoundPlayback
-from lumen.robots.simulation.speech_playback import SpeechPlayback
-from lumen.robots.simulation.tactile_sensors import TactileSensors
-from lumen.robots.simulation.visitor_figure import VisitorFigure
-from lumen.robots.simulation.wheels import Wheels
-from lumen.robots.simulation.world import CONTROL_PERIOD, FALLEN_TILT, World
 
 _EMPTY = "battery-empty"
 """The id of the rest that an empty battery takes."""

@@ -5,12 +5,12 @@ from math import atan2, hypot
 import mujoco
 import numpy as np
 
-from lumen.language.imperfections import Imperfections
+from lumen.features.simulation.gyrometer import Gyrometer
+from lumen.features.simulation.imperfections import ENCODER_NOISE, ENCODER_STEP
+from lumen.features.simulation.mean_rates import MeanRates
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.world import CONTROL_PERIOD, World
 from lumen.motion.gait.poses import wrap
-from lumen.robots.simulation.gyrometer import Gyrometer
-from lumen.robots.simulation.imperfections import ENCODER_NOISE, ENCODER_STEP
-from lumen.robots.simulation.mean_rates import MeanRates
-from lumen.robots.simulation.world import CONTROL_PERIOD, World
 
 _INERTIAL = [f"{kind}{axis}" for kind in ("Angle", "Gyroscope", "Accelerometer") for axis in "XYZ"]
 

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 from lumen.clock.simulated import SimulatedClock
+from lumen.features.simulation.offers import SimulatedRobot, available
 from lumen.project.lending import model_files
-from lumen.robots.simulation import SimulatedRobot, available
 from lumen.run.setup import RobotRequest, Setup
 
 
@@ -17,7 +17,7 @@ def set_up(request: RobotRequest) -> Setup:
 
 def set_up_house(requests: Mapping[str, RobotRequest]) -> dict[str, Setup]:
     """Return robots on their feet in one hall, with one clock."""
-    from lumen.robots.simulation.shared_hall import HallRobot, SharedHall
+    from lumen.features.simulation.shared_hall import HallRobot, SharedHall
 
     robots = {
         name: HallRobot(

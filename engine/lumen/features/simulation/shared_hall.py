@@ -7,15 +7,15 @@ from typing import NamedTuple
 
 from dm_control.mujoco import Physics, wrapper
 
+from lumen.features.simulation.model import compile_world, place, read_hall
+from lumen.features.simulation.model_terms import ROBOT_PREFIX, STAGE_SITE
+from lumen.features.simulation.robot import SimulatedRobot
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.visitor_figure import VisitorFigure
+from lumen.features.simulation.world import CONTROL_PERIOD, World
 from lumen.language.house import StartPose
-from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.robots.simulation.model import compile_world, place, read_hall
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX, STAGE_SITE
-from lumen.robots.simulation.robot import SimulatedRobot
-from lumen.robots.simulation.visitor_figure import VisitorFigure
-from lumen.robots.simulation.world import CONTROL_PERIOD, World
 
 
 class HallRobot(NamedTuple):

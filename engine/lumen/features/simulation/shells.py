@@ -1,6 +1,6 @@
 """The NAO's shells: lofts through superellipses, written as OBJ files beside its MJCF.
 
-    python -m lumen.robots.simulation.shells models/nao
+    python -m lumen.features.simulation.shells models/nao
 
 Only looks depend on them. Proportions follow the published dimensions (link lengths, sensor places, the outline of the
 sole); lengths in [mm], in the frame of the link.

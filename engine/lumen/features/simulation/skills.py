@@ -5,6 +5,16 @@ from math import inf, pi
 from typing import assert_never
 
 from lumen.errors import BadCommandError, RobotRefusedError
+from lumen.features.simulation.base import RobotBase
+from lumen.features.simulation.joint_transition import JointTransition
+from lumen.features.simulation.lights import LightFade, Lights
+from lumen.features.simulation.motors import Motors
+from lumen.features.simulation.playback import MotionPlayback, SpeechActivity
+from lumen.features.simulation.posture_planner import PosturePlanner, PostureState, lying
+from lumen.features.simulation.sensors import BodySensors
+from lumen.features.simulation.sound_playback import SilentSounds, SoundActivity, SoundPlayback
+from lumen.features.simulation.speech_playback import SilentPlayback, SpeechPlayback
+from lumen.features.simulation.world import World
 from lumen.language.body_parts import part_of
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.roles import BaseKind
@@ -15,16 +25,6 @@ from lumen.robot.cues import EventSink
 from lumen.robot.executor import Activity
 from lumen.robot.joint_ways import LOOK_SPEED, home_angles
 from lumen.robot.silent_recording import SilentRecording
-from lumen.robots.simulation.base import RobotBase
-from lumen.robots.simulation.joint_transition import JointTransition
-from lumen.robots.simulation.lights import LightFade, Lights
-from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.playback import MotionPlayback, SpeechActivity
-from lumen.robots.simulation.posture_planner import PosturePlanner, PostureState, lying
-from lumen.robots.simulation.sensors import BodySensors
-from lumen.robots.simulation.sound_playback import SilentSounds, SoundActivity, SoundPlayback
-from lumen.robots.simulation.speech_playback import SilentPlayback, SpeechPlayback
-from lumen.robots.simulation.world import World
 
 FALLEN_STIFFNESS = 0.1
 """Stiffness of a robot that has fallen."""

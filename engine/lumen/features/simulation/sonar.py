@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from lumen.features.simulation.model_terms import ROBOT_PREFIX
 from lumen.language.robots import Ultrasound
 from lumen.language.roles import SIDES
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX
 
 _ECHOING = np.array([0, 1, 0, 0, 0, 0], dtype=np.uint8)
 """Geom group 1, what stands in the hall; the ground throws sound away from the robot, and it does not hear itself."""

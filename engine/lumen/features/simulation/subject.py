@@ -6,12 +6,12 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from lumen.language.imperfections import Imperfections
+from lumen.features.simulation.model_terms import ROBOT_PREFIX, Variation
+from lumen.features.simulation.robot import SimulatedRobot
+from lumen.features.simulation.settings import Imperfections
 from lumen.language.robots import Body
 from lumen.motion.gait.legs import SIDE_ROLES
 from lumen.ports import Sole, Strain
-from lumen.robots.simulation.model_terms import ROBOT_PREFIX, Variation
-from lumen.robots.simulation.robot import SimulatedRobot
 
 CONTACT_FORCE = 1.0
 """With what force two links press on each other that run into each other [N]."""

@@ -4,8 +4,8 @@ from math import atan2, cos, sin
 
 import mujoco
 
+from lumen.features.simulation.model_terms import STAGE_SITE
 from lumen.language.stories import Visitor
-from lumen.robots.simulation.model_terms import STAGE_SITE
 
 VISITOR_BODY = "visitor"
 FIGURE_HEIGHT = 1.65

@@ -7,6 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import BadCommandError, RobotError, RobotFailedError, RobotRefusedError
+from lumen.features.simulation.balance import BalanceController
+from lumen.features.simulation.hazards import Hazards
+from lumen.features.simulation.joint_transition import JointTransition
+from lumen.features.simulation.mass_model import MassModel
+from lumen.features.simulation.motors import Motors
+from lumen.features.simulation.odometry import Odometry
+from lumen.features.simulation.sensors import BodySensors
 from lumen.language.commands import Move, Walk
 from lumen.language.roles import Roles
 from lumen.motion.gait import (
@@ -21,13 +28,6 @@ from lumen.motion.gait import (
 )
 from lumen.motion.gait.legs import SIDE_ROLES, sign
 from lumen.motion.gait.parameters import scale_of
-from lumen.robots.simulation.balance import BalanceController
-from lumen.robots.simulation.hazards import Hazards
-from lumen.robots.simulation.joint_transition import JointTransition
-from lumen.robots.simulation.mass_model import MassModel
-from lumen.robots.simulation.motors import Motors
-from lumen.robots.simulation.odometry import Odometry
-from lumen.robots.simulation.sensors import BodySensors
 
 MAX_WALK_DISTANCE = 10.0
 """A walk farther than this [m] is a mistake."""

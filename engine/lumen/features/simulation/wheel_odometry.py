@@ -4,17 +4,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotRefusedError
-from lumen.language.imperfections import Imperfections
+from lumen.features.simulation.drive_geometry import DriveGeometry
+from lumen.features.simulation.imperfections import ENCODER_STEP
+from lumen.features.simulation.odometry import DRIFT_AFTER_FALL
+from lumen.features.simulation.sensors import BodySensors
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.world import World
 from lumen.language.projects import Stage
 from lumen.motion.dead_reckoning import DeadReckoning
 from lumen.motion.gait import Pose
 from lumen.motion.gait.poses import wrap
 from lumen.ports import Whereabouts
-from lumen.robots.simulation.drive_geometry import DriveGeometry
-from lumen.robots.simulation.imperfections import ENCODER_STEP
-from lumen.robots.simulation.odometry import DRIFT_AFTER_FALL
-from lumen.robots.simulation.sensors import BodySensors
-from lumen.robots.simulation.world import World
 
 STILL_RATE = 0.15
 """A robot whose wheels stand still and that seems to turn slower than this [rad/s] does not turn: a gyrometer errs."""

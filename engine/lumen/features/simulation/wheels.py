@@ -5,21 +5,21 @@ from collections.abc import Callable
 import numpy as np
 
 from lumen.errors import RobotRefusedError
+from lumen.features.simulation.contact_shadows import NO_SOLES, Soles
+from lumen.features.simulation.drive_geometry import read_drive
+from lumen.features.simulation.driving import Drive, DriveOn, DriveTo
+from lumen.features.simulation.hazards import Hazards
+from lumen.features.simulation.joint_envelope import JointVector
+from lumen.features.simulation.sensors import BodySensors
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.walking import way_of
+from lumen.features.simulation.wheel_odometry import WheelOdometry
+from lumen.features.simulation.world import CONTROL_PERIOD, World
 from lumen.language.commands import Move, Walk
-from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Stage
 from lumen.motion.gait import Velocity
 from lumen.ports import Whereabouts
 from lumen.robot.executor import Activity
-from lumen.robots.simulation.contact_shadows import NO_SOLES, Soles
-from lumen.robots.simulation.drive_geometry import read_drive
-from lumen.robots.simulation.driving import Drive, DriveOn, DriveTo
-from lumen.robots.simulation.hazards import Hazards
-from lumen.robots.simulation.joint_envelope import JointVector
-from lumen.robots.simulation.sensors import BodySensors
-from lumen.robots.simulation.walking import way_of
-from lumen.robots.simulation.wheel_odometry import WheelOdometry
-from lumen.robots.simulation.world import CONTROL_PERIOD, World
 
 
 class Wheels:

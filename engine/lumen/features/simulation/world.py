@@ -10,11 +10,11 @@ from dm_control.mujoco import Physics
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
+from lumen.features.simulation.joint_envelope import JointVector
+from lumen.features.simulation.model_terms import PLAY_SUFFIX, ROBOT_PREFIX, Variation
+from lumen.features.simulation.world_model import physics
 from lumen.language.robots import Body
 from lumen.language.roles import SIDES, BaseKind
-from lumen.robots.simulation.joint_envelope import JointVector
-from lumen.robots.simulation.model_terms import PLAY_SUFFIX, ROBOT_PREFIX, Variation
-from lumen.robots.simulation.world_model import physics
 
 CONTROL_PERIOD = 0.01
 """Time between two commands to the joints [s]."""

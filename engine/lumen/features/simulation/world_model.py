@@ -13,10 +13,10 @@ import mujoco
 import numpy as np
 from dm_control.mujoco import Physics, wrapper
 
+from lumen.features.simulation.model_terms import Variation
 from lumen.language.robots import Body
 from lumen.project.engine_files import files_hash
 from lumen.project.memoization import memoize
-from lumen.robots.simulation.model_terms import Variation
 from lumen.upkeep.cache_folder import CacheFolder
 
 KEPT = 16
@@ -39,7 +39,7 @@ def physics(
     files = {path: _version(path) for folder in folders for path in _files(folder)}
 
     def compiled() -> mujoco.MjModel:
-        from lumen.robots.simulation.model import compile_world, load
+        from lumen.features.simulation.model import compile_world, load
 
         return compile_world(load(body, models, hall, variation, backlash=backlash))
 

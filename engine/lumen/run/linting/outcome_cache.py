@@ -9,7 +9,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from lumen.language.imperfections import Imperfections
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.trials import Case, Outcome
 from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.project.engine_files import code_hash
@@ -17,10 +18,16 @@ from lumen.project.home import home_of
 from lumen.project.lending import model_files
 from lumen.project.project_folders import MODELS
 from lumen.robot.motion_codec import encode_motion
-from lumen.rules.physics import Case, Outcome
 from lumen.upkeep.private_folder import private_folder
 
-CODE = ("lumen.fuzzy", "lumen.interpreters", "lumen.language", "lumen.motion", "lumen.robot", "lumen.rules.physics")
+CODE = (
+    "lumen.fuzzy",
+    "lumen.interpreters",
+    "lumen.language",
+    "lumen.motion",
+    "lumen.robot",
+    "lumen.features.simulation.trials",
+)
 """The packages whose code decides what comes of a motion in simulation."""
 
 

@@ -8,14 +8,14 @@ from pathlib import Path
 
 from lumen.errors import UsageError
 from lumen.extras import demand
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.trials import CaseResult, Outcome, attempt
+from lumen.features.simulation.trials.cases import cases
+from lumen.features.simulation.trials.verdict import findings
 from lumen.language.diagnostics import Diagnostic
-from lumen.language.imperfections import Imperfections
 from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.lending import model_files
-from lumen.rules.physics import CaseResult, Outcome, attempt
-from lumen.rules.physics.cases import cases
-from lumen.rules.physics.verdict import findings
 from lumen.run.linting.findings import Findings
 from lumen.run.linting.outcome_cache import OutcomeCache
 from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in
@@ -68,7 +68,7 @@ def played(
 
 def play_case(kit: UnpackedKit, case: int, robot: int, imperfections: Imperfections) -> Outcome:
     """A task: what comes of a case, by its place among the project's, with that robot."""
-    from lumen.robots.simulation.subject import subject
+    from lumen.features.simulation.subject import subject
 
     project = kit.project()
     assert project is not None  # who sent the task has loaded it

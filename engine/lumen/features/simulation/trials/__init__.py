@@ -6,8 +6,8 @@ Who calls hands over a robot that stands and waits. Nothing here knows how it is
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from lumen.rules.physics.cases import Case
-from lumen.rules.physics.trial import DONE, FELL, Outcome, attempt
+from lumen.features.simulation.trials.cases import Case
+from lumen.features.simulation.trials.trial import DONE, FELL, Outcome, attempt
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from dataclasses import asdict, dataclass, field
 from math import degrees, hypot
 from typing import Any, Self
 
+from lumen.features.simulation.trials.cases import Case
 from lumen.language.events import Event
 from lumen.ports import Live, RobotCommand, Sole, Strain, Subject
-from lumen.rules.physics.cases import Case
 
 POLL_INTERVAL = 0.02
 """Between two looks at the robot [s]."""

@@ -3,14 +3,14 @@
 from collections.abc import Callable, Collection, Iterator, Mapping
 from math import degrees
 
+from lumen.features.simulation.trials import FELL, CaseResult, Outcome
+from lumen.features.simulation.trials.trial import FALLING_TILT, MAX_FOOT_SLIDE, TimedAmount
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Places
 from lumen.language.life import Sway
 from lumen.language.motions import Keyframe
 from lumen.language.robots import Body
 from lumen.lint.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVERLOADED, SELF_COLLISION, UNSTEADY
 from lumen.ports import Live
-from lumen.rules.physics import FELL, CaseResult, Outcome
-from lumen.rules.physics.trial import FALLING_TILT, MAX_FOOT_SLIDE, TimedAmount
 
 MAX_CONTACT_TIME = 0.04
 """How long two links have to press into each other [s]."""
