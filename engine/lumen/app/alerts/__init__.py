@@ -1,1 +1,0 @@
-"""Somebody is told: of what, how it reaches them, and how often."""
