@@ -19,7 +19,10 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from lumen.interpreters.retrieval.calibration import (
+from lumen.features.answers.folder_vectors import FolderVectors
+from lumen.features.answers.meaning import Embed, by_meaning
+from lumen.features.answers.packaged_vectors import PackagedVectors
+from lumen.features.answers.retrieval.calibration import (
     Judged,
     Sample,
     calibrate,
@@ -29,18 +32,15 @@ from lumen.interpreters.retrieval.calibration import (
     left_out,
     outcome,
 )
-from lumen.interpreters.retrieval.features import Method, by_wordings, joined, words
-from lumen.interpreters.retrieval.ranking import AnswerRates
-from lumen.interpreters.retrieval.retriever import Retriever
-from lumen.interpreters.retrieval.scorers import bm25, ngrams
-from lumen.interpreters.retrieval.trials import samples_of
+from lumen.features.answers.retrieval.features import Method, by_wordings, joined, words
+from lumen.features.answers.retrieval.ranking import AnswerRates
+from lumen.features.answers.retrieval.retriever import Retriever
+from lumen.features.answers.retrieval.scorers import bm25, ngrams
+from lumen.features.answers.retrieval.trials import samples_of
+from lumen.features.answers.vectors import KnownText, TextVector, VectorSource
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.projects import Project
 from lumen.lint import check_files
-from lumen.modules.answers.folder_vectors import FolderVectors
-from lumen.modules.answers.meaning import Embed, by_meaning
-from lumen.modules.answers.packaged_vectors import PackagedVectors
-from lumen.modules.answers.vectors import KnownText, TextVector, VectorSource
 from lumen.project.files import read_files
 
 METHODS: dict[str, Method] = {"ngrams": by_wordings(ngrams), "bm25": by_wordings(bm25), "words": words}

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import lumen
 from lumen.bus import connect
+from lumen.features.answers.module import Answers
 from lumen.language.causes import UNKNOWN_ORIGIN
 from lumen.language.commands import Ask
 from lumen.language.modules import ANSWERS, ModuleSettings
-from lumen.modules.answers import Answers
 from lumen.run.questions import Questions
 
 sys.path.insert(0, str(Path(__file__).parents[1]))

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import lumen
-from lumen.app.alerts.alert import Origin
-from lumen.app.alerts.desk import AlertDesk
 from lumen.bus.memory import MemoryBus
 from lumen.clock.real import RealClock
 from lumen.clock.simulated import SimulatedClock
-from lumen.language.alerts import Alerts
+from lumen.features.alerts.alert import Origin
+from lumen.features.alerts.desk import AlertDesk
+from lumen.features.alerts.settings import Alerts
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Clock

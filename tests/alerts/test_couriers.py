@@ -11,13 +11,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.app.alerts import courier as couriers
-from lumen.app.alerts.alert import Alert, Origin
-from lumen.app.alerts.courier import MAX_PENDING_ALERTS, Courier
-from lumen.app.alerts.desk import AlertDesk
-from lumen.app.alerts.ration import Ration
 from lumen.errors import UndeliveredError
-from lumen.language.alerts import Alerts, Program, QuietHours, Recipient, Webhook
+from lumen.features.alerts import courier as couriers
+from lumen.features.alerts.alert import Alert, Origin
+from lumen.features.alerts.courier import MAX_PENDING_ALERTS, Courier
+from lumen.features.alerts.desk import AlertDesk
+from lumen.features.alerts.ration import Ration
+from lumen.features.alerts.settings import Alerts, Program, QuietHours, Recipient, Webhook
 from tests.alerts.servers import Web
 from tests.waiting import HANG, finished, until
 

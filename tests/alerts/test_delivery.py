@@ -11,11 +11,11 @@ from typing import Any
 
 import pytest
 
-from lumen.app.alerts import program
-from lumen.app.alerts.alert import Alert, Origin
-from lumen.app.alerts.delivery import address, deliver
 from lumen.errors import UndeliveredError
-from lumen.language.alerts import AlertChannel, Mail, Program, Webhook
+from lumen.features.alerts import program
+from lumen.features.alerts.alert import Alert, Origin
+from lumen.features.alerts.delivery import address, deliver
+from lumen.features.alerts.settings import AlertChannel, Mail, Program, Webhook
 from tests.alerts.servers import Post, Web
 from tests.certificates import certify
 from tests.waiting import until

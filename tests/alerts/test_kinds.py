@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 import lumen
-from lumen.app.alerts import disk
 from lumen.cli.main import main
 from lumen.errors import BusUnreachableError
-from lumen.language.alerts import KINDS, Alerts
+from lumen.features.alerts import disk
+from lumen.features.alerts.settings import KINDS, Alerts
 from lumen.language.events import Event
 from lumen.project.home import Home
 from lumen.run import claiming, node, presence, services

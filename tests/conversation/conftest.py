@@ -9,9 +9,9 @@ import pytest
 
 import lumen
 from lumen.bus import connect
+from lumen.features.answers.module import Answers
 from lumen.language.modules import ANSWERS, ModuleSettings
 from lumen.language.projects import Project
-from lumen.modules.answers import Answers
 from tests.conversation.fake_model import FakeModel, Reply, fake_model
 from tests.waiting import Collector, until
 

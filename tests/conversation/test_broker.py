@@ -5,11 +5,11 @@ from collections.abc import Iterator
 import pytest
 
 from lumen.bus import connect
+from lumen.features.answers.module import Answers
 from lumen.language.causes import UNKNOWN_ORIGIN
 from lumen.language.commands import Ask
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.modules.answers import Answers
 from lumen.run.questions import Questions
 from tests.conversation.conftest import with_model
 from tests.conversation.fake_model import FakeModel, fake_model, says

@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
+from lumen.features.answers import server_vectors as embedded
+from lumen.features.answers.module import Answers
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.modules import ANSWERS, ModuleSettings
 from lumen.language.projects import Project
-from lumen.modules.answers import Answers
-from lumen.modules.answers import server_vectors as embedded
 from tests.conversation.conftest import Desk
 from tests.conversation.fake_model import FakeModel, Handler, fake_model
 

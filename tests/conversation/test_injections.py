@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 import pytest
 import yaml
 
-from lumen.interpreters.retrieval.ranking import Weights
-from lumen.interpreters.retrieval.retriever import Retriever
+from lumen.features.answers.module import Answers
+from lumen.features.answers.retrieval.ranking import Weights
+from lumen.features.answers.retrieval.retriever import Retriever
 from lumen.language.commands import Ask, Cancel, Say, Start
 from lumen.language.projects import Project
-from lumen.modules.answers import Answers
 from tests.conversation.conftest import Desk, with_model
 from tests.conversation.fake_model import Handler, fake_model
 from tests.conversation.test_questions import Visit

@@ -13,11 +13,11 @@ from tokenizers.models import WordLevel
 from tokenizers.pre_tokenizers import Whitespace
 
 from lumen.errors import ModuleError
+from lumen.features.answers.folder_vectors import FolderVectors
+from lumen.features.answers.packaged_vectors import PackagedVectors
+from lumen.features.answers.vectors import KnownText, TextVector, VectorSource
 from lumen.language.modules import ANSWERS, ModuleSettings
 from lumen.language.projects import Project
-from lumen.modules.answers.folder_vectors import FolderVectors
-from lumen.modules.answers.packaged_vectors import PackagedVectors
-from lumen.modules.answers.vectors import KnownText, TextVector, VectorSource
 from tests.conversation.conftest import Desk
 from tests.conversation.test_embeddings import MEANINGS, OWN, PASSAGES
 from tests.waiting import until

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from lumen.modules.answers.sentence_check import refusal, sentences
+from lumen.features.answers.sentence_check import refusal, sentences
 from tests.conversation.conftest import LONGEST, Desk
 from tests.conversation.fake_model import Handler, Reply, calls, fake_model, says
 from tests.tables import for_each

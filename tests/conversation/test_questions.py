@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 
 from lumen.bus import connect
+from lumen.features.answers.module import Answers
 from lumen.language.command_data import command_data
 from lumen.language.commands import Ask, Say, Start
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.modules.answers import Answers
 from lumen.run.exhibition import Exhibition
 from lumen.run.plan import Plan
 from lumen.run.setup import set_up

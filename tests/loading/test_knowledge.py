@@ -3,10 +3,10 @@
 from datetime import date
 from pathlib import Path
 
+from lumen.features.answers.markdown import parse_markdown
 from lumen.insight.changes import changes
 from lumen.language.projects import Project
 from lumen.lint import check_files
-from lumen.loading.markdown import parse_markdown
 from lumen.project.files import fingerprint, read_files
 from tests import ROOT
 from tests.tables import for_each

@@ -10,8 +10,8 @@ import pytest
 
 import lumen
 from lumen.feature import resolve, table
+from lumen.features.alerts.settings import DEFAULT_INTERVAL, Alerts, Program
 from lumen.insight.changes import changes, live
-from lumen.language.alerts import DEFAULT_INTERVAL, Alerts, Program
 from lumen.language.projects import Project
 from lumen.run.reload.delta import DeltaDecoder, DeltaEncoder
 from tests import ROOT

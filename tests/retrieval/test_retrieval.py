@@ -11,13 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from lumen.interpreters.retrieval.calibration import Judged, least_probability, left_out, outcome
-from lumen.interpreters.retrieval.choice import RIDGE, fitted, probabilities, shares
-from lumen.interpreters.retrieval.features import coverage
-from lumen.interpreters.retrieval.ranking import NEVER, UNANSWERABLE, Weights
-from lumen.interpreters.retrieval.retriever import Retriever
-from lumen.interpreters.retrieval.trials import tried, weights_of
-from lumen.interpreters.retrieval.words import stems
+from lumen.features.answers.retrieval.calibration import Judged, least_probability, left_out, outcome
+from lumen.features.answers.retrieval.choice import RIDGE, fitted, probabilities, shares
+from lumen.features.answers.retrieval.features import coverage
+from lumen.features.answers.retrieval.ranking import NEVER, UNANSWERABLE, Weights
+from lumen.features.answers.retrieval.retriever import Retriever
+from lumen.features.answers.retrieval.trials import tried, weights_of
+from lumen.features.answers.retrieval.words import stems
 from lumen.language.knowledge import Passage, QuestionSet
 from tests.tables import for_each
 

@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 
 import lumen
-from lumen.app.parts.alerting import AlertPart
 from lumen.bus.memory import MemoryBus
 from lumen.bus.validated import validated
 from lumen.errors import UsageError
 from lumen.feature import resolve
+from lumen.features.alerts.part import AlertPart
 from lumen.language.events import Event
 from lumen.lint import check_files
 from lumen.project.files import read_files
@@ -35,7 +35,7 @@ FEATURE = Feature(name="counter", parts=(PartRow("counter", Phase.WATCH, "counti
 COUNTER = """
 from lumen.run.parts.part import Part
 from lumen.run.exhibition import Exhibition
-from lumen.app.parts.alerting import AlertPart
+from lumen.features.alerts.part import AlertPart
 from lumen.run.parts.part import Part
 from lumen.run.plan import Plan
 from lumen.run.rehearsal import RehearsalTrace

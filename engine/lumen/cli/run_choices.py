@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from lumen.app.alerts.alert import Origin
-from lumen.app.alerts.desk import AlertDesk
 from lumen.errors import UsageError
-from lumen.language.alerts import Alerts
+from lumen.features.alerts.alert import Origin
+from lumen.features.alerts.desk import AlertDesk
+from lumen.features.alerts.settings import Alerts
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story

@@ -7,6 +7,8 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 from unicodedata import normalize
 
+from lumen.features.answers.markdown import MARKDOWN_SUFFIX
+from lumen.features.answers.reading import build_passage, build_questions
 from lumen.features.fleet.reading import build_fleet
 from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
@@ -16,8 +18,6 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.language.shared import SharedKeys
-from lumen.loading.knowledge import build_passage, build_questions
-from lumen.loading.markdown import MARKDOWN_SUFFIX
 from lumen.project.behaviors import build_machine
 from lumen.project.bodies import build_body, build_likes
 from lumen.project.built_file import Build, BuiltFile, read_file

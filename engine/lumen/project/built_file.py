@@ -4,8 +4,8 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
+from lumen.features.answers.markdown import MARKDOWN_SUFFIX, parse_markdown
 from lumen.language.diagnostics import Diagnostic
-from lumen.loading.markdown import MARKDOWN_SUFFIX, parse_markdown
 from lumen.project.document import TOO_LARGE
 from lumen.project.document_report import DocumentReport
 from lumen.project.memoization import memoize

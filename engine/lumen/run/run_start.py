@@ -5,11 +5,11 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumen.app.alerts.alert import Origin
-from lumen.app.alerts.desk import AlertDesk
 from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotError, UsageError
+from lumen.features.alerts.alert import Origin
+from lumen.features.alerts.desk import AlertDesk
+from lumen.features.alerts.settings import Alerts
 from lumen.features.fleet.installing import finish as finish_installing
-from lumen.language.alerts import Alerts
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
 from lumen.project.building import main_settings

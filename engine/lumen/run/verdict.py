@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from lumen.features.answers.retrieval.ranking import QuestionTrial
 from lumen.insight.explaining.sayings import TriedSaying
-from lumen.interpreters.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import Place
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored

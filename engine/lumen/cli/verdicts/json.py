@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from lumen.interpreters.retrieval.ranking import QuestionTrial
+from lumen.features.answers.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import Place
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored

@@ -4,13 +4,13 @@ from lumen.feature import Feature, Section, Subcommand
 
 FEATURE = Feature(
     name="alerts",
-    rules=("lumen.rules.alerts:check",),
+    rules=("lumen.features.alerts.rules:check",),
     subcommands={
-        "alerts": Subcommand("send a test alert to every recipient", "lumen.cli.alerts", after="doctor"),
+        "alerts": Subcommand("send a test alert to every recipient", "lumen.features.alerts.command", after="doctor"),
     },
     sections={
         "alerts": Section(
-            read="lumen.loading.alerts:read_alerts",
+            read="lumen.features.alerts.reading:read_alerts",
             title="the recipients of alerts (`alerts`)",
             of_house=True,
         )

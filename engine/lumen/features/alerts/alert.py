@@ -4,7 +4,7 @@ import platform
 from datetime import datetime
 from typing import Any, NamedTuple
 
-from lumen.language.alerts import KINDS
+from lumen.features.alerts.settings import KINDS
 from lumen.language.iso_time import iso_time
 
 TEST = "test"

@@ -3,10 +3,10 @@
 import argparse
 import json
 
-from lumen.app.alerts.alert import Origin
-from lumen.app.alerts.desk import AlertDesk
 from lumen.errors import UsageError
-from lumen.language.alerts import Alerts
+from lumen.features.alerts.alert import Origin
+from lumen.features.alerts.desk import AlertDesk
+from lumen.features.alerts.settings import Alerts
 from lumen.project.building import main_settings
 from lumen.project.own_project import own_project
 

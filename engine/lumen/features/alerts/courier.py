@@ -7,10 +7,10 @@ from collections.abc import Callable
 from datetime import datetime
 from datetime import time as TimeOfDay  # noqa: N812
 
-from lumen.app.alerts.alert import Alert
-from lumen.app.alerts.ration import Ration
 from lumen.errors import UndeliveredError
-from lumen.language.alerts import Recipient
+from lumen.features.alerts.alert import Alert
+from lumen.features.alerts.ration import Ration
+from lumen.features.alerts.settings import Recipient
 from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 

@@ -2,23 +2,23 @@
 
 from pathlib import Path
 
-from lumen.app.alerts.alert import Alert, Origin
-from lumen.language.alerts import AlertChannel, Mail, Program, Webhook
+from lumen.features.alerts.alert import Alert, Origin
+from lumen.features.alerts.settings import AlertChannel, Mail, Program, Webhook
 
 
 def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> None:
     """Tell somebody; waits for the network. Raises UndeliveredError, which says why it did not arrive."""
     match channel:
         case Webhook(url):
-            from lumen.app.alerts.webhook import post  # each with libraries that few exhibitions need
+            from lumen.features.alerts.webhook import post  # each with libraries that few exhibitions need
 
             post(url, origin.body(alert))
         case Mail():
-            from lumen.app.alerts.mail import send_mail
+            from lumen.features.alerts.mail import send_mail
 
             send_mail(channel, origin.line(alert), origin.body(alert))
         case Program(command):
-            from lumen.app.alerts.program import run_program
+            from lumen.features.alerts.program import run_program
 
             run_program(command, origin.body(alert), root)
 

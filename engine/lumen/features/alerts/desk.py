@@ -5,11 +5,11 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
-from lumen.app.alerts.alert import TEST, Alert, Origin, one_line
-from lumen.app.alerts.courier import Courier
-from lumen.app.alerts.delivery import address, deliver
 from lumen.errors import UndeliveredError
-from lumen.language.alerts import Alerts, Recipient
+from lumen.features.alerts.alert import TEST, Alert, Origin, one_line
+from lumen.features.alerts.courier import Courier
+from lumen.features.alerts.delivery import address, deliver
+from lumen.features.alerts.settings import Alerts, Recipient
 
 CLOSE_TIMEOUT = 10.0
 """How long the end of a process waits for alerts to arrive [s]."""

@@ -9,7 +9,7 @@ from email.utils import formatdate, make_msgid
 from typing import Any
 
 from lumen.errors import UndeliveredError
-from lumen.language.alerts import Mail
+from lumen.features.alerts.settings import Mail
 
 MAIL_TIMEOUT = 20.0
 """How long the server may be silent [s]."""

@@ -4,11 +4,11 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from lumen.app.alerts.desk import AlertDesk
-from lumen.app.alerts.disk import DiskWatch
-from lumen.app.alerts.falls import FallWatch
 from lumen.bus.validated import ValidatedBus
-from lumen.language.alerts import Alerts
+from lumen.features.alerts.desk import AlertDesk
+from lumen.features.alerts.disk import DiskWatch
+from lumen.features.alerts.falls import FallWatch
+from lumen.features.alerts.settings import Alerts
 from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.projects import Project

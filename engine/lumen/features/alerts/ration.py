@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumen.app.alerts.alert import Alert
+from lumen.features.alerts.alert import Alert
 
 LONGEST_WAIT = 30.0
 """How often it is looked whether quiet hours are over [s]."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from datetime import time
 from typing import Any
 
-from lumen.language.alerts import (
+from lumen.features.alerts.settings import (
     DEFAULT_INTERVAL,
     KINDS,
     SMTP_PORTS,

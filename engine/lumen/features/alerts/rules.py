@@ -6,11 +6,11 @@ from ipaddress import ip_address
 from typing import Any
 from urllib.parse import urlsplit
 
+from lumen.features.alerts.reading import WHERE
+from lumen.features.alerts.settings import Alerts, Mail, Recipient, Webhook
 from lumen.language.addresses import credentials_of
-from lumen.language.alerts import Alerts, Mail, Recipient, Webhook
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
 from lumen.lint.routes import PASSWORD_IN_FILE
-from lumen.loading.alerts import WHERE
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 

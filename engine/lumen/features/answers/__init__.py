@@ -2,4 +2,4 @@
 
 from lumen.feature import Feature, ModuleRow
 
-FEATURE = Feature(name="answers", modules={"answers": ModuleRow("lumen.modules.answers:Answers")})
+FEATURE = Feature(name="answers", modules={"answers": ModuleRow("lumen.features.answers.module:Answers")})

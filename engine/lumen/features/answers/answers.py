@@ -8,15 +8,15 @@ from typing import Any
 
 from lumen.errors import ModuleError
 from lumen.expressions.json_schema import JsonSchema
+from lumen.features.answers.allowance import Allowance
+from lumen.features.answers.chat import MAX_ARGUMENTS, Call, Chat
+from lumen.features.answers.embeddings import Embeddings, embeddings_of
+from lumen.features.answers.http_stream import answered
+from lumen.features.answers.model_settings import ModelSettings, ServerSettings
+from lumen.features.answers.prompt import request, tool_name
+from lumen.features.answers.sentence_check import refusal, sentences
 from lumen.language.modules import ANSWERS
 from lumen.language.projects import Project
-from lumen.modules.answers.allowance import Allowance
-from lumen.modules.answers.chat import MAX_ARGUMENTS, Call, Chat
-from lumen.modules.answers.embeddings import Embeddings, embeddings_of
-from lumen.modules.answers.http_stream import answered
-from lumen.modules.answers.model_settings import ModelSettings, ServerSettings
-from lumen.modules.answers.prompt import request, tool_name
-from lumen.modules.answers.sentence_check import refusal, sentences
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.run.module import Module
 

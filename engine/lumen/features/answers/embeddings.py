@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import ModuleError
+from lumen.features.answers.folder_vectors import FolderVectors
+from lumen.features.answers.meaning import by_meaning
+from lumen.features.answers.model_settings import ServerSettings
+from lumen.features.answers.packaged_vectors import PackagedVectors
+from lumen.features.answers.server_vectors import ServerVectors
+from lumen.features.answers.vectors import KnownText, TextVector, VectorSource
 from lumen.language.projects import Project
-from lumen.modules.answers.folder_vectors import FolderVectors
-from lumen.modules.answers.meaning import by_meaning
-from lumen.modules.answers.model_settings import ServerSettings
-from lumen.modules.answers.packaged_vectors import PackagedVectors
-from lumen.modules.answers.server_vectors import ServerVectors
-from lumen.modules.answers.vectors import KnownText, TextVector, VectorSource
 
 if TYPE_CHECKING:
-    from lumen.interpreters.retrieval.retriever import FoundAnswer, Retriever
+    from lumen.features.answers.retrieval.retriever import FoundAnswer, Retriever
 
 MAX_KEPT = 20_000
 """Texts whose vectors are kept."""
@@ -51,10 +51,10 @@ class Embeddings:
         self, project: Project, question: str, language: str, deadline: float, wanted: Callable[[], bool], most: int
     ) -> MeantPassages:
         """What is known of the question, by `deadline` (`time.monotonic`). Raises ModuleError where nobody says."""
-        from lumen.interpreters.retrieval.features import joined, words
-        from lumen.interpreters.retrieval.ranking import NEVER, Weights
-        from lumen.interpreters.retrieval.retriever import Retriever
-        from lumen.interpreters.retrieval.trials import weights_of
+        from lumen.features.answers.retrieval.features import joined, words
+        from lumen.features.answers.retrieval.ranking import NEVER, Weights
+        from lumen.features.answers.retrieval.retriever import Retriever
+        from lumen.features.answers.retrieval.trials import weights_of
 
         self._deadline, self._wanted = deadline, wanted
         known = (project.knowledge, project.questions, project.robot, language)

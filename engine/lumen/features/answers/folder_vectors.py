@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from lumen.errors import ModuleError
-from lumen.modules.answers.vectors import MAX_LENGTH, KnownText, TextVector, unit
+from lumen.features.answers.vectors import MAX_LENGTH, KnownText, TextVector, unit
 
 INSTALL = "pip install 'lumen-robot[answers-folder]'"
 PLACES = ("", "0_StaticEmbedding")

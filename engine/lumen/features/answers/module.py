@@ -12,6 +12,6 @@ vectors.py        the seam of what makes vectors: server_vectors.py, packaged_ve
 allowance.py      how many questions it is asked
 """
 
-from lumen.modules.answers.answers import Answers
+from lumen.features.answers.answers import Answers
 
 __all__ = ["Answers"]

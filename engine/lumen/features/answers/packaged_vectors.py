@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from lumen.errors import ModuleError
-from lumen.modules.answers.vectors import MAX_LENGTH, KnownText, TextVector, unit
+from lumen.features.answers.vectors import MAX_LENGTH, KnownText, TextVector, unit
 
 INSTALL = "pip install 'lumen-robot[answers-embeddings]'"
 BATCH = 8

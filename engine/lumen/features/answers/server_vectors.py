@@ -4,9 +4,9 @@ import json
 from collections.abc import Callable, Sequence
 
 from lumen.errors import ModuleError
-from lumen.modules.answers.http_stream import answered
-from lumen.modules.answers.model_settings import ServerSettings
-from lumen.modules.answers.vectors import KnownText, TextVector, unit
+from lumen.features.answers.http_stream import answered
+from lumen.features.answers.model_settings import ServerSettings
+from lumen.features.answers.vectors import KnownText, TextVector, unit
 
 BATCH = 32
 """Texts of one request."""

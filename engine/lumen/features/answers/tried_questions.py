@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
+from lumen.features.answers.rules import words_of
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, Place, Related, did_you_mean
 from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
 from lumen.language.knowledge import QuestionSet
 from lumen.lint.lookups import first
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
-from lumen.rules.knowledge import words_of
 
 ASKED_TWICE = Code("asked-twice", "knowledge", WARNING, "a test question for the passages occurs twice")
 UNKNOWN_PASSAGE = Code("unknown-passage", "references", ERROR, "a name refers to a passage that is not in knowledge/")

@@ -5,10 +5,10 @@ from datetime import date, datetime
 from pathlib import Path
 from typing import Any
 
-from lumen.features.console.day import Day, day_of
 from lumen.errors import JournalError
+from lumen.features.answers.retrieval.words import words
+from lumen.features.console.day import Day, day_of
 from lumen.insight.replay.entries import RecordedEntry, read_entry
-from lumen.interpreters.retrieval.words import words
 from lumen.journal.journal_file import each_entry
 from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.machines import MachineDefinition

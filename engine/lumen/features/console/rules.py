@@ -2,11 +2,11 @@
 
 import re
 
+from lumen.features.alerts.rules import loopback
 from lumen.features.console.settings import ConsoleSettings
 from lumen.language.diagnostics import ERROR, Code
 from lumen.lint.routes import PASSWORD_IN_FILE
 from lumen.project.draft import ProjectDraft
-from lumen.rules.alerts import loopback
 
 OPEN_CONSOLE = Code("open-console", "robot", ERROR, "other computers can reach the console, and it has no PINs")
 _VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")

@@ -5,6 +5,7 @@ import binascii
 from collections.abc import Iterable, Mapping
 from urllib.parse import urlsplit
 
+from lumen.features.alerts.rules import loopback
 from lumen.features.fleet.rollouts.conditions import condition_faults
 from lumen.features.fleet.settings import Fleet
 from lumen.language.addresses import credentials_of
@@ -14,7 +15,6 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 from lumen.project.expressions import place_within
 from lumen.project.project_folders import FLEET_FILE
-from lumen.rules.alerts import loopback
 
 BAD_CONDITION = Code("bad-condition", "fleet", ERROR, "the condition that stops a rollout can't be evaluated")
 BAD_FLEET_KEY = Code("bad-fleet-key", "fleet", ERROR, "the `key` in fleet.yaml is not a public key")

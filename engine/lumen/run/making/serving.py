@@ -1,6 +1,6 @@
 """The parts that serve the behaviour: its journal, people to forget, saved files, and operators."""
 
-from lumen.app.parts.alerting import AlertPart
+from lumen.features.alerts.part import AlertPart
 from lumen.features.mcap.part import RecordingPart
 from lumen.journal.journal_writer import JournalWriter
 from lumen.motion.bounds import analyse

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from lumen.app.alerts.desk import AlertDesk
-from lumen.app.parts.alerting import AlertPart
-from lumen.app.reload.alerting import RefusalPart
+from lumen.features.alerts.desk import AlertDesk
+from lumen.features.alerts.part import AlertPart
+from lumen.features.alerts.reloads import RefusalPart
 from lumen.features.mcap.part import RecordingPart
 from lumen.project.home import home_of
 from lumen.run.making.serving import directory_of

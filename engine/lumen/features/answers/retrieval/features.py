@@ -6,8 +6,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.retrieval.scorers import WordingMethod, combined
-from lumen.interpreters.retrieval.words import stems
+from lumen.features.answers.retrieval.scorers import WordingMethod, combined
+from lumen.features.answers.retrieval.words import stems
 from lumen.language.knowledge import Passage
 
 NEAREST = 3

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.interpreters.retrieval.choice import probabilities
-from lumen.interpreters.retrieval.features import Features, Method
-from lumen.interpreters.retrieval.features import words as by_words
-from lumen.interpreters.retrieval.ranking import Ranked, Weights
-from lumen.interpreters.retrieval.words import words
+from lumen.features.answers.retrieval.choice import probabilities
+from lumen.features.answers.retrieval.features import Features, Method
+from lumen.features.answers.retrieval.features import words as by_words
+from lumen.features.answers.retrieval.ranking import Ranked, Weights
+from lumen.features.answers.retrieval.words import words
 from lumen.language.knowledge import Passage
 
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Mapping
 
-from lumen.interpreters.retrieval.calibration import Sample, calibrate, held_out, judged, left_out, outcome
-from lumen.interpreters.retrieval.ranking import QuestionTrial, Weights, WrongAnswer
-from lumen.interpreters.retrieval.retriever import Retriever
+from lumen.features.answers.retrieval.calibration import Sample, calibrate, held_out, judged, left_out, outcome
+from lumen.features.answers.retrieval.ranking import QuestionTrial, Weights, WrongAnswer
+from lumen.features.answers.retrieval.retriever import Retriever
 from lumen.language.knowledge import QuestionSet
 
 
