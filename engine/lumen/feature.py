@@ -222,8 +222,8 @@ class Subcommand(NamedTuple):
 class EditorRow(NamedTuple):
     """The answer of `lumen lsp` to a method of the Language Server Protocol.
 
-    `answer` is a function of the `LanguageServer` of `lumen.features.editor.language_server` and the method's parameters. `options`
-    names the value of `lsprotocol` that tells the editor more, such as the letters that begin a completion.
+    `answer` is a function of the `LanguageServer` of `lumen.features.editor.language_server` and the method's parameters.
+    `options` names the value of `lsprotocol` that tells the editor more, such as the letters that begin a completion.
     """
 
     answer: str
@@ -237,8 +237,8 @@ EXPORTED_KINDS = ("behavior", "controller", "diagram", "project")
 class Importer(NamedTuple):
     """A kind of file of another tool that `lumen import` converts to one of ours.
 
-    `kind` is `behavior`, `controller` or `motion`. `read` names a `FileReader` of `lumen.project.formats.importers`, for a
-    motion a `MotionReader` of `lumen.features.formats_motion.offers`.
+    `kind` is `behavior`, `controller` or `motion`. `read` names a `FileReader` of `lumen.project.formats.importers`,
+    for a motion a `MotionReader` of `lumen.features.formats_motion.offers`.
     """
 
     kind: str

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from lumen.errors import UsageError
 from lumen.features.console.access import Access, TooFastError
 from lumen.features.console.gate import MAX_BODY
 from lumen.features.console.people import Person, Role
 from lumen.features.console.requests import REQUESTS_PER_SECOND
 from lumen.features.console.serving import Console
-from lumen.errors import UsageError
 from lumen.upkeep.ratelimit import BURST
 from tests.console.pages import Browser, Served, Stream
 from tests.waiting import until

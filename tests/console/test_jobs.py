@@ -15,11 +15,11 @@ from unittest.mock import Mock
 import pytest
 
 import lumen
+from lumen.errors import BusError, LumenError
 from lumen.features.console import jobs
 from lumen.features.console.jobs import MAX_WAITING, Jobs
 from lumen.features.console.poses import Poses
 from lumen.features.console.requests import DeniedError
-from lumen.errors import BusError, LumenError
 from lumen.upkeep import judge_process
 from lumen.upkeep.judge_process import Fault, NoAnswerError
 from tests.console.conftest import Hosted
@@ -124,7 +124,8 @@ def test_entries_that_are_told_make_the_same_day(copy: Path) -> None:
 
 
 def test_the_console_itself_has_neither_the_simulator_nor_numbers_in_it() -> None:
-    script = "import sys, lumen.features.console.serving; print(*{'mujoco', 'dm_control', 'numpy', 'scipy'} & set(sys.modules))"
+    heavy = {"mujoco", "dm_control", "numpy", "scipy"}
+    script = f"import sys, lumen.features.console.serving; print(*{heavy} & set(sys.modules))"
     with Guarded([sys.executable, "-c", script], stdout=PIPE, text=True) as process:
         assert process.communicate()[0].split() == []
 

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
+from lumen.errors import UsageError
 from lumen.features.console.orders import order_of
 from lumen.features.console.robot_keys import RobotKeys
-from lumen.errors import UsageError
 from tests.tables import for_each
 
 KEYS = RobotKeys("operator", "config", "command", "stop", "image")

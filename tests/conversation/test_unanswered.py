@@ -8,8 +8,8 @@ import pytest
 import yaml
 
 import lumen
-from lumen.features.console.day import day_of
 from lumen.errors import UsageError
+from lumen.features.console.day import day_of
 from lumen.insight.replay.entries import JournalInput
 from lumen.language.command_data import command_data
 from lumen.language.commands import Ask, Start

@@ -123,7 +123,8 @@ def test_the_floors_are_those_of_the_contract_in_its_order() -> None:
     ]
     layers = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
     contract = [room.strip().removeprefix("lumen.") for layer in layers for room in layer.split("|")]
-    rows = re.findall(r"(?m)^\| (`.*?`) \| [A-Z]", prose(ARCHITECTURE).partition("## The floors")[2])
+    floors = prose(ARCHITECTURE).partition("## The floors")[2].partition("## The features")[0]
+    rows = re.findall(r"(?m)^\| (`.*?`) \| [A-Z]", floors)
     assert [room for row in rows for room in CODE.findall(row)] == contract
 
 

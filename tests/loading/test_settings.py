@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from lumen.features.show.settings import Show
 from lumen.features.console.settings import ConsoleSettings
+from lumen.features.show.settings import Show
 from lumen.project.building import main_settings
 from lumen.project.settings import Settings
 from tests.tables import for_each

@@ -11,8 +11,8 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from pathlib import Path
 
-from lumen.features.console.people import ROLES, Person, Role
 from lumen.errors import UsageError
+from lumen.features.console.people import ROLES, Person, Role
 from lumen.project.home import Home, home_of
 from lumen.upkeep.backoff import pause_after
 from lumen.upkeep.ratelimit import TokenBucket

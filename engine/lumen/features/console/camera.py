@@ -8,8 +8,8 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import suppress
 from typing import Any
 
-from lumen.features.console.watch import Watch
 from lumen.errors import BusError
+from lumen.features.console.watch import Watch
 from lumen.ports import Bus, Message
 
 BOUNDARY = "lumen-frame"

@@ -8,6 +8,7 @@ from typing import Any
 
 import orjson
 
+from lumen.errors import BusError, BusUnreachableError
 from lumen.features.console.exchanges import Exchange
 from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.orders import REST, Fields, Order, order_of
@@ -15,7 +16,6 @@ from lumen.features.console.people import Person
 from lumen.features.console.requests import ALL
 from lumen.features.console.streams import Streams
 from lumen.features.console.watch import Watch
-from lumen.errors import BusError, BusUnreachableError
 from lumen.language.operator_requests import NOTE
 from lumen.run.presence import ROBOT_PART
 from lumen.run.resting import STOP_TIMEOUT, no_robot, stop_behavior

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from lumen.features.console.bus_link import BusLink
 from lumen.errors import BusClosedError, BusUnreachableError
+from lumen.features.console.bus_link import BusLink
 from lumen.language.causes import MessageOrigin
 from lumen.ports import Message
 from lumen.run.asking import OPERATOR_ANSWERS

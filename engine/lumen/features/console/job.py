@@ -1,5 +1,6 @@
-"""One job of the console: `python -m lumen.features.console.job JOB PROJECT [ARGUMENTS]`; the last two as a folder and JSON,
-of which the first is a robot of `robots:`, empty where there is one.
+"""One job of the console: `python -m lumen.features.console.job JOB PROJECT [ARGUMENTS]`.
+
+PROJECT is a folder, ARGUMENTS are JSON: the first is a robot of `robots:`, empty if there is only one.
 
 It is run by a `JudgeProcess`, and answers with JSON. Its memory and its time are limited; the system ends it if it
 needs more. Only `poses` gives several answers, one for each question.
@@ -16,10 +17,10 @@ from typing import Any
 
 import orjson
 
+from lumen.errors import LumenError
 from lumen.features.console.day_csv import day_csv
 from lumen.features.console.job_promises import JOB_TIME, NOTHING
 from lumen.features.console.kept_days import KeptDays
-from lumen.errors import LumenError
 from lumen.language.sayings import Saying
 from lumen.lint import check_files
 from lumen.project.files import read_files

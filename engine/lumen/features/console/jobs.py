@@ -8,9 +8,9 @@ from typing import Any
 
 import orjson
 
+from lumen.errors import LumenError
 from lumen.features.console.job_promises import JOB_TIME
 from lumen.features.console.requests import DeniedError
-from lumen.errors import LumenError
 from lumen.upkeep.judge_process import Fault, JudgeProcess, NoAnswerError
 
 PROGRAM = "lumen.features.console.job"

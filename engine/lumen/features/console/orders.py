@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from lumen.errors import UsageError
 from lumen.features.console.people import Role
 from lumen.features.console.robot_keys import RobotKeys
-from lumen.errors import UsageError
 from lumen.language.operator_requests import APPROVE, AUTONOMY, EVENT, GOTO, MARK, MODEL, OperatorRequest
 from lumen.run.resting import rest_body, resume_body
 

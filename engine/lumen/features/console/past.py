@@ -8,6 +8,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
+from lumen.errors import BusError, UsageError
 from lumen.features.console.entry_words import told_of
 from lumen.features.console.job_promises import NOTHING
 from lumen.features.console.jobs import Jobs
@@ -15,7 +16,6 @@ from lumen.features.console.journal_source import JournalSource
 from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.people import Role
 from lumen.features.console.requests import NO_STORE, DeniedError, Reception, as_json
-from lumen.errors import BusError, UsageError
 from lumen.language.operator_requests import FORK, WHY, WHY_NOT, OperatorRequest
 from lumen.run.new_passage import write_passage
 

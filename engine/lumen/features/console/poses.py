@@ -5,11 +5,11 @@ from collections.abc import AsyncIterator
 
 import orjson
 
+from lumen.errors import LumenError
 from lumen.features.console.jobs import Jobs, why_none
 from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.requests import DeniedError
 from lumen.features.console.watch import Watch
-from lumen.errors import LumenError
 from lumen.upkeep.judge_process import JudgeProcess, NoAnswerError
 
 PERIOD = 1 / 15

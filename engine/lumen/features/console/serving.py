@@ -11,13 +11,13 @@ from pathlib import Path
 
 import uvicorn
 
+from lumen.errors import UsageError
 from lumen.features.console.access import Access, secret_in
 from lumen.features.console.connections import KnownConnection
 from lumen.features.console.gate import LOOPBACK, Gate
 from lumen.features.console.people import Role
 from lumen.features.console.site import Site
 from lumen.features.console.watch import Watch
-from lumen.errors import UsageError
 from lumen.run.reaching import Reached
 
 END_TIMEOUT = 1

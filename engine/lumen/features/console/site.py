@@ -14,6 +14,7 @@ from starlette.responses import FileResponse, Response, StreamingResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
+from lumen.errors import UsageError
 from lumen.features.console.access import COOKIE, MAX_NAME, SESSION_TIME, Access, TooFastError
 from lumen.features.console.commands import Commands, PageCommand
 from lumen.features.console.fleet_pages import FleetPages
@@ -26,7 +27,6 @@ from lumen.features.console.requests import ALL, NO_STORE, DeniedError, Receptio
 from lumen.features.console.sights import STREAM, Sights
 from lumen.features.console.streams import Listener, Streams, positions_in
 from lumen.features.console.watch import Watch
-from lumen.errors import UsageError
 from lumen.language.iso_time import iso_time
 from lumen.project.project_folders import FLEET_FILE
 

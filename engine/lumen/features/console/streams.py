@@ -5,10 +5,10 @@ from collections.abc import AsyncIterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from lumen.errors import BusError
 from lumen.features.console.entry_ring import EncodedEntry
 from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.watch import Watch
-from lumen.errors import BusError
 
 HEARTBEAT = 1.0
 """How often a page hears something in any case [s]."""

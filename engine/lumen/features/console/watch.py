@@ -7,13 +7,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from lumen.errors import BusError
 from lumen.features.console.bus_link import BusLink
 from lumen.features.console.changes import Changes
 from lumen.features.console.entry_clock import ToldPage
 from lumen.features.console.exchanges import Exchanges
 from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.robot_keys import PRESENCE, KeyBook
-from lumen.errors import BusError
 from lumen.language.operator_requests import JOURNAL, NOW, STATUS
 from lumen.language.routing_keys import DEFAULT_ALIASES
 from lumen.ports import Message
