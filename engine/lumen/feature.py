@@ -222,7 +222,7 @@ class Subcommand(NamedTuple):
 class EditorRow(NamedTuple):
     """The answer of `lumen lsp` to a method of the Language Server Protocol.
 
-    `answer` is a function of the `LanguageServer` of `lumen.features.editor.language_server` and the method's parameters.
+    `answer` is a function of the method's parameters and the `LanguageServer` of `lumen.features.editor.language_server`.
     `options` names the value of `lsprotocol` that tells the editor more, such as the letters that begin a completion.
     """
 

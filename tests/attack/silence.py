@@ -1,7 +1,7 @@
 """Find small changes to files of other tools that change neither the result nor the findings of `lumen import`.
 
-A change may be silent if its format's table (`format_tables` of `lumen.project.formats.importers`) lists the touched name
-as without meaning, or if the import had already listed that part of the file before the change.
+A change may be silent if its format's table (`format_tables` of `lumen.project.formats.importers`) lists the touched
+name as without meaning, or if the import had already listed that part of the file before the change.
 """
 
 import io

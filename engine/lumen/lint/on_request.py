@@ -1,7 +1,7 @@
 """The codes of what lint finds only where it is asked to.
 
-With `--against`, of a reload: `run/reload/against.py`. With `--physics`, of motions: `features/simulation/trials/verdict.py`,
-which would make every lint begin later if it was imported for its codes.
+With `--against`, of a reload: `run/reload/against.py`. With `--physics`, of motions:
+`features/simulation/trials/verdict.py`, which would make every lint begin later if it was imported for its codes.
 """
 
 from lumen.language.diagnostics import ERROR, INFO, WARNING, Code
