@@ -15,7 +15,7 @@ import shutil
 import signal
 import socket
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import NoReturn
@@ -69,8 +69,8 @@ class RabbitMQ:
 
     With a folder of certificates it listens for TLS too, on the port `secure`, and has the policy of docs/broker.md for
     messages that nobody waits for. With `speaks_mqtt` its plug-in for MQTT listens on the port `mqtt`; `plugins` are
-    others. With `virtual_hosts` it has so many, named `t0` and so on, in place of the usual one. `definitions` are
-    imported in place of the tests' usual ones.
+    others. With `virtual_hosts` it has so many, named `t0` and so on, in place of the usual one. `conf` replaces
+    its settings; without one that imports definitions it begins as a new installation does.
     """
 
     host = ""
@@ -87,7 +87,7 @@ class RabbitMQ:
         self._root, self._script = _installed()
         self._hosts = [f"t{number}" for number in range(virtual_hosts)] or ["/"]
         self.certificate, self._speaks_mqtt, self._plugins = certificate, speaks_mqtt, plugins
-        self.definitions: Mapping[str, object] | None = None
+        self.conf = ""
         self.folder = temporary_folder("lumen-rabbitmq-")
         self.port, self.distribution, self.epmd, self.secure, self.mqtt = _free_ports(5)
         self.url = self.url_of("guest")
@@ -118,9 +118,9 @@ class RabbitMQ:
         """Start it; whoever uses it has to `wait` first."""
         plugins = (*self._plugins, *["rabbitmq_mqtt"] * self._speaks_mqtt)
         (self.folder / "plugins").write_text(f"[{','.join(plugins)}].")
-        (self.folder / "rabbitmq.conf").write_text("\n".join(self._settings()))
+        (self.folder / "rabbitmq.conf").write_text(self.conf or "\n".join(self._settings()))
         (self.folder / "definitions.json").write_text(
-            json.dumps(self.definitions or _definitions(self._hosts, nowhere=self.certificate is not None))
+            json.dumps(_definitions(self._hosts, nowhere=self.certificate is not None))
         )
         link_modules(self.folder, self._root / "usr/lib/erlang", Path(self._script).parents[1], self._plugins)
         if self._names is None:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from lumen.bus import connect
 from lumen.features.fleet.agent import FleetAgent
-from lumen.features.fleet.brokers import CENTRE
 from lumen.features.fleet.bundle import messages_of
 from lumen.features.fleet.kept_bundles import BundleFolder
 from lumen.features.fleet.keys import bundle_key, desired_key, presence_key
@@ -15,11 +14,11 @@ from lumen.features.fleet.memory import AgentMemory
 from lumen.features.fleet.serving import ServedCentre
 from lumen.features.fleet.signing import Signer, generate
 from lumen.project.files import read_files
-from tests.fleet.brokers import HOUSES, FleetBrokers
+from tests.fleet.brokers import CENTRE, HOUSES, FleetBrokers
 from tests.fleet.houses import Taker, project
 from tests.waiting import until
 
-ROBOTS = {"itb": ("nao1", "nao2"), "museum": ("nao1", "nao2", "nao3")}
+ROBOTS = {"itb": ("nao1", "nao2"), "hall": ("nao1", "nao2", "nao3")}
 
 
 class Museums:
@@ -32,7 +31,7 @@ class Museums:
         self.root = project(folder / "centre")
         fleet = {
             "key": self.signer.public,
-            "centre": {"broker": brokers.fleet.centre},
+            "centre": {"broker": f"amqps://localhost:{brokers.brokers[CENTRE].secure}/"},
             "houses": {
                 name: {"broker": f"amqp://127.0.0.1:{brokers.brokers[name].port}/", "robots": [*ROBOTS[name]]}
                 for name in HOUSES

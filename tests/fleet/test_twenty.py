@@ -10,7 +10,6 @@ from pathlib import Path
 import pytest
 
 from lumen.bus import connect
-from lumen.features.fleet.brokers import CENTRE
 from lumen.features.fleet.bundle import messages_of
 from lumen.features.fleet.installing import finish
 from lumen.features.fleet.part import FleetPart
@@ -23,10 +22,10 @@ from lumen.run.plan import Plan
 from lumen.run.recovery.run_directory import RunDirectory
 from lumen.run.recovery.startup import startup_project
 from lumen.run.setup import set_up
-from tests.fleet.brokers import HOUSES, FleetBrokers
+from tests.fleet.brokers import CENTRE, HOUSES, FleetBrokers
 from tests.fleet.houses import changed, project
 
-ROBOTS = {"itb": tuple(f"nao{i}" for i in range(12)), "museum": tuple(f"nao{i}" for i in range(8))}
+ROBOTS = {"itb": tuple(f"nao{i}" for i in range(12)), "hall": tuple(f"nao{i}" for i in range(8))}
 STEPS = [{"to": "10%"}, {"to": "50%"}, {"to": "all"}]
 
 
@@ -182,7 +181,7 @@ class Twenty:
 
 @pytest.fixture
 def twenty(tmp_path: Path) -> Iterator[Twenty]:
-    brokers = FleetBrokers(tmp_path / "fleet", ROBOTS)
+    brokers = FleetBrokers(tmp_path / "fleet")
     brokers.start()
     try:
         found = Twenty(brokers, tmp_path, 21)

@@ -24,9 +24,6 @@ from lumen.bus.checking import SchemaCheck
 from lumen.bus.validated import validated
 from lumen.cli.main import main
 from lumen.errors import BusAddressError, BusUnreachableError
-from lumen.features.fleet.broker_check import check_broker
-from lumen.features.fleet.rabbitmqctl import RabbitMQControl
-from lumen.features.fleet.settings import Fleet, FleetHouse
 from lumen.features.rabbitmq.broker import BrokerAddress, shortage
 from lumen.features.rabbitmq.probe import BrokerProbe
 from lumen.language.addresses import public
@@ -209,13 +206,6 @@ def test_a_port_that_is_silent_is_one_line(
         f"the broker at 127.0.0.1:{silent_port} does not answer: check the host, the port and the network" in said.err
     )
     assert (said.err.count("\n"), said.out) == (1, "")
-
-
-@pytest.mark.usefixtures("impatient")
-def test_a_silent_broker_of_a_house_is_a_finding(silent_port: int) -> None:
-    fleet = Fleet("amqps://centre.example/", houses={"itb": FleetHouse("amqps://itb.example/", ("nao1",))})
-    [found] = check_broker(fleet, "itb", f"amqp://127.0.0.1:{silent_port}/", RabbitMQControl(""))
-    assert "does not answer" in str(found)
 
 
 @pytest.mark.parametrize("ask", [lambda p: p.writing("lumen.a"), lambda p: p.reading("lumen.a")], ids=["write", "read"])

@@ -12,11 +12,8 @@ from typing import Any
 from lumen.bus import Bus, connect
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import BusUnreachableError, ProjectError, UsageError
-from lumen.features.fleet.broker_check import check_broker
-from lumen.features.fleet.brokers import CENTRE, write_settings
 from lumen.features.fleet.bundle import messages_of
 from lumen.features.fleet.keys import ORDER
-from lumen.features.fleet.rabbitmqctl import USUAL, RabbitMQControl
 from lumen.features.fleet.serving import ServedCentre, fleet_in
 from lumen.features.fleet.signing import Signer, generate
 from lumen.features.fleet.text import fleet_lines, log_lines
@@ -30,8 +27,6 @@ from lumen.run.versions import version
 
 WHATS: Mapping[str, str] = {
     "keygen": "make the key that signs bundles",
-    "init": "write the settings that each RabbitMQ broker needs",
-    "check": "check that a RabbitMQ broker has these settings",
     "serve": "run the centre",
     "publish": "send a project to the centre as a bundle",
     "try": "let all robots try a bundle without switching to it",
@@ -54,12 +49,7 @@ ANSWER_TIMEOUT = 15.0
 def configure(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("what", choices=WHATS, metavar="WHAT", help="; ".join(f"{what}: {says}" for what, says in WHATS.items()))
-    add(
-        "name",
-        nargs="?",
-        metavar="NAME",
-        help="rollout, try, diff: a bundle's hash; pin: HOUSE/ROBOT; check: a house, or `centre`",
-    )
+    add("name", nargs="?", metavar="NAME", help="rollout, try, diff: a bundle's hash; pin: HOUSE/ROBOT")
     add("--project", metavar="DIR", help="the folder with fleet.yaml (default: this folder)")
     add("--bus", metavar="URL", help="the broker (default: LUMEN_BUS, then the one in fleet.yaml)")
     add("--key", metavar="FILE", type=Path, help=f"the private key (default: {KEY_FILE} in that folder)")
@@ -74,34 +64,15 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="rollout: let all robots try the bundle before the first step",
     )
     add("--against", metavar="HASH", help="diff: the bundle to compare with (default: the last proved one)")
-    add(
-        "-o",
-        "--output",
-        metavar="DIR",
-        type=Path,
-        default=Path("brokers"),
-        help="init: the folder to write to (default: brokers)",
-    )
-    add(
-        "--ca",
-        metavar="FILE",
-        default="",
-        help="init: where the brokers of houses have the CA file for the centre; check: the CA file for this broker",
-    )
-    add("--rabbitmqctl", metavar="CMD", default=USUAL, help="check: the command to run, such as 'sudo rabbitmqctl'")
     configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """0; 1 where a broker lacks something. Raises UsageError and BusError."""
+    """Return 0. Raises UsageError and BusError."""
     root = Path(options.project or ".")
     match options.what:
         case "keygen":
             return _keygen(options, root)
-        case "init":
-            return _init(options, root)
-        case "check":
-            return _check(options, root)
         case "serve":
             return _serve(options, root)
         case "publish":
@@ -136,37 +107,6 @@ def _keygen(options: argparse.Namespace, root: Path) -> int:
     else:
         print(f"{file} is the private key: let only the centre read it.\nAdd to fleet.yaml:\n\nkey: {public}")
     return 0
-
-
-def _init(options: argparse.Namespace, root: Path) -> int:
-    written = [str(file) for file in write_settings(fleet_in(root), options.output, ca=options.ca)]
-    if options.format == "json":
-        print_object({"written": written})
-    else:
-        print("\n".join(written))
-        print(
-            "They contain passwords: copy each folder only to its own broker. docs/fleet.md shows where each file goes."
-        )
-    return 0
-
-
-def _check(options: argparse.Namespace, root: Path) -> int:
-    fleet, name = fleet_in(root), options.name or CENTRE
-    if name != CENTRE and name not in fleet.houses:
-        raise UsageError(f"the fleet has no house `{name}`: choose {', '.join(fleet.houses)} or `{CENTRE}`")
-    address = fleet.centre if name == CENTRE else fleet.houses[name].broker
-    url = options.bus or os.environ.get("LUMEN_BUS") or address
-    found = list(check_broker(fleet, name, url, RabbitMQControl(options.rabbitmqctl), ca=options.ca))
-    if options.format == "json":
-        print_object(
-            {"broker": name, "ok": not any(row.wrong for row in found), "found": [row._asdict() for row in found]}
-        )
-    else:
-        for row in found:
-            print(f"{'!!' if row.wrong else 'ok'} {': '.join(filter(None, (row.what, row.wrong or row.note)))}")
-            if row.mend:
-                print(f"   {row.mend}")
-    return int(any(row.wrong for row in found))
 
 
 def _serve(options: argparse.Namespace, root: Path) -> int:

@@ -1,14 +1,12 @@
 """The keys under which houses and centre speak; nothing else crosses between their brokers."""
 
-EXCHANGE = "lumen.fleet"
-"""The exchange of a broker that is joined with that of others."""
+STREAM = "lumen.fleet.log"
+"""The stream of incidents and numbers at the centre's broker (docs/fleet-brokers.md)."""
 PRESENCE, INCIDENT, NUMBERS, DESIRED, BUNDLE, ORDER = (
     "fleet.presence", "fleet.incident", "fleet.numbers", "fleet.desired", "fleet.bundle", "fleet.order",
 )  # fmt: skip
 KEPT = (INCIDENT, NUMBERS)
 """What a centre has to hear once, however long it was off."""
-UP, DOWN = (PRESENCE, *KEPT), (DESIRED, BUNDLE)
-"""From a house to the centre; and from the centre to a house."""
 
 
 def presence_key(house: str, robot: str) -> str:

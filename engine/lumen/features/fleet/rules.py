@@ -91,7 +91,7 @@ def _key(fleet: Fleet, report: DocumentReport) -> None:
 
 def _address(address: str, where: NodePath, report: DocumentReport) -> None:
     if credentials_of(address):
-        hint = "delete them here: `lumen fleet init` writes names and passwords into separate files"
+        hint = "delete them here, and write NAME:PASSWORD into a file that LUMEN_BUS_CREDENTIALS names"
         report(PASSWORD_IN_FILE, where, "a user name and a password are in a file that others can read", hint)
         return
     try:

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from lumen.bus.addresses import is_rabbitmq
 from lumen.errors import UsageError
-from lumen.features.fleet.brokers import STREAM
 from lumen.features.fleet.centre import Centre
 from lumen.features.fleet.centre_desk import CentreDesk
 from lumen.features.fleet.centre_journal import CentreJournal
 from lumen.features.fleet.fleet_log import FleetLog
 from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.keys import STREAM
 from lumen.features.fleet.reading import read_fleet
 from lumen.features.fleet.rollouts.state import CentreState
 from lumen.features.fleet.settings import Fleet
@@ -87,7 +87,7 @@ class ServedCentre:
         if not has_stream(url, STREAM):
             tell(
                 f"the broker has no stream {STREAM}: incidents are lost while no centre is running;"
-                " `lumen fleet check` lists what the broker lacks"
+                " docs/fleet-brokers.md shows how to create it"
             )
             return None
         reader = StreamReader(url, STREAM, first)

@@ -52,7 +52,7 @@ class BrokerProbe:
     def has_queue(self, name: str) -> bool:
         """Whether there is a queue or a stream of that name."""
         try:
-            with self.asking() as channel:
+            with self._asking() as channel:
                 channel.queue_declare(name, passive=True)
         except ChannelClosedByBroker:
             return False
@@ -61,7 +61,7 @@ class BrokerProbe:
     def reading(self, key: str) -> str:
         """Why we may not read what is sent under this key; empty where we may."""
         try:
-            with self.asking() as channel:
+            with self._asking() as channel:
                 queue = channel.queue_declare("", exclusive=True).method.queue
                 channel.queue_bind(queue, EXCHANGE, key)
                 channel.queue_delete(queue)
@@ -77,7 +77,7 @@ class BrokerProbe:
         """
         properties = pika.BasicProperties(user_id=FORGED_USER)
         try:
-            with self.asking() as channel:
+            with self._asking() as channel:
                 channel.send(EXCHANGE, key, properties)
                 channel.basic_qos(prefetch_count=1)  # the broker answers in order: after the message
         except ChannelClosedByBroker as error:
@@ -95,7 +95,7 @@ class BrokerProbe:
     def served(self, key: str, route: Route) -> QueueStatus:
         """How many wait and read in the queue of a route whose messages must arrive."""
         try:
-            with self.asking() as channel:
+            with self._asking() as channel:
                 found = channel.queue_declare(queue_of(key, route).name, passive=True).method
         except ChannelClosedByBroker:
             return QueueStatus()
@@ -110,7 +110,7 @@ class BrokerProbe:
 
     def _misdeclared(self, name: str, limits: Mapping[str, Any], exchange: bool) -> str:
         try:
-            with self.asking() as channel:
+            with self._asking() as channel:
                 if exchange:
                     channel.exchange_declare(name, passive=True)
                     channel.exchange_declare(name, SIDE_EXCHANGE, durable=True)
@@ -125,7 +125,7 @@ class BrokerProbe:
         self._connection.close()
 
     @contextmanager
-    def asking(self) -> Iterator[AskedChannel]:
+    def _asking(self) -> Iterator[AskedChannel]:
         """Open a separate channel for questions. Raises ChannelClosedByBroker if the broker refuses, else BusError."""
         with self._explained(), self._connection.asking() as channel:
             try:
