@@ -1,8 +1,6 @@
 """What an exhibition needs to go on after a crash: where its behaviour stood, and the very files it ran on."""
 
-import io
 import time
-import zipfile
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -11,13 +9,12 @@ from lumen.journal.journal_folder import named_bundles
 from lumen.language.projects import Project
 from lumen.project.files import MAX_PROJECT_BYTES, fingerprint
 from lumen.project.home import Home
+from lumen.run.bundles import DamagedBundleError, packed, unpacked
 from lumen.statechart import Snapshot, serialize
 
 SNAPSHOT_FILE, ALIVE_FILE = "snapshot.json", "alive.json"
 LAST_GOOD_FILE = "good.json"
 SNAPSHOT_VERSION = 1
-DAMAGED_BUNDLE = (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError)
-"""What `zipfile` raises for a bundle that is damaged, however."""
 SNAPSHOT_SPACING = 0.02
 """How long after a snapshot the next is written at the earliest [s]: a simulation may take a hundred steps in that."""
 
@@ -128,21 +125,14 @@ class SnapshotStore:
         """Keep the files of a bundle; its hash."""
         hash = fingerprint(files)
         if not (self._home.folder / _name(hash)).exists():
-            packed = io.BytesIO()
-            with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-                for path, content in files.items():
-                    archive.writestr(path, content)
-            self._wrote(self._home.write(_name(hash), packed.getvalue()))
+            self._wrote(self._home.write(_name(hash), packed(files)))
         return hash
 
     def files(self, hash: str) -> dict[str, bytes] | None:
         """The files of a bundle that was kept, None where they are not there as they were."""
         try:
-            with zipfile.ZipFile(io.BytesIO(self._home.read(_name(hash)) or b"")) as archive:
-                if sum(each.file_size for each in archive.infolist()) > 2 * MAX_PROJECT_BYTES:
-                    return None
-                found = {name: archive.read(name) for name in archive.namelist()}
-        except DAMAGED_BUNDLE:
+            found = unpacked(self._home.read(_name(hash)) or b"", 2 * MAX_PROJECT_BYTES)
+        except DamagedBundleError:
             return None
         return found if fingerprint(found) == hash else None
 

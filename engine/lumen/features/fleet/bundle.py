@@ -2,9 +2,7 @@
 
 import base64
 import binascii
-import io
 import re
-import zipfile
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,11 +10,10 @@ from lumen.errors import UsageError
 from lumen.features.fleet.signing import BUNDLE, Signer, verified
 from lumen.project.files import MAX_PROJECT_BYTES, belongs, fingerprint
 from lumen.project.project_folders import FLEET_FILE
-from lumen.run.snapshot_store import DAMAGED_BUNDLE
+from lumen.run import bundles
+from lumen.run.bundles import DamagedBundleError
 
 HASH = re.compile(r"[0-9a-f]{64}")
-EPOCH = (1980, 1, 1, 0, 0, 0)
-"""The date of each file: the same files make the same zip."""
 MAX_BYTES = 12_000_000
 """Of a packed bundle."""
 PIECE = 500_000
@@ -28,15 +25,8 @@ class BadBundleError(UsageError):
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:
-    """The files as a zip; fleet.yaml, and what a run has chosen besides, are left out."""
-    buffer = io.BytesIO()
-    with zipfile.ZipFile(buffer, "w") as archive:
-        for path, content in sorted(files.items()):
-            if path != FLEET_FILE and belongs(path):
-                entry = zipfile.ZipInfo(path, EPOCH)
-                entry.compress_type = zipfile.ZIP_DEFLATED
-                archive.writestr(entry, content)
-    return buffer.getvalue()
+    """Return the files as a zip, without fleet.yaml and what a run has chosen besides."""
+    return bundles.packed({path: files[path] for path in files if path != FLEET_FILE and belongs(path)})
 
 
 def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, Any]]:
@@ -101,17 +91,13 @@ class BundleParts:
 
 
 def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
-    """The files in a zip, which have that hash. Raises BadBundleError."""
+    """Return the files in a zip, which have that hash. Raises BadBundleError."""
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            if sum(entry.file_size for entry in archive.infolist()) > MAX_PROJECT_BYTES:
-                raise BadBundleError(f"bundle {wanted[:12]} is larger than a project may be")
-            names = archive.namelist()
-            if bad := next((name for name in names if name == FLEET_FILE or not _inside(name)), None):
-                raise BadBundleError(f"bundle {wanted[:12]} contains `{bad[:80]}`, which is not a file of a project")
-            files = {name: archive.read(name) for name in names}
-    except DAMAGED_BUNDLE:
-        raise BadBundleError(f"bundle {wanted[:12]} is damaged or incomplete") from None
+        files = bundles.unpacked(data, MAX_PROJECT_BYTES)
+    except DamagedBundleError as error:
+        raise BadBundleError(f"bundle {wanted[:12]} {error}") from None
+    if bad := next((name for name in files if name == FLEET_FILE or not _inside(name)), None):
+        raise BadBundleError(f"bundle {wanted[:12]} contains `{bad[:80]}`, which is not a file of a project")
     if fingerprint(files) != wanted:
         raise BadBundleError(f"the files in bundle {wanted[:12]} do not match its hash")
     return files

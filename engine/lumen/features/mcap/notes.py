@@ -1,9 +1,7 @@
 """What a recording says of itself, and the files that explain it."""
 
-import io
 import platform
 import time
-import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -17,6 +15,7 @@ from lumen.language.iso_time import iso_time
 from lumen.language.projects import Project
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import Home, home_of
+from lumen.run.bundles import packed
 from lumen.run.snapshot_store import SnapshotStore
 
 NOTES = "lumen"
@@ -50,11 +49,7 @@ def bundle_files(root: Path, hashes: Sequence[str], robot: str = "") -> Iterator
                 there = read_files(root)
                 files = there if fingerprint(there) == hash else None
         if files is not None:
-            packed = io.BytesIO()
-            with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-                for name, content in sorted(files.items()):
-                    archive.writestr(name, content)
-            yield RecordedFile(f"bundle-{hash[:16]}.zip", "application/zip", packed.getvalue(), int(time.time() * NANO))
+            yield RecordedFile(f"bundle-{hash[:16]}.zip", "application/zip", packed(files), int(time.time() * NANO))
 
 
 def journal_files(root: Path, began: float, ended: float, robot: str = "") -> Iterator[RecordedFile]:

@@ -1,9 +1,7 @@
 """The files of an exhibition's home, without somebody."""
 
-import io
 import json
 import time
-import zipfile
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -21,10 +19,12 @@ from lumen.journal.journal_folder import JOURNAL_FOLDER, newest
 from lumen.journal.redaction import names, redact
 from lumen.language.counts import counted
 from lumen.language.people import PersonName, name_key
+from lumen.project.files import MAX_PROJECT_BYTES
 from lumen.project.home import Home
 from lumen.project.json_lines import forget_lines, line_names
+from lumen.run.bundles import DamagedBundleError, unpacked
 from lumen.run.forgetting.report import Forgetting, ForgottenPlace
-from lumen.run.snapshot_store import DAMAGED_BUNDLE, SNAPSHOT_FILE
+from lumen.run.snapshot_store import SNAPSHOT_FILE
 
 DRAFT_AGE = 5.0
 """After how long a draft of a file is one that a crash has left behind [s]."""
@@ -179,8 +179,10 @@ def _left(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
 def _own_files(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
     """Files of the exhibition itself, as they are kept for a start after a crash, that say the name."""
     for file in sorted(folder.glob("*.zip")):
-        for member in _members(file, person):
-            yield ForgottenPlace(file.name, f"the exhibition's own file {member} contains the name")
+        with suppress(OSError, DamagedBundleError):
+            for member, content in unpacked(file.read_bytes(), 2 * MAX_PROJECT_BYTES).items():
+                if person.is_named_in(content.decode("utf-8", "replace")):
+                    yield ForgottenPlace(file.name, f"the exhibition's own file {member} contains the name")
 
 
 def _names(file: Path, person: PersonName) -> bool:
@@ -188,16 +190,6 @@ def _names(file: Path, person: PersonName) -> bool:
         return any(line_names(line, person) for line in file.read_bytes().splitlines())
     except OSError:
         return False
-
-
-def _members(file: Path, person: PersonName) -> Iterator[str]:
-    try:
-        with zipfile.ZipFile(io.BytesIO(file.read_bytes())) as archive:
-            for member in archive.namelist():
-                if person.is_named_in(archive.read(member).decode("utf-8", "replace")):
-                    yield member
-    except DAMAGED_BUNDLE:
-        return
 
 
 def _await(condition: Callable[[], bool]) -> None:
