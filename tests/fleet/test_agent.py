@@ -127,6 +127,9 @@ def damage(body: dict[str, Any], how: str, stranger: Signer) -> dict[str, Any]:
     match how:
         case "half":
             return {**body, "zip": base64.b64encode(data[: len(data) // 2]).decode()}
+        case "bits":
+            content = 30 + int.from_bytes(data[26:28], "little")  # after the header and the name of the first file
+            return {**body, "zip": base64.b64encode(data[:content] + b"\xff" + data[content + 1 :]).decode()}
         case "nobody":
             return {**body, "signature": stranger.sign(BUNDLE, body["hash"].encode())}
         case "order's":
@@ -139,7 +142,7 @@ def damage(body: dict[str, Any], how: str, stranger: Signer) -> dict[str, Any]:
             return {**body, "zip": "%%%"}
 
 
-@pytest.mark.parametrize("how", ["half", "nobody", "order's", "other files", "outside", "no base64"])
+@pytest.mark.parametrize("how", ["half", "bits", "nobody", "order's", "other files", "outside", "no base64"])
 def test_a_bundle_that_is_not_the_one_signed_is_refused_and_told(house: House, stranger: Signer, how: str) -> None:
     files = changed(house.root)
     house.agent.order(ordered(house.signer, fingerprint(files)))

@@ -78,3 +78,12 @@ def test_a_bundle_that_unpacks_to_gigabytes_is_not_unpacked(tmp_path: Path, monk
     assert store.files(hash) == files
     monkeypatch.setattr(snapshot_store, "MAX_PROJECT_BYTES", 10_000)
     assert store.files(hash) is None
+
+
+def test_a_bundle_with_wrong_bits_is_not_used(tmp_path: Path) -> None:
+    store, path = SnapshotStore(Home(tmp_path)), "lumen.yaml"
+    hash = store.store({path: b"name: Small\n"})
+    file, content = tmp_path / f"bundle-{hash[:16]}.zip", 30 + len(path)
+    data = file.read_bytes()
+    file.write_bytes(data[:content] + b"\xff" + data[content + 1 :])
+    assert store.files(hash) is None

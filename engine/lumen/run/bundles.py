@@ -2,6 +2,7 @@
 
 import io
 import zipfile
+import zlib
 from collections.abc import Mapping
 
 from lumen.errors import LumenError
@@ -34,5 +35,5 @@ def unpacked(data: bytes, most: int) -> dict[str, bytes]:
             if sum(entry.file_size for entry in archive.infolist()) > most:
                 raise DamagedBundleError("is larger than a project may be")
             return {name: archive.read(name) for name in archive.namelist()}
-    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError):
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError, zlib.error):
         raise DamagedBundleError("is damaged or incomplete") from None
