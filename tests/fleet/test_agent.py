@@ -346,6 +346,14 @@ def test_the_same_files_make_the_same_zip(house: House) -> None:
     assert packed(files) == packed(dict(reversed(files.items())))
 
 
+def test_a_kept_bundle_that_was_torn_is_written_again(house: House, tmp_path: Path) -> None:
+    files, kept = read_files(house.root), BundleFolder(tmp_path / "bundles")
+    kept.keep(files)
+    (tmp_path / "bundles" / f"{fingerprint(files)}.zip").write_bytes(b"PK")
+    assert kept.keep(files) == ""
+    assert fingerprint(kept.files(fingerprint(files)) or {}) == fingerprint(files)
+
+
 def test_a_large_bundle_comes_in_parts_in_whatever_order_and_more_than_once(house: House) -> None:
     noise = random.Random(1).randbytes(900_000).hex().encode()
     files = {**changed(house.root), "models/large.xml": b"<x>" + noise + b"</x>"}

@@ -80,6 +80,14 @@ def test_a_bundle_that_unpacks_to_gigabytes_is_not_unpacked(tmp_path: Path, monk
     assert store.files(hash) is None
 
 
+def test_a_bundle_that_was_torn_is_written_again(tmp_path: Path) -> None:
+    store, files = SnapshotStore(Home(tmp_path)), {"lumen.yaml": b"name: Small\n"}
+    hash = store.store(files)
+    (tmp_path / f"bundle-{hash[:16]}.zip").write_bytes(b"PK")
+    assert store.store(files) == hash
+    assert store.files(hash) == files
+
+
 def test_a_bundle_with_wrong_bits_is_not_used(tmp_path: Path) -> None:
     store, path = SnapshotStore(Home(tmp_path)), "lumen.yaml"
     hash = store.store({path: b"name: Small\n"})

@@ -122,9 +122,9 @@ class SnapshotStore:
         self._last = None
 
     def store(self, files: Mapping[str, bytes]) -> str:
-        """Keep the files of a bundle; its hash."""
+        """Keep the files of a bundle; return its hash. A file of that name that is damaged is replaced."""
         hash = fingerprint(files)
-        if not (self._home.folder / _name(hash)).exists():
+        if self.files(hash) is None:
             self._wrote(self._home.write(_name(hash), packed(files)))
         return hash
 

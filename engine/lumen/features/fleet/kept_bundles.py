@@ -20,10 +20,14 @@ class BundleFolder:
         self.folder = folder
 
     def keep(self, files: Mapping[str, bytes]) -> str:
-        """Write the files as a whole or not at all; why that could not be, else empty."""
-        path = self._path(fingerprint(files))
-        if path.exists():
+        """Write the files as a whole or not at all; return why that is impossible, empty if it is done.
+
+        A file of that name that is damaged is replaced.
+        """
+        hash = fingerprint(files)
+        if self.files(hash) is not None:
             return ""
+        path = self._path(hash)
         try:
             private_folder(self.folder)
             draft = path.with_suffix(".new")
