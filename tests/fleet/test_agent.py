@@ -354,6 +354,12 @@ def test_a_kept_bundle_that_was_torn_is_written_again(house: House, tmp_path: Pa
     assert fingerprint(kept.files(fingerprint(files)) or {}) == fingerprint(files)
 
 
+def test_only_its_owner_can_read_a_kept_bundle(house: House, tmp_path: Path) -> None:
+    BundleFolder(tmp_path / "bundles").keep(read_files(house.root))
+    (file,) = (tmp_path / "bundles").glob("*.zip")
+    assert file.stat().st_mode & 0o777 == 0o600
+
+
 def test_a_large_bundle_comes_in_parts_in_whatever_order_and_more_than_once(house: House) -> None:
     noise = random.Random(1).randbytes(900_000).hex().encode()
     files = {**changed(house.root), "models/large.xml": b"<x>" + noise + b"</x>"}

@@ -23,12 +23,16 @@ def private_folder(folder: Path) -> None:
             file.write(_IGNORING)
 
 
-def write_private(path: Path, content: bytes) -> None:
+def write_private(path: Path, content: bytes, *, durable: bool = False) -> None:
     """Write a file for its owner alone, as a whole or not at all. Raises OSError.
 
-    It is not forced to the disk: a crash of the process loses nothing, a power cut may bring back the file before.
+    A crash of the process loses nothing. A power cut may bring back the file before, unless `durable` forces the
+    content to the disk.
     """
     draft = path.with_name(f"{path.name}.new")
     with open(os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | NO_LINK, 0o600), "wb") as file:
         file.write(content)
+        if durable:
+            file.flush()
+            os.fsync(file.fileno())
     os.replace(draft, path)

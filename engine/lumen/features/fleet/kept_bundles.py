@@ -1,13 +1,12 @@
 """The bundles that a robot or a centre keeps, each as a file called by its hash."""
 
-import os
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 
 from lumen.features.fleet.bundle import HASH, BadBundleError, packed, unpacked
 from lumen.project.files import fingerprint
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.private_folder import private_folder, write_private
 from lumen.upkeep.regular_files import read_regular
 
 MAX_FILE = 40_000_000
@@ -27,15 +26,9 @@ class BundleFolder:
         hash = fingerprint(files)
         if self.files(hash) is not None:
             return ""
-        path = self._path(hash)
         try:
             private_folder(self.folder)
-            draft = path.with_suffix(".new")
-            with open(draft, "wb") as opened:
-                opened.write(packed(files))
-                opened.flush()
-                os.fsync(opened.fileno())
-            os.replace(draft, path)
+            write_private(self._path(hash), packed(files), durable=True)
         except OSError as error:
             return (error.strerror or str(error)).lower()
         return ""
