@@ -7,7 +7,7 @@ from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body, Camera, Joint, Ultrasound
-from lumen.language.roles import Base, BaseKind, JointRole, Roles
+from lumen.language.roles import Base, JointRole, Roles
 from lumen.language.routes import Direction, Route
 from tests import ROOT
 from tests.scanning import matching
@@ -42,7 +42,7 @@ BODY = Body(
     sonar=Ultrasound(0.01, 3.0, 1.05),
     roles=Roles(
         head={"yaw": JointRole("HeadYaw"), "pitch": JointRole("HeadPitch")},
-        base=Base(BaseKind.BIPED),
+        base=Base("biped"),
         lights={name: (name,) for name in LIGHT_GROUPS},
     ),
 )

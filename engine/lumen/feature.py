@@ -85,6 +85,27 @@ class RobotRow(NamedTuple):
     options: tuple[RobotOption, ...] = ()
 
 
+class BaseRow(NamedTuple):
+    """A kind of base, which carries a body and moves it about: `roles: {base: {kind: NAME}}` in models/NAME.yaml.
+
+    `simulate` is the import string of a function from a `BaseRequest` to a `RobotBase` (both in
+    `lumen.features.simulation.base`). `title` is how messages name such a body, such as `a biped`. One with `legs` walks
+    as its gait and its joints allow; one that `drives` has the greatest `speed` and `turn` in its YAML. The driven
+    `wheels` are the joints `left` and `right` there. A base with neither legs nor speeds stays in its place.
+    """
+
+    simulate: str
+    title: str
+    legs: bool = False
+    drives: bool = False
+    wheels: bool = False
+
+    @property
+    def moves(self) -> bool:
+        """Whether the robot can leave its place."""
+        return self.legs or self.drives
+
+
 class SenseRow(NamedTuple):
     """A sense of robots. A route of the project with its name, or `of` it, carries its readings.
 
@@ -348,6 +369,7 @@ class Feature(NamedTuple):
     modules: Mapping[str, ModuleRow] = {}
     robots: Mapping[str, RobotRow] = {}
     functions: Mapping[str, FunctionRow] = {}
+    bases: Mapping[str, BaseRow] = {}
     buses: Mapping[str, BusRow] = {}
     senses: Mapping[str, SenseRow] = {}
     voices: Mapping[str, str] = {}

@@ -6,7 +6,7 @@ import pytest
 
 from lumen.language.commands import Look, Walk
 from lumen.language.robots import Joint
-from lumen.language.roles import Base, BaseKind, JointRole, Roles
+from lumen.language.roles import Base, JointRole, Roles
 from lumen.language.stories import Visitor
 from lumen.ports import Joints, Sense
 from lumen.robot.recording import RecordingRobot
@@ -23,7 +23,7 @@ GREETER = replace(
     sonar=None,
     roles=Roles(
         head={"yaw": JointRole("Neck", reversed=True), "pitch": JointRole("Nod")},
-        base=Base(BaseKind.WHEELS, "L", "R", 0.5, 1.0),
+        base=Base("wheels", "L", "R", 0.5, 1.0),
     ),
 )
 LAMP = replace(GREETER, name="lamp", camera=None, roles=Roles())

@@ -10,7 +10,7 @@ import lumen
 from lumen.errors import BadCommandError
 from lumen.language.commands import GoTo, Leds, Look, Move, Posture, Rest, Say, Walk
 from lumen.language.motions import Keyframe, MotionDefinition
-from lumen.language.roles import Base, BaseKind, Roles
+from lumen.language.roles import Base, Roles
 from lumen.language.skills import lack_of, tracking_lack
 from lumen.ports import Aim, Perform, RobotCommand, Sense
 from lumen.robot.command_table import check_command
@@ -98,7 +98,7 @@ def test_what_every_body_can_do_lacks_nothing() -> None:
 
 
 def test_wheels_walk_and_one_light_of_two_is_enough() -> None:
-    body = replace(STUMP, roles=Roles(base=Base(BaseKind.WHEELS), lights={"eyes": ("eyes",)}))
+    body = replace(STUMP, roles=Roles(base=Base("wheels"), lights={"eyes": ("eyes",)}))
     assert lack_of(Walk(0.1), body) is None
     assert lack_of(Leds({"eyes": "blue", "feet": "red"}), body) is None
 

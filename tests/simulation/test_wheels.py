@@ -14,7 +14,7 @@ from lumen.features.simulation.settings import PERFECT
 from lumen.features.simulation.wheels import Wheels
 from lumen.language.commands import Look, Move, Posture, Rest, Stop, Wake, Walk
 from lumen.language.projects import Stage
-from lumen.language.roles import Base, BaseKind
+from lumen.language.roles import Base
 from lumen.motion.gait import Pose
 from lumen.motion.gait.poses import wrap
 from lumen.ports import Joints, Sense
@@ -205,6 +205,6 @@ def test_wheels_that_it_can_not_drive_on_are_refused(fault: str, tmp_path: Path)
 
 def test_wheels_that_are_not_named_are_missed() -> None:
     body = shipped("greeter")
-    other = replace(body, roles=replace(body.roles, base=Base(BaseKind.WHEELS, "", "right_wheel", 0.5, 1.0)))
+    other = replace(body, roles=replace(body.roles, base=Base("wheels", "", "right_wheel", 0.5, 1.0)))
     with pytest.raises(RobotModelError, match=r"the role `base\.left`"):
         SimulatedRobot(other, MODELS)

@@ -5,7 +5,8 @@ Directions are those of NAO for every body: a yaw grows to the left, a pitch dow
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
+
+from lumen.feature import BaseRow, table
 
 LEFT, RIGHT = SIDES = ("left", "right")
 
@@ -26,12 +27,8 @@ JOINT_PATHS = (
 HEAD_YAW, HEAD_PITCH = "head.yaw", "head.pitch"
 
 
-class BaseKind(StrEnum):
-    """How a body moves about: on two legs, on driven wheels, not at all."""
-
-    BIPED = "biped"
-    WHEELS = "wheels"
-    FIXED = "fixed"
+FIXED = "fixed"
+"""The kind of the base of a body that names none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,16 +46,23 @@ class JointRole:
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """What a body stands on. `left` and `right` are the driven wheels' joints in the MJCF, empty without wheels.
+    """The base of a body; its `kind` is the name of a row `bases` of a feature.
 
-    `speed` [m/s] and `turn` [rad/s] are the most at which it drives.
+    `left` and `right` are the driven wheels' joints in the MJCF, empty without wheels. `speed` [m/s] and `turn` [rad/s]
+    are the most at which it drives.
     """
 
-    kind: BaseKind = BaseKind.FIXED
+    kind: str = FIXED
     left: str = ""
     right: str = ""
     speed: float = 0.0
     turn: float = 0.0
+
+    @property
+    def row(self) -> BaseRow:
+        """The row of its kind."""
+        row: BaseRow = table("bases")[self.kind]
+        return row
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from lumen.language.added_verbs import added_verbs
 from lumen.language.commands import Do, GoTo, Leds, Look, Move, Track, Walk
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
-from lumen.language.roles import HEAD_ROLES, JOINT_PATHS, BaseKind
+from lumen.language.roles import HEAD_ROLES, JOINT_PATHS
 
 _ADD = "add {} under `roles` of its body"
 
@@ -22,7 +22,7 @@ def lack_of(command: object, body: Body) -> Lack | None:
     """What that body lacks to perform a command at all, None where it can."""
     roles = body.roles
     match command:
-        case Walk() | Move() | GoTo() if roles.base.kind is BaseKind.FIXED:
+        case Walk() | Move() | GoTo() if not roles.base.row.moves:
             wanted = "`base: {kind: biped}` with `legs`, `soles` and `sensors`, or `base: {kind: wheels, …}`"
             return Lack(f"{body.name} has neither legs nor wheels", _ADD.format(wanted))
         case Look() if not any(role in roles.head for role in HEAD_ROLES):

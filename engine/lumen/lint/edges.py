@@ -9,7 +9,6 @@ from lumen.language.commands import GoTo, Move, Walk
 from lumen.language.diagnostics import WARNING, Code, NodePath
 from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
-from lumen.language.roles import BaseKind
 from lumen.lint.ground import covered, ground_of, reach
 from lumen.lint.hall_obstacles import GroundPoint, Obstacle
 from lumen.project.draft import ProjectDraft
@@ -49,7 +48,7 @@ def check(draft: ProjectDraft) -> None:
     settings, body = draft.settings, draft.body
     if settings is None or settings.stage is not None or len(settings.robots) > 1:
         return  # several robots start at different places
-    if draft.main is None or body is None or body.roles.base.kind is BaseKind.FIXED:
+    if draft.main is None or body is None or not body.roles.base.row.moves:
         return
     parts = ground_of(draft, settings.hall)
     if not covered(parts, GroundPoint(0.0, 0.0)):

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
-from lumen.language.roles import BaseKind
 
 UPRIGHT = ("Stand", "StandInit", "StandZero", "Crouch")
 """Those on both feet that every biped may have."""
@@ -21,7 +20,7 @@ def standing(body: Body) -> tuple[str, ...]:
 
     A biped's own postures count as such, unless a passage leads there.
     """
-    if body.roles.base.kind is not BaseKind.BIPED:
+    if not body.roles.base.row.legs:
         return tuple(body.postures)
     passed = {*RESTFUL, *(end for motion in body.passages for end in (motion.start, motion.end))}
     own = [name for name in body.postures if name not in passed and name not in UPRIGHT]

@@ -8,7 +8,7 @@ from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.robots import Body, Camera, CoupledLimit, Joint, LinkInertia, Ultrasound
-from lumen.language.roles import BaseKind, Roles
+from lumen.language.roles import Roles
 from lumen.project.complaints import MISSING_KEY
 from lumen.project.document_report import DocumentReport
 from lumen.project.numbers import EMPTY_RANGE
@@ -220,8 +220,7 @@ class _Builder:
     def postures(self, roles: Roles) -> dict[str, dict[str, float]]:
         """The postures, those among them that such a body has to know."""
         found = {name: self.posture(name, angles) for name, angles in (self.data.get("postures") or {}).items()}
-        biped = roles.base.kind is BaseKind.BIPED
-        for name in (COMMON_POSTURE, BIPED_POSTURE) if biped else (COMMON_POSTURE,):
+        for name in (COMMON_POSTURE, BIPED_POSTURE) if roles.base.row.legs else (COMMON_POSTURE,):
             if "postures" in self.data and name not in found and name not in self.report.lost:
                 who = "every robot on two legs needs" if name == BIPED_POSTURE else "every robot needs"
                 message, hint = f"the robot has no posture `{name}`", f"{who} `{name}`: give the angle of each joint"

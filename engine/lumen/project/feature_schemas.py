@@ -1,4 +1,4 @@
-"""The additions of features to the schema of lumen.yaml."""
+"""The additions of features to the schemas of lumen.yaml and of bodies."""
 
 import re
 from typing import Any
@@ -6,6 +6,23 @@ from typing import Any
 from lumen.feature import table
 
 _HERE = {"$ref": "#/$defs/here"}
+
+
+def add_bases(schema: dict[str, Any]) -> None:
+    """Add the kinds of bases that the schema of bodies lacks, with the keys that each needs beside `kind`."""
+    base = schema["properties"]["roles"]["properties"]["base"]
+    kind = base["properties"]["kind"]
+    for name, row in table("bases").items():
+        if name not in kind["enum"]:
+            kind["enum"].append(name)
+            kind["description"] += f" `{name}` is {row.title}."
+            speeds, wheels = ["speed", "turn"] if row.drives else [], ["left", "right"] if row.wheels else []
+            then = {"required": speeds, "propertyNames": {"enum": ["kind", *speeds, *wheels]}}
+            base["allOf"].append({"if": _is_kind(name), "then": then})
+
+
+def _is_kind(name: str) -> dict[str, Any]:
+    return {"required": ["kind"], "patternProperties": {"^kind$": {"const": name}}}
 
 
 def add_features(schema: dict[str, Any]) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath
-from lumen.language.roles import LEG_ROLES, SIDES, Base, BaseKind, EyeRoles, JointRole, Roles, SensorRoles
+from lumen.language.roles import FIXED, LEG_ROLES, SIDES, Base, EyeRoles, JointRole, Roles, SensorRoles
 from lumen.project.document_report import DocumentReport
 
 INCOMPLETE_ROLE = Code("incomplete-role", "robot", ERROR, "a role needs another role that is missing")
@@ -86,11 +86,12 @@ class RoleReader:
 
     def _whole(self, roles: Roles) -> None:
         """Report roles that need others which are not there."""
-        if roles.base.kind is BaseKind.BIPED and (lacking := list(_lacking_for_feet(roles))):
-            self._say(("base", "kind"), "a biped", lacking)
-        wheels = roles.base.kind is BaseKind.WHEELS and self.modelled
+        row = roles.base.row
+        if row.legs and (lacking := list(_lacking_for_feet(roles))):
+            self._say(("base", "kind"), row.title, lacking)
+        wheels = row.wheels and self.modelled
         if wheels and (lacking := [f"base.{side}" for side in SIDES if not getattr(roles.base, side)]):
-            self._say(("base", "kind"), "a base on wheels", lacking)
+            self._say(("base", "kind"), row.title, lacking)
         if roles.eyes.camera and "camera" not in self.given:
             message = f"the body does not describe what the camera `{roles.eyes.camera}` sees"
             hint = "add `camera` with width, height, angles of view and position"
@@ -126,7 +127,7 @@ def _lacking_for_feet(roles: Roles) -> Iterator[str]:
 
 def _base(data: Mapping[str, Any], length: float, angle: float) -> Base:
     return Base(
-        kind=BaseKind(data.get("kind", BaseKind.FIXED)),
+        kind=data.get("kind", FIXED),
         left=data.get("left", ""),
         right=data.get("right", ""),
         speed=data.get("speed", 0.0) * length,

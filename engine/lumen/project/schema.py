@@ -16,7 +16,7 @@ from lumen.project.added_verbs import usable_verbs
 from lumen.project.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
 from lumen.project.document import TOO_LARGE, Document
 from lumen.project.document_report import DocumentReport
-from lumen.project.feature_schemas import add_features
+from lumen.project.feature_schemas import add_bases, add_features
 from lumen.project.misindented import KeyNames, key_names, misindented
 from lumen.project.misplaced import misplaced
 from lumen.project.packaged import schema_folder
@@ -83,6 +83,8 @@ def load_schema(kind: str) -> Any:
     if kind == MAIN_KIND:
         add_features(schema)
         return with_sections(schema)
+    if kind == "body":
+        add_bases(schema)
     if verbs := usable_verbs():
         _add_verbs(schema, kind, verbs)
     return schema

@@ -18,7 +18,8 @@ def need_methods(value: Any, kind: type, what: str) -> None:
     """Raises UsageError if the value lacks a method of a protocol."""
     if missing := missing_methods(value, kind):
         names = f"the method `{missing[0]}`" if len(missing) == 1 else f"the methods {', '.join(missing)}"
-        raise UsageError(f"{what} needs {names} (`lumen.ports.{kind.__name__}`), which {_shown(value)} does not have")
+        protocol = f"{kind.__module__}.{kind.__name__}"
+        raise UsageError(f"{what} needs {names} (`{protocol}`), which {_shown(value)} does not have")
 
 
 def missing_methods(value: Any, kind: type) -> list[str]:

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from lumen.language.robots import Body
-from lumen.language.roles import BaseKind
 
 _DEVICE = "Device/SubDeviceList/{}/Value"
 
@@ -107,5 +106,5 @@ PEPPER = Hardware(
 
 
 def hardware_of(body: Body) -> Hardware:
-    """What such a body has: Pepper's where it stands on wheels, else NAO's."""
-    return PEPPER if body.roles.base.kind is BaseKind.WHEELS else NAO
+    """Return Pepper's hardware for a body that drives, else NAO's."""
+    return PEPPER if body.roles.base.row.drives else NAO

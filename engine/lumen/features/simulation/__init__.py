@@ -1,6 +1,6 @@
 """The robot under physics."""
 
-from lumen.feature import Feature, RobotRow, Section
+from lumen.feature import BaseRow, Feature, RobotRow, Section
 
 FEATURE = Feature(
     name="simulation",
@@ -13,6 +13,11 @@ FEATURE = Feature(
         )
     },
     extras=("simulation",),
+    bases={
+        "biped": BaseRow("lumen.features.simulation.biped:Biped", "a biped", legs=True),
+        "wheels": BaseRow("lumen.features.simulation.wheels:Wheels", "a base on wheels", drives=True, wheels=True),
+        "fixed": BaseRow("lumen.features.simulation.fixed:Fixed", "a base that is built in"),
+    },
     robots={
         "simulation": RobotRow(
             "lumen.features.simulation.set_up:set_up", "lumen.features.simulation.set_up:set_up_house", bounded=True

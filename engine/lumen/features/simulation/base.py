@@ -1,12 +1,44 @@
 """What a simulated robot stands on and moves about with: a base is made for the kind that its body has."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 from lumen.features.simulation.contact_shadows import Soles
+from lumen.features.simulation.hazards import Hazards
 from lumen.features.simulation.joint_envelope import JointVector
+from lumen.features.simulation.motors import Motors
+from lumen.features.simulation.sensors import BodySensors
+from lumen.features.simulation.settings import Imperfections
+from lumen.features.simulation.world import World
 from lumen.language.commands import Move, Walk
+from lumen.language.projects import Stage
+from lumen.language.robots import Body
 from lumen.ports import Whereabouts
 from lumen.robot.executor import Activity
+
+
+@dataclass(frozen=True)
+class BaseRequest:
+    """A request for the base of a robot; `models` is the folder of its MJCF. Only its world and motors move it."""
+
+    world: World
+    models: Path
+    motors: Motors
+    sensors: BodySensors
+    imperfections: Imperfections
+    hazards: Hazards
+    stage: Stage | None
+    """The ground on which the robot may go; None if nothing bounds it."""
+    free: Callable[[str], bool]
+    """Whether nothing else moves a joint, and it has power."""
+    hot: Callable[[], bool]
+    """Whether the motors should be spared."""
+
+    @property
+    def body(self) -> Body:
+        return self.world.body
 
 
 class RobotBase(Protocol):

@@ -1,56 +1,46 @@
 """A robot on two legs: they walk, balance, and step to where it falls."""
 
-from collections.abc import Callable
-
 from lumen.features.simulation.balance import BalanceController
+from lumen.features.simulation.base import BaseRequest
 from lumen.features.simulation.catching import FallCatcher
 from lumen.features.simulation.contact_shadows import Soles
 from lumen.features.simulation.falling_sense import FallingSense
-from lumen.features.simulation.hazards import Hazards
 from lumen.features.simulation.joint_envelope import JointVector
 from lumen.features.simulation.leg_geometry import read_legs
 from lumen.features.simulation.mass_model import MassModel
-from lumen.features.simulation.model_terms import ROBOT_PREFIX
-from lumen.features.simulation.motors import Motors
 from lumen.features.simulation.odometry import Odometry
-from lumen.features.simulation.sensors import BodySensors
 from lumen.features.simulation.walking import WalkController
 from lumen.language.commands import Move, Walk
-from lumen.language.projects import Stage
-from lumen.language.robots import Body
 from lumen.motion.gait import paces_of
 from lumen.ports import Whereabouts
 from lumen.robot.executor import Activity
 
 
 class Biped:
-    """Two legs under a body. Raises RobotModelError where they are none to walk on.
+    """Two legs under a body. Raises RobotModelError if it can't walk on them."""
 
-    `free` says whether nothing else moves a joint, `hot` whether the motors should be spared; `stage` bounds where the
-    feet may go.
-    """
-
-    def __init__(
-        self,
-        body: Body,
-        motors: Motors,
-        sensors: BodySensors,
-        mass_model: MassModel,
-        hazards: Hazards,
-        free: Callable[[str], bool],
-        hot: Callable[[], bool],
-        stage: Stage | None,
-        prefix: str = ROBOT_PREFIX,
-    ) -> None:
+    def __init__(self, request: BaseRequest) -> None:
+        body, motors, sensors, prefix = request.body, request.motors, request.sensors, request.world.prefix
+        mass_model = MassModel(body, request.models)
         legs, roles = read_legs(mass_model.model, body), body.roles
         paces = paces_of(legs, body.gait)
         self._sensors = sensors
         self._soles = [f"{prefix}/{name}" for name in roles.soles.values()]
         self.falling = FallingSense(sensors, mass_model, legs)
         self.balance = BalanceController(motors, self.falling, legs, roles, paces.usual.ahead)
-        self.odometry = Odometry(legs, stage)
+        self.odometry = Odometry(legs, request.stage)
         self.walker = WalkController(
-            motors, self.balance, sensors, self.odometry, mass_model, legs, paces, roles, hazards, free, hot
+            motors,
+            self.balance,
+            sensors,
+            self.odometry,
+            mass_model,
+            legs,
+            paces,
+            roles,
+            request.hazards,
+            request.free,
+            request.hot,
         )
         self.catcher = FallCatcher(
             motors,

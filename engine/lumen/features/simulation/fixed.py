@@ -3,6 +3,7 @@
 import numpy as np
 
 from lumen.errors import RobotRefusedError
+from lumen.features.simulation.base import BaseRequest
 from lumen.features.simulation.contact_shadows import NO_SOLES
 from lumen.features.simulation.joint_envelope import JointVector
 from lumen.language.commands import Move, Walk
@@ -10,14 +11,14 @@ from lumen.robot.executor import Activity
 
 
 class Fixed:
-    """Holds the robot: it neither walks nor falls, and `joints` are all that moves."""
+    """Holds the robot: it neither walks nor falls, and its joints are all that moves."""
 
     whereabouts = None
     catching = False
     soles = NO_SOLES
 
-    def __init__(self, joints: int) -> None:
-        self._nothing = np.zeros(joints)
+    def __init__(self, request: BaseRequest) -> None:
+        self._nothing = np.zeros(len(request.body.joints))
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
         raise RobotRefusedError("the robot can't walk: it has neither legs nor wheels")

@@ -13,7 +13,6 @@ from lumen.features.simulation.backlash import loosen
 from lumen.features.simulation.model_terms import ROBOT_PREFIX, STAGE_SITE, Variation
 from lumen.features.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 from lumen.language.robots import Body
-from lumen.language.roles import BaseKind
 from lumen.project.packaged_models import mjcf_path
 
 
@@ -57,7 +56,7 @@ def place(
         loosen(robot, body)
     try:
         frame = site.attach(robot)
-        if body.roles.base.kind is not BaseKind.FIXED:
+        if body.roles.base.row.moves:
             frame.add("freejoint")
     except ValueError as error:
         reason = " ".join(str(error).split())

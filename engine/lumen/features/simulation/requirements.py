@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dm_control import mjcf
 
 from lumen.language.robots import Body
-from lumen.language.roles import LEG_ROLES, SIDES, BaseKind
+from lumen.language.roles import LEG_ROLES, SIDES
 
 MAX_TIMESTEP = 0.01
 """The longest timestep [s]: the joints get their goals as often."""
@@ -66,15 +66,16 @@ def lacks_of_body(body: Body) -> list[str]:
     if not roles.torso:
         return ["the role `torso`"]
     lost = [f"the joint `{role.joint}`" for role in roles.paths.values() if role.joint not in body.joints]
-    if roles.base.kind is BaseKind.BIPED:
+    base = roles.base.row
+    if base.legs:
         legs = [f"legs.{side}.{name}" for side in SIDES for name in LEG_ROLES]
         lost += [f"the role `{path}`" for path in legs if not roles.joint(path)]
         lost += [f"the role `soles.{side}`" for side in SIDES if not roles.soles.get(side)]
-    if roles.base.kind is BaseKind.WHEELS:
+    if base.wheels:
         lost += [f"the role `base.{side}`" for side in SIDES if not getattr(roles.base, side)]
-    if roles.base.kind is not BaseKind.FIXED:
+    if base.moves:
         lost += [f"the role `sensors.{name}`" for name in ("gyro", "accelerometer") if not getattr(roles.sensors, name)]
-    needed = ("Stand", "Crouch") if roles.base.kind is BaseKind.BIPED else ("Stand",)
+    needed = ("Stand", "Crouch") if base.legs else ("Stand",)
     return lost + [f"the posture `{name}`" for name in needed if name not in body.postures]
 
 

@@ -4,21 +4,18 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property
 from math import degrees
 from pathlib import Path
-from typing import assert_never
 
 import numpy as np
 
 from lumen.errors import RobotRefusedError, UsageError
+from lumen.feature import owner
 from lumen.features.simulation.aim_controller import AimController
-from lumen.features.simulation.base import RobotBase
+from lumen.features.simulation.base import BaseRequest, RobotBase
 from lumen.features.simulation.battery_and_heat import BatteryAndHeat
-from lumen.features.simulation.biped import Biped
 from lumen.features.simulation.camera import RobotCamera
-from lumen.features.simulation.fixed import Fixed
 from lumen.features.simulation.force_sensors import ForceSensors
 from lumen.features.simulation.hazards import Hazards
 from lumen.features.simulation.lights import Lights
-from lumen.features.simulation.mass_model import MassModel
 from lumen.features.simulation.model_terms import Variation
 from lumen.features.simulation.motors import Motors
 from lumen.features.simulation.playback import SpeechActivity
@@ -30,7 +27,6 @@ from lumen.features.simulation.sound_playback import SoundPlayback
 from lumen.features.simulation.speech_playback import SpeechPlayback
 from lumen.features.simulation.tactile_sensors import TactileSensors
 from lumen.features.simulation.visitor_figure import VisitorFigure
-from lumen.features.simulation.wheels import Wheels
 from lumen.features.simulation.world import CONTROL_PERIOD, FALLEN_TILT, World
 from lumen.language.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY
 from lumen.language.causes import VISITOR, Cause
@@ -39,12 +35,13 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.projects import Stage
 from lumen.language.robots import Body
-from lumen.language.roles import HEAD_ROLES, BaseKind
+from lumen.language.roles import HEAD_ROLES
 from lumen.language.routes import BATTERY, IMAGE, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
 from lumen.motion.life import vigour
 from lumen.motion.projection import centring
 from lumen.ports import Aim, Battery, Image, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
+from lumen.project.broken_features import called, need_made
 from lumen.robot.command_bounds import CommandBounds
 from lumen.robot.executor import Activity, ExecutingRobot, Executor
 from lumen.robot.life_layer import LifeLayer
@@ -106,7 +103,7 @@ class SimulatedRobot(ExecutingRobot):
             Sonars(self.world.model, self.world.data, body.sonar, ears, seed, prefix) if body.sonar and ears else None
         )
         hazards = Hazards(self._sonars, self._pressed)
-        self.base = self._based(Path(models), hazards, lacking, stage)
+        self.base = self._made_base(Path(models), hazards, lacking, stage)
         self._skills = SimulatedSkills(
             self.world, self.motors, self.lights, self.base, self._sensors, posture, self._notice
         )
@@ -119,23 +116,21 @@ class SimulatedRobot(ExecutingRobot):
         self._ticks = 0
         self._until = 0.0
 
-    def _based(self, models: Path, hazards: Hazards, lacking: Imperfections, stage: Stage | None) -> RobotBase:
-        """What this body stands on."""
-        world, sensors = self.world, self._sensors
+    def _made_base(self, models: Path, hazards: Hazards, lacking: Imperfections, stage: Stage | None) -> RobotBase:
+        """Make the base of this body. Raises LumenError with the name of the package if its row is faulty."""
+        base = self.body.roles.base
+        feature, simulate = owner("bases", base.kind), base.row.simulate
 
         def hot() -> bool:
             return self.condition.hot
 
-        match self.body.roles.base.kind:
-            case BaseKind.BIPED:
-                mass_model = MassModel(self.body, models)
-                return Biped(self.body, self.motors, sensors, mass_model, hazards, self._free, hot, stage, world.prefix)
-            case BaseKind.WHEELS:
-                return Wheels(world, sensors, lacking, hazards, hot, stage)
-            case BaseKind.FIXED:
-                return Fixed(len(self.body.joints))
-            case _:
-                assert_never(self.body.roles.base.kind)
+        made: RobotBase = called(
+            feature,
+            simulate,
+            BaseRequest(self.world, models, self.motors, self._sensors, lacking, hazards, stage, self._free, hot),
+        )
+        need_made(feature, simulate, made, RobotBase, "a base")
+        return made
 
     @property
     def time(self) -> float:

@@ -17,7 +17,6 @@ from lumen.features.simulation.speech_playback import SilentPlayback, SpeechPlay
 from lumen.features.simulation.world import World
 from lumen.language.body_parts import part_of
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
-from lumen.language.roles import BaseKind
 from lumen.motion.postures import RESTFUL, standing
 from lumen.ports import Aim, Live, NativeCommand, Perform, Record, RobotCommand
 from lumen.robot.command_table import parts_of, row_of
@@ -213,7 +212,7 @@ class SimulatedSkills:
         return JointTransition(self._motors, angles, now, max(0.3, farthest / LOOK_SPEED))
 
     def _rest(self, now: float) -> Activity:
-        if self.fallen or not self.awake or self._world.body.roles.base.kind is not BaseKind.BIPED:
+        if self.fallen or not self.awake or not self._world.body.roles.base.row.legs:
             self._sleep()
             return JointTransition(self._motors, {}, now, 0.01)
         return self._go(RESTFUL, now, _REST_SPEED, self._sleep)

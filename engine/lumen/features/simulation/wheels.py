@@ -1,49 +1,33 @@
 """A robot on two driven wheels: it walks by driving, brakes where it stands, and tips over where it is pushed hard."""
 
-from collections.abc import Callable
-
 import numpy as np
 
 from lumen.errors import RobotRefusedError
+from lumen.features.simulation.base import BaseRequest
 from lumen.features.simulation.contact_shadows import NO_SOLES, Soles
 from lumen.features.simulation.drive_geometry import read_drive
 from lumen.features.simulation.driving import Drive, DriveOn, DriveTo
-from lumen.features.simulation.hazards import Hazards
 from lumen.features.simulation.joint_envelope import JointVector
-from lumen.features.simulation.sensors import BodySensors
-from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.walking import way_of
 from lumen.features.simulation.wheel_odometry import WheelOdometry
-from lumen.features.simulation.world import CONTROL_PERIOD, World
+from lumen.features.simulation.world import CONTROL_PERIOD
 from lumen.language.commands import Move, Walk
-from lumen.language.projects import Stage
 from lumen.motion.gait import Velocity
 from lumen.ports import Whereabouts
 from lumen.robot.executor import Activity
 
 
 class Wheels:
-    """Two wheels side by side under a body. Raises RobotModelError where it can't drive on them.
-
-    `hot` says whether the motors should be spared; `stage` bounds where the robot may drive.
-    """
+    """Two wheels side by side under a body. Raises RobotModelError if it can't drive on them."""
 
     catching = False
 
-    def __init__(
-        self,
-        world: World,
-        sensors: BodySensors,
-        lacking: Imperfections,
-        hazards: Hazards,
-        hot: Callable[[], bool],
-        stage: Stage | None,
-    ) -> None:
-        base, drive = world.body.roles.base, read_drive(world)
+    def __init__(self, request: BaseRequest) -> None:
+        world, base, drive = request.world, request.body.roles.base, read_drive(request.world)
         limit = Velocity(min(base.speed, drive.fastest), 0.0, min(base.turn, 2 * drive.fastest / drive.track))
-        self.drive = Drive(world, drive, limit, hot)
-        self.odometry = WheelOdometry(world, sensors, drive, lacking, stage)
-        self._hazards, self._nothing = hazards, np.zeros(len(world.body.joints))
+        self.drive = Drive(world, drive, limit, request.hot)
+        self.odometry = WheelOdometry(world, request.sensors, drive, request.imperfections, request.stage)
+        self._hazards, self._nothing = request.hazards, np.zeros(len(request.body.joints))
         self._on: DriveOn | None = None
 
     @property

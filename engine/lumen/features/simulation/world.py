@@ -14,7 +14,7 @@ from lumen.features.simulation.joint_envelope import JointVector
 from lumen.features.simulation.model_terms import PLAY_SUFFIX, ROBOT_PREFIX, Variation
 from lumen.features.simulation.world_model import physics
 from lumen.language.robots import Body
-from lumen.language.roles import SIDES, BaseKind
+from lumen.language.roles import SIDES
 
 CONTROL_PERIOD = 0.01
 """Time between two commands to the joints [s]."""
@@ -62,7 +62,7 @@ class World:
         self.actuators = np.array([self.model.actuator(f"{prefix}/{names[i]}").id for i in driven])
         roles = body.roles
         self.torso = self.model.body(f"{prefix}/{roles.torso}").id
-        self.free = roles.base.kind is not BaseKind.FIXED
+        self.free = roles.base.row.moves
         """Whether the robot can be elsewhere than where it was built in."""
         self._soles = [f"{prefix}/{roles.soles[side]}" for side in SIDES if side in roles.soles]
         self._root = self.model.joint(f"{prefix}/").qposadr[0] if self.free else 0

@@ -46,7 +46,8 @@ def physics(
     def made() -> mujoco.MjModel:
         if variation or sum(size for _, size, _ in files.values()) > MAX_BYTES:
             return compiled()
-        digest = hashlib.sha256(repr((body, Path(hall).name, backlash, mujoco.__version__, _engine())).encode())
+        description = body, body.roles.base.row, Path(hall).name, backlash, mujoco.__version__, _engine()
+        digest = hashlib.sha256(repr(description).encode())
         for path in sorted(files):
             digest.update(f"{os.path.relpath(path, models)} {files[path][1]} ".encode("utf-8", "surrogatepass"))
             digest.update(path.read_bytes())

@@ -4,7 +4,6 @@ from math import hypot
 from typing import Literal, NamedTuple
 
 from lumen.language.robots import Body
-from lumen.language.roles import BaseKind
 from lumen.motion.gait.footsteps import Feet, Footstep, beside, clear
 from lumen.motion.gait.legs import Side, other, sign
 from lumen.motion.gait.parameters import GaitParameters, paces_without_legs
@@ -46,9 +45,9 @@ def fastest(pace: GaitParameters) -> Velocity:
 
 
 def fastest_of(body: Body, pace: Literal["usual", "brisk"]) -> Velocity:
-    """How fast a body goes at most, as far as its description tells: on wheels as its base does, else at that pace."""
+    """How fast a body goes at most, as far as its description tells: as its base drives, else at that pace."""
     base = body.roles.base
-    if base.kind is BaseKind.WHEELS:
+    if base.row.drives:
         return Velocity(base.speed, 0.0, base.turn)
     paces = paces_without_legs(body.gait)
     return fastest(paces.brisk if pace == "brisk" else paces.usual)

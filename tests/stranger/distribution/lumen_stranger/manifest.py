@@ -1,6 +1,7 @@
 """The manifest of the stranger's feature."""
 
 from lumen.feature import (
+    BaseRow,
     BusRow,
     EditorRow,
     Exporter,
@@ -49,6 +50,7 @@ FEATURE = Feature(
             options=(RobotOption("voice", "VOICE", "with --robot teddy: its voice, deep or high (default: deep)"),),
         )
     },
+    bases={"glider": BaseRow("lumen_stranger.glider:Glider", "a glider", drives=True)},
     buses={"postbox": BusRow("lumen_stranger.postbox:Postbox", ("postbox://NAME",), "postbox://hall", True)},
     modules={
         "mood": ModuleRow(
