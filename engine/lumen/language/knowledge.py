@@ -1,7 +1,7 @@
 """What the exhibition's people know, as `knowledge/NAME.yaml` or `NAME.md` says it, and what it is tried with."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date
 
 
@@ -41,5 +41,5 @@ class QuestionSet:
     """
 
     name: str
-    asked: Mapping[str, Mapping[str, tuple[str, ...]]]
-    unanswered: Mapping[str, tuple[str, ...]]
+    asked: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
+    unanswered: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

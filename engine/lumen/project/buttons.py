@@ -5,20 +5,14 @@ from typing import Any
 
 from lumen.language.buttons import Button
 from lumen.language.diagnostics import NodePath
+from lumen.project.field_reader import read_fields
 
 
 def buttons(data: Any, where: NodePath) -> tuple[Button, ...]:
     """Those that can be read, in the order of the file."""
     rows = ((row, (*where, number)) for number, row in enumerate(data or ()))
     return tuple(
-        Button(
-            label=_label(row["label"]),
-            event=row["event"],
-            data=row.get("data"),
-            confirm=row.get("confirm", ""),
-            key=str(row.get("key", "")),
-            where=place,
-        )
+        read_fields(Button, row, label=_label(row["label"]), key=str(row.get("key", "")), where=place)
         for row, place in rows
         if isinstance(row, Mapping) and row.get("label") and row.get("event")
     )

@@ -7,6 +7,7 @@ from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.gestures import Gesture, GestureLibrary
 from lumen.language.robots import Body
 from lumen.project.document_report import DocumentReport
+from lumen.project.field_reader import read_fields
 from lumen.project.poses import PoseReader
 from lumen.project.units import ANGLES, BAD_DURATION, seconds
 
@@ -25,11 +26,7 @@ def build_gestures(data: Any, report: DocumentReport, *, name: str, body: Body) 
     reader = _GestureReader(report, body, poses)
     read = [reader.read(key, each) for key, each in (data.get("gestures") or {}).items()]
     poses.roles.tell_left_out("gestures")
-    phrases = {
-        tag: {language: (said,) if isinstance(said, str) else tuple(said) for language, said in table.items()}
-        for tag, table in (data.get("phrases") or {}).items()
-    }
-    return GestureLibrary(tuple(filter(None, read)), phrases)
+    return read_fields(GestureLibrary, data, gestures=tuple(filter(None, read)))
 
 
 class _GestureReader:

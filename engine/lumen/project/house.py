@@ -8,6 +8,7 @@ from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.house import DEFAULT_SPACING, RobotSpec, StartPose
 from lumen.project.complaints import MISSING_KEY
 from lumen.project.document_report import DocumentReport
+from lumen.project.field_reader import read_fields
 from lumen.project.numbers import finite
 from lumen.project.units import ANGLES, LENGTHS
 
@@ -50,15 +51,8 @@ def told_robots(data: Mapping[str, Any]) -> bool:
 
 
 def _spec(name: str, row: Mapping[str, Any], data: Mapping[str, Any], at: StartPose) -> RobotSpec:
-    return RobotSpec(
-        name=name,
-        model=row.get("model", ""),
-        at=at,
-        behavior=row.get("behavior", data.get("behavior", "")),
-        languages=tuple(row.get("languages", data.get("languages", ()))),
-        story=row.get("story", data.get("story", "")),
-        stand=row.get("stand", ""),
-    )
+    common = {key: data[key] for key in ("behavior", "languages", "story") if key in data}
+    return read_fields(RobotSpec, {**common, **row}, name=name, at=at)
 
 
 def _pose(data: Mapping[str, Any], where: NodePath, index: int, report: DocumentReport) -> StartPose:

@@ -4,8 +4,9 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath
-from lumen.language.roles import FIXED, LEG_ROLES, SIDES, Base, EyeRoles, JointRole, Roles, SensorRoles
+from lumen.language.roles import LEG_ROLES, SIDES, Base, EyeRoles, JointRole, Roles, SensorRoles
 from lumen.project.document_report import DocumentReport
+from lumen.project.field_reader import read_fields
 
 INCOMPLETE_ROLE = Code("incomplete-role", "robot", ERROR, "a role needs another role that is missing")
 JOINT_IN_TWO_ROLES = Code("joint-in-two-roles", "robot", ERROR, "one joint has two roles")
@@ -43,7 +44,7 @@ class RoleReader:
         roles = Roles(
             torso=data.get("torso", ""),
             head=self._joints(data.get("head"), "head"),
-            eyes=EyeRoles(eyes.get("camera", ""), eyes.get("face", "")),
+            eyes=read_fields(EyeRoles, eyes),
             arms=self._limbs("arms"),
             hands=self._joints(data.get("hands"), "hands"),
             antennas=self._joints(data.get("antennas"), "antennas"),
@@ -126,13 +127,7 @@ def _lacking_for_feet(roles: Roles) -> Iterator[str]:
 
 
 def _base(data: Mapping[str, Any], length: float, angle: float) -> Base:
-    return Base(
-        kind=data.get("kind", FIXED),
-        left=data.get("left", ""),
-        right=data.get("right", ""),
-        speed=data.get("speed", 0.0) * length,
-        turn=data.get("turn", 0.0) * angle,
-    )
+    return read_fields(Base, data, speed=data.get("speed", 0.0) * length, turn=data.get("turn", 0.0) * angle)
 
 
 def _sides(data: Mapping[str, Any] | None) -> dict[str, Any]:

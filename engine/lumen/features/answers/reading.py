@@ -7,6 +7,7 @@ from typing import Any
 from lumen.language.diagnostics import ERROR, Code
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.project.document_report import DocumentReport
+from lumen.project.field_reader import read_fields
 
 BAD_DATE = Code("bad-date", "knowledge", ERROR, "a date of a passage is not valid, or its dates are in the wrong order")
 
@@ -19,33 +20,15 @@ def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | 
     if as_of and until and until < as_of:
         message = f"`until: {until}` is before `as-of: {as_of}`"
         report(BAD_DATE, ("until",), message, "write a later date, or delete the passage")
-    return Passage(
-        name,
-        {language: _listed(questions) for language, questions in data["questions"].items()},
-        {language: " ".join(text.split()) for language, text in data["answer"].items()},
-        data.get("place", ""),
-        _listed(data.get("who", ())),
-        as_of,
-        until,
-        _listed(data.get("tags", ())),
-        report.document.file,
-    )
+    answer = {language: " ".join(text.split()) for language, text in data["answer"].items()}
+    return read_fields(Passage, data, name=name, answer=answer, as_of=as_of, until=until, file=report.document.file)
 
 
 def build_questions(data: Any, report: DocumentReport, *, name: str) -> QuestionSet | None:
     """The questions that the data has, None where it is no map."""
     if not isinstance(data, Mapping):
         return None
-    asked = {
-        passage: {language: _listed(texts) for language, texts in by_language.items()}
-        for passage, by_language in data.get("asked", {}).items()
-    }
-    unanswered = {language: _listed(texts) for language, texts in data.get("unanswered", {}).items()}
-    return QuestionSet(name, asked, unanswered)
-
-
-def _listed(value: Any) -> tuple[str, ...]:
-    return (value,) if isinstance(value, str) else tuple(value)
+    return read_fields(QuestionSet, data, name=name)
 
 
 def _day(data: Mapping[str, Any], key: str, report: DocumentReport) -> date | None:

@@ -4,19 +4,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from lumen.features.fleet.settings import (
-    DEFAULT_PAUSE,
-    Fleet,
-    FleetGroup,
-    FleetHouse,
-    FleetMeasure,
-    RolloutPlan,
-    StepTarget,
-    step_target,
-)
+from lumen.features.fleet.settings import DEFAULT_PAUSE, Fleet, RolloutPlan, StepTarget, step_target
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath
 from lumen.project.built_file import BuiltFile, read_file
 from lumen.project.document_report import DocumentReport
+from lumen.project.field_reader import read_fields
 from lumen.project.files import MAX_FILE_BYTES
 from lumen.project.project_folders import FLEET_FILE
 from lumen.project.routes import duration
@@ -29,14 +21,8 @@ def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None
     """The fleet in the data of fleet.yaml, which has the shape of fleet.schema.json but may lack any key."""
     if not isinstance(data, Mapping):
         return None
-    return Fleet(
-        centre=data.get("centre", {}).get("broker", ""),
-        key=data.get("key", ""),
-        houses={key: _house(row) for key, row in data.get("houses", {}).items()},
-        groups={key: _group(row) for key, row in data.get("groups", {}).items()},
-        measures={key: FleetMeasure(**row) for key, row in data.get("measures", {}).items()},
-        rollout=_rollout(data.get("rollout", {}), report),
-    )
+    centre, rollout = data.get("centre", {}).get("broker", ""), _rollout(data.get("rollout", {}), report)
+    return read_fields(Fleet, data, centre=centre, rollout=rollout)
 
 
 def read_fleet(root: Path) -> tuple[BuiltFile[Fleet] | None, list[Diagnostic]]:
@@ -46,14 +32,6 @@ def read_fleet(root: Path) -> tuple[BuiltFile[Fleet] | None, list[Diagnostic]]:
     except OSError:
         return None, []
     return read_file(FLEET_FILE, content, "fleet", build_fleet)
-
-
-def _house(row: Mapping[str, Any]) -> FleetHouse:
-    return FleetHouse(row.get("broker", ""), tuple(row.get("robots", ())), dict(row.get("labels", {})))
-
-
-def _group(row: Mapping[str, Any]) -> FleetGroup:
-    return FleetGroup(tuple(row.get("robots", ())), tuple(row.get("houses", ())), dict(row.get("labels", {})))
 
 
 def _rollout(data: Mapping[str, Any], report: DocumentReport) -> RolloutPlan:
