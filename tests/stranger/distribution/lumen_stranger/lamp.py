@@ -6,6 +6,7 @@ from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code
 from lumen.project.document_report import DocumentReport
+from lumen.project.field_reader import read_fields
 
 NO_SCENE = Code("no-scene", "robot", ERROR, "the lamp begins with a scene that it does not have")
 
@@ -36,8 +37,7 @@ class Lamp:
 
 def read_lamp(data: Mapping[str, Any], report: DocumentReport) -> Lamp:
     """Return what the lamp does; a first scene that it does not have is reported."""
-    said = data["lamp"]
-    lamp = Lamp(said.get("first", ""), dict(said["scenes"]))
+    lamp = read_fields(Lamp, data["lamp"])
     if lamp.first and lamp.first not in lamp.scenes:
         report(NO_SCENE, ("lamp", "first"), f"the lamp has no scene `{lamp.first}`", "add it to `scenes`")
     return lamp
