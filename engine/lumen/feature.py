@@ -170,7 +170,8 @@ class FunctionRow(NamedTuple):
 class VerbRow(NamedTuple):
     """A verb of the YAML that the robot performs by code of a feature.
 
-    `performer` is the import string of a `SkillPerformer` (`lumen.ports`). `arguments` is the JSON Schema of an object
+    `performer` is the import string of a `SkillPerformer` (`lumen.ports`), which reads a section of lumen.yaml with
+    `call.section`. `arguments` is the JSON Schema of an object
     without `$ref`s; if it has one required property, that can be written short: `blink: 3`. Properties that the YAML
     leaves out get their `default`. `result` is the JSON Schema of what the performer returns. `takes` is how long it
     takes, a duration that can contain expressions of the arguments: `{{ times * 0.4 }}s`. `parts` are those of the body

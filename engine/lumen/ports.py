@@ -156,6 +156,9 @@ RobotCommand = NativeCommand | Do
 """The commands of a robot. The verbs that features add (`Do`) are performed in the same way for every robot."""
 
 
+Settings = TypeVar("Settings")
+
+
 class SkillCall(Protocol):
     """One call of a performer, which runs in a thread of its own."""
 
@@ -172,6 +175,14 @@ class SkillCall(Protocol):
     @property
     def cancelled(self) -> bool:
         """Whether the call should end: the robot does not wait for it any more."""
+        ...
+
+    def section(self, kind: type[Settings]) -> Settings:
+        """Return the settings of this type from lumen.yaml, as `Project.section` does.
+
+        They are those of the files that the robot used when it was given the command: a later call has others after a
+        reload.
+        """
         ...
 
     def wait(self, seconds: float) -> bool:

@@ -5,7 +5,7 @@ commands for a robot, spelt as in 2015, are in `robot/command_table.py`.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import MISSING, Field, asdict, fields, is_dataclass
+from dataclasses import MISSING, Field, fields, is_dataclass
 from functools import cache
 from typing import Any, get_args
 
@@ -28,6 +28,11 @@ def command_data(value: Any) -> Any:
     if isinstance(value, Sequence) and not isinstance(value, str):
         return [command_data(item) for item in value]
     return value
+
+
+def _said(command: Any) -> dict[str, Any]:
+    kind: Any = type(command)
+    return {field.name: getattr(command, field.name) for field in _compared(kind)}
 
 
 @cache
@@ -54,7 +59,7 @@ def traced(command: Command) -> dict[str, Any] | None:
     """Return a command in the trace's form, `{verb: say, id: d1, text: Hello, …}`; None if no trace contains it."""
     match command:
         case Start(id, wanted):
-            return {"verb": trace_verb(wanted), "id": id, **asdict(wanted)}
+            return {"verb": trace_verb(wanted), "id": id, **_said(wanted)}
         case Publish(route, body):
             return {"verb": "publish", "route": route, "body": body}
     return None

@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from lumen.language.sections import Sections
+
 Channel = Literal["all", "walk", "play", "say"]
 
 
@@ -183,11 +185,13 @@ class Log:
 class Do:
     """Perform the verb `skill` of a feature; `arguments` are JSON data that fit the schema of its row.
 
-    In the YAML a text in them can contain `{{ expression }}`, which a step fills in.
+    In the YAML a text in them can contain `{{ expression }}`, which a step fills in. `sections` are those of the
+    project for the performer, added when the command goes to the robot; no YAML or message contains them.
     """
 
     skill: str
     arguments: Mapping[str, Any] = field(default_factory=dict)
+    sections: Sections = field(default_factory=dict, repr=False, compare=False, metadata={"yaml": False})
 
 
 MotorCommand = Posture | Walk | Move | Look | Leds | Volume | PlaySound | Stop | Rest | Wake

@@ -250,7 +250,8 @@ def _do(p: CommandParameters) -> Do:
     arguments = p.values.get("arguments")
     if not isinstance(arguments, Mapping | None):
         raise BadCommandError("the `arguments` of `do` must be an object with names and values")
-    command = Do(p.text("skill"), arguments_of(added_verb(Do(p.text("skill"))), arguments or {}))
+    skill = p.text("skill")
+    command = Do(skill, arguments_of(added_verb(Do(skill)), arguments or {}), p.project.sections)
     check_arguments(command)
     return command
 

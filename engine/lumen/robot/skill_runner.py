@@ -4,17 +4,19 @@ import json
 import logging
 from collections.abc import Mapping
 from threading import Condition
-from typing import Any
+from typing import Any, TypeVar
 
 from lumen.errors import RobotError, RobotFailedError, RobotRefusedError
 from lumen.feature import VerbRow, resolve
 from lumen.language.added_verbs import whole_result
 from lumen.language.commands import Do
+from lumen.language.sections import section_of
 from lumen.ports import SkillPerformer
 from lumen.project.schema import faults
 from lumen.robot.command_table import added_verb
 from lumen.upkeep.threads import WatchedThread
 
+Settings = TypeVar("Settings")
 _log = logging.getLogger(__name__)
 
 
@@ -49,7 +51,7 @@ class RunningSkill:
         self.cancelled = False
         self.result: Mapping[str, Any] = {}
         self.thread = WatchedThread(f"lumen-skill-{command.skill}", self._run)
-        self._verb, self._now = verb, now
+        self._verb, self._sections, self._now = verb, command.sections, now
         self._left = self._over = False
         self._failure = ""
         self._changed = Condition()
@@ -76,6 +78,9 @@ class RunningSkill:
         with self._changed:
             self.cancelled = True
             self._changed.notify_all()
+
+    def section(self, kind: type[Settings]) -> Settings:
+        return section_of(self._sections, kind)
 
     def wait(self, seconds: float) -> bool:
         with self._changed:

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from lumen.errors import BusError
@@ -11,6 +12,7 @@ from lumen.language.commands import (
     BodyCommand,
     Cancel,
     Command,
+    Do,
     GoTo,
     Language,
     Log,
@@ -123,6 +125,8 @@ class Performer:
                     self._answer("error", id, now, reason)
                 else:
                     self.navigator.start(id, place, now)
+            case Do():
+                self._begin(id, replace(wanted, sections=project.sections), now)
             case Ask():
                 raise TypeError("a robot can't perform a question")
             case _:

@@ -16,6 +16,7 @@ from lumen.feature import (
     Section,
     SenseRow,
     Subcommand,
+    VerbRow,
 )
 
 FEATURE = Feature(
@@ -42,6 +43,17 @@ FEATURE = Feature(
             risk="wiring",
             entries="scenes",
             of_house=True,
+        )
+    },
+    verbs={
+        "shine": VerbRow(
+            performer="lumen_stranger.shining",
+            description="Switch the lamp to a scene.",
+            arguments={
+                "required": ["scene"],
+                "properties": {"scene": {"type": "string", "description": "A scene of lumen.yaml"}},
+            },
+            result={"properties": {"brightness": {"type": "number", "default": 0}}},
         )
     },
     robots={
