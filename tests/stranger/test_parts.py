@@ -1,5 +1,6 @@
 """A stranger's part takes part in an exhibition; a faulty one is a finding, and the exhibition runs without it."""
 
+import json
 import logging
 import shutil
 from collections.abc import Sequence
@@ -12,6 +13,7 @@ import pytest
 import lumen
 from lumen.bus.memory import MemoryBus
 from lumen.bus.validated import validated
+from lumen.cli.main import main
 from lumen.errors import UsageError
 from lumen.feature import resolve
 from lumen.features.alerts.part import AlertPart
@@ -158,6 +160,99 @@ class Witness(Part):
 
     def part_stopped(self, part: str) -> None:
         self._told.append(part)
+
+
+RUN = "run", "--robot", "recording", "--format", "json"
+STOPPED = (
+    "the installed package `lumen-counter` 1.0 is faulty: its part `counter` is stopped, because it raised"
+    " ZeroDivisionError: division by zero (update `lumen-counter`, or remove it: pip uninstall lumen-counter)"
+)
+BOX = """
+from lumen.feature import BusRow, Feature, PartRow, Phase
+
+FEATURE = Feature(
+    name="counter",
+    parts=(PartRow("counter", Phase.WATCH, "counting_part:make"),),
+    buses={"box": BusRow("lumen.bus.memory:open_bus", ("box://NAME",))},
+)
+"""
+
+
+def write_failing(installed: Installed, method: str, manifest: str = MANIFEST) -> None:
+    """Install a part of which one method raises ZeroDivisionError."""
+    code = COUNTER.format(make="return Counter()")
+    installed.write("lumen-counter", manifest, counting_part=code.replace("def make", f"    {method}\n\ndef make"))
+
+
+@pytest.mark.process
+@pytest.mark.parametrize(
+    ("words", "case"),
+    [
+        ("--speed max --for 1s", "tick"),
+        ("--speed max --story visitor", "stepped"),
+        ("--speed max --story visitor", "close"),
+        ("--only robot --bus box://hall --for 100ms", "tick"),
+        ("--only robot --bus box://hall --for 100ms", "summary"),
+    ],
+)
+def test_a_run_without_a_part_that_failed_ends_with_trouble(
+    words: str, case: str, installed: Installed, minimal: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_failing(installed, FAULTS[case].replace("yield 7", "1 / 0"), BOX)
+    assert main([*RUN, *words.split(), str(minimal)]) == 1
+    verdict, told = verdict_of(capsys)
+    assert (verdict["ended"], verdict["failure"], verdict["summary"][0]) == ("troubled", STOPPED, STOPPED)
+    assert "Ended with trouble: 0:0" in told
+    assert f"\n  {STOPPED}\n" in told
+
+
+@pytest.mark.process
+@pytest.mark.parametrize("words", ["--for 1s", "--story visitor"])
+def test_a_house_without_a_part_that_failed_ends_with_trouble(
+    words: str, installed: Installed, minimal: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main_file = minimal / "lumen.yaml"
+    one, two = "robot: {name: NAO, model: nao}", "robots: {ana: {model: nao}, ben: {model: nao}}"
+    main_file.write_text(main_file.read_text().replace(one, two))
+    code = COUNTER.format(make="counter = Counter()\n    counter.project = services.project\n    return counter")
+    failing = "    def tick(self, now, changes): 1 / (self.project.robot == 'ana')\n\ndef make"
+    installed.write("lumen-counter", MANIFEST, counting_part=code.replace("def make", failing))
+    assert main([*RUN, "--speed", "max", *words.split(), str(minimal)]) == 1
+    verdict, told = verdict_of(capsys)
+    assert (verdict["ended"], verdict["failure"]) == ("troubled", f"ben: {STOPPED}")
+    assert "Ended with trouble: 0:0" in told
+    assert not [line for line in verdict["summary"] if line.startswith("ana: the installed")]
+
+
+@pytest.mark.process
+def test_a_run_without_a_part_that_cannot_be_made_ends_with_trouble(
+    installed: Installed, minimal: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(installed, "1 / 0")
+    assert main([*RUN, "--speed", "max", "--story", "visitor", str(minimal)]) == 1
+    verdict, _ = verdict_of(capsys)
+    assert verdict["ended"] == "troubled"
+    assert verdict["failure"].startswith(f"the part `counter` is left out: {FAULTY}ZeroDivisionError")
+
+
+@pytest.mark.process
+def test_a_failed_story_is_not_excused_by_a_part_that_failed(
+    installed: Installed, minimal: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_failing(installed, FAULTS["tick"])
+    story = minimal / "behaviors/stories/visitor.yaml"
+    story.write_text("title: Wrong\nsteps: [{expect: {state: goodbye}}]\n")
+    assert main([*RUN, "--speed", "max", "--story", "visitor", str(minimal)]) == 1
+    verdict, told = verdict_of(capsys)
+    assert verdict["ended"] == "failed"
+    assert "The story failed: " in told
+    assert STOPPED in verdict["summary"]
+
+
+def verdict_of(capsys: pytest.CaptureFixture[str]) -> tuple[dict[str, Any], str]:
+    """Return what `lumen run --format json` printed: its object and its transcript."""
+    printed = capsys.readouterr()
+    return json.loads(printed.out), printed.err
 
 
 def test_a_fault_of_a_part_of_lumen_ends_the_run(minimal: Path) -> None:

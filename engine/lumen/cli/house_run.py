@@ -11,7 +11,7 @@ from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import chosen_story, period_of
 from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals, leave, plan_of
-from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
+from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict, troubles_of
 from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
 from lumen.errors import LumenError, UsageError
@@ -71,13 +71,13 @@ class HouseRun:
         nodes = list(house.nodes.values())
         failed, early = any(node.failed for node in nodes), any(node.interrupted for node in nodes)
         failure = self._failure() if not self._parts else ""
-        told = {name: node.troubles for name, node in house.nodes.items() if not self.stories[name]}
+        of_parts = [f"{name}: {line}" for name, node in house.nodes.items() for line in node.summary()]
+        told = {name: troubles_of(node, judged=self.stories[name] is not None) for name, node in house.nodes.items()}
         troubles = [f"{name}: {trouble}" for name, troubles in told.items() for trouble in troubles]
         troubles += [f"{name}: {error}" for name, error in self._lost.items()]
         with_trouble = "Ended with trouble" if troubles else "Ended"
         print(f"\n{'The story failed' if failed else with_trouble}: {clock_time(lived)}.")
-        lines = [*RunVerdict.listed(troubles)]
-        lines += [f"{name}: {line}" for name, node in house.nodes.items() for line in node.summary()]
+        lines = [*RunVerdict.listed(troubles), *of_parts]
         for line in [*([failure] if failure else []), *lines]:
             print(f"  {line}")
         for name, directory in self.directories.items():

@@ -8,7 +8,7 @@ from pathlib import Path
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
 from lumen.cli.run_plan import leave, running
-from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
+from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict, troubles_of
 from lumen.cli.transcript import Transcript
 from lumen.clock.real import RealClock
 from lumen.language.projects import Project
@@ -60,13 +60,13 @@ class Performance:
         player, story = visitor.player if visitor else None, services.plan.story
         failure = player.failure if player else ""
         early = player is not None and not player.finished
-        troubles = [] if player else node.troubles  # a story fails for those that it does not expect
+        troubles = troubles_of(node, judged=player is not None)
         how = FAILED if failure else EARLY if early else TROUBLED if troubles else WELL
-        how = INTERRUPTED if node.interrupted and how != FAILED else how
         ended = "The story failed" if failure else "Ended before the story was over" if early else "All well"
         if (stopped := robot.server.hold.stopped) and not player:
             ended = f"Stopped by {stopped.by}"
-        ended = "Ended with trouble" if troubles else ended
+        ended = "Ended with trouble" if how == TROUBLED else ended
+        how = INTERRUPTED if node.interrupted and how != FAILED else how
         real = isinstance(self._setup.clock, RealClock)
         pace = "" if real else f" in {self._took:.0f} s ({self._lived / max(self._took, 0.01):.1f} × real time)"
         print(f"\n{ended}: {clock_time(self._lived)} of {'simulated ' * bool(pace)}time{pace}.")

@@ -14,7 +14,7 @@ from lumen.cli.performance import GREETING, Performance
 from lumen.cli.printing import clock_time
 from lumen.cli.run_choices import chosen_story, language_of, period_of
 from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals, leave, plan_of, running
-from lumen.cli.run_verdict import FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict
+from lumen.cli.run_verdict import FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict, troubles_of
 from lumen.cli.streams import complain
 from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
@@ -198,14 +198,15 @@ def _processes(
         lived = services.node.run(period)
     if BRAIN in parts:
         _ended(one, services)
-    return _summed_up(services.node, lived, [] if story else services.node.troubles)
+    return _summed_up(services.node, lived, judged=story is not None)
 
 
-def _summed_up(node: Node, lived: float, troubles: Sequence[str]) -> RunVerdict:
-    """Say how a process of several went, and return it."""
+def _summed_up(node: Node, lived: float, *, judged: bool) -> RunVerdict:
+    """Print how a process of several went, and return it; its story, if it has one, `judged` the behaviour."""
+    of_parts, troubles = node.summary(), troubles_of(node, judged=judged)
     with_trouble = "Ended with trouble" if troubles else "Ended"
     print(f"\n{'The story failed' if node.failed else with_trouble}: {clock_time(lived)}.")
-    summary = (*RunVerdict.listed(troubles), *node.summary())
+    summary = (*RunVerdict.listed(troubles), *of_parts)
     for line in summary:
         print(f"  {line}")
     ended = INTERRUPTED if node.interrupted else FAILED if node.failed else TROUBLED if troubles else WELL

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from lumen.run.node import Node
+
 WELL, FAILED, TROUBLED, EARLY, INTERRUPTED = "well", "failed", "troubled", "early", "interrupted"
 MAX_TROUBLES = 5
 """The number of troubles that the summary of a run lists."""
@@ -11,8 +13,7 @@ MAX_TROUBLES = 5
 class RunVerdict(NamedTuple):
     """How it `ended`: well, failed, troubled, early (before its story did), interrupted; `lived` and `took` in [s].
 
-    With a story, the story judges the troubles and may fail; without one a run with troubles is `troubled`, and
-    `failure` is the first of them.
+    A run with troubles (`troubles_of`) is `troubled`, and `failure` is the first of them, unless its story failed.
     """
 
     ended: str
@@ -44,3 +45,12 @@ class RunVerdict(NamedTuple):
             "summary": list(self.summary),
             "film": self.film or None,
         }
+
+
+def troubles_of(node: Node, *, judged: bool) -> list[str]:
+    """Return the troubles of a process at its end, after it was closed.
+
+    A story has judged those of the behaviour, and fails for what it does not expect; the faults of packages whose parts
+    are stopped or left out remain.
+    """
+    return [*([] if judged else node.troubles), *node.faults]

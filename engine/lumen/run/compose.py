@@ -75,7 +75,9 @@ def _add(services: Services, place: int, row: PartRow) -> None:
     except BaseException as error:  # even SystemExit
         if feature is None:
             raise
-        _log.exception("the part `%s` is left out: %s", row.name, blamed(feature, row.make, error))
+        fault = f"the part `{row.name}` is left out: {blamed(feature, row.make, error)}"
+        services.node.faults.append(fault)
+        _log.exception("%s", fault)
 
 
 def _guarded(services: Services, row: PartRow, feature: Feature | None, part: Part) -> Part:

@@ -70,6 +70,8 @@ class Node:
         self._dozes = clock if isinstance(clock, Dozes) else None
         self.bus, self.presence = bus, presence
         self.parts: list[Part] = []
+        self.faults: list[str] = []
+        """The faults of packages whose parts are stopped or left out."""
         self._before = before
         self._nap = nap or Nap()
         self.now, self._asked = clock.now(), time.monotonic()

@@ -119,8 +119,9 @@ class Services:
             part.noticed(event)
 
     def part_stopped(self, part: str, fault: str) -> None:
-        """Print why a part of a package was stopped, and tell all other parts of it."""
+        """Print why a part of a package was stopped, keep that for the end, and tell all other parts of it."""
         self.narrator.line("trouble", fault)
+        self.node.faults.append(fault)
         for other in self.node.parts:
             other.part_stopped(part)
 
