@@ -10,6 +10,7 @@ import lumen
 from lumen.cli.main import main
 from lumen.errors import ExpressionError, LumenError, UsageError
 from lumen.expressions import Scope, compile_expression
+from lumen.feature import resolve
 from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.completion import complete
 from lumen.features.editor.hover import hover
@@ -160,7 +161,11 @@ def test_lint_and_editor_know_the_sense(stranger: Path, hall: Path) -> None:
 
 
 def test_a_scheme_opens_its_bus_and_is_allowed_in_a_project(stranger: Path, hall: Path) -> None:
-    assert type(lumen.bus.connect("postbox://hall")).__name__ == "Postbox"
+    postbox = resolve("lumen_stranger.postbox:Postbox")
+    posted = postbox.posted
+    with closing(lumen.bus.connect("postbox://hall")) as bus:
+        bus.publish("lumen.letter", {})
+    assert postbox.posted == posted + 1
     assert findings(hall) == []
     assert load_schema("lumen")["properties"]["bus"]["pattern"] == "^(memory|amqp|amqps|postbox)://"
     with pytest.raises(lumen.BusAddressError, match="amqps://HOST or postbox://NAME"):

@@ -42,6 +42,9 @@ def make(request):
 """
 QUIET = ROBOT.replace("1 / 0", "pass")
 BUS = "from lumen.bus.memory import MemoryBus\n\n\nclass make(MemoryBus):\n    def send(self, message): 1 / 0\n"
+SILENT = BUS.replace("def send(self, message): 1 / 0", "def __init__(self, address, sender): super().__init__()")
+CLOCK_ROW = "robots={'bot': RobotRow('faulty_code:make')}"
+CLOCK = QUIET.replace("Robot())", "Robot(), Clock())") + "\n\nclass Clock:\n"
 RUN = "run --robot recording --speed max --story visitor"
 FAULTS = {
     "robot without a method": (
@@ -73,6 +76,60 @@ FAULTS = {
         BUS.replace("def send", "def __init__(self, address, sender): super().__init__()\n    def send"),
         f"{RUN} --bus box://",
         "line 6 of `faulty_code` raised ZeroDivisionError: division by zero",
+    ),
+    "bus without the ends of subscriptions": (
+        "buses={'box': BusRow('faulty_code:make', ('box://',), '', True)}",
+        f"{SILENT}    def subscribe(self, *given): return 7",
+        f"{RUN} --bus box://",
+        "its bus `box` returned 7 from `subscribe`: it must return a function",
+    ),
+    "bus with a wrong count": (
+        "buses={'box': BusRow('faulty_code:make', ('box://',), '', True)}",
+        f"{SILENT}    dropped = 7",
+        f"{RUN} --bus box://",
+        "its bus `box` has 7 as `dropped`: it must be a Mapping",
+    ),
+    "bus with a wrong ability": (
+        "buses={'box': BusRow('faulty_code:make', ('box://',), '', True)}",
+        f"{SILENT}    def ability(self, kind): return 7",
+        f"{RUN} --bus box://",
+        "its bus `box` returned 7 from `ability`: it must return a `CountsDrops` or None",
+    ),
+    "bus that leaves": (
+        "buses={'box': BusRow('faulty_code:make', ('box://',), '', True)}",
+        f"{SILENT}    def carry(self, routes): exit(3)",
+        f"{RUN} --bus box://",
+        "line 6 of `faulty_code` raised SystemExit: 3",
+    ),
+    "bus that misuses Lumen": (
+        "buses={'box': BusRow('faulty_code:make', ('box://',), '', True)}",
+        f"{SILENT}    def send(self, message): super().send(None)",
+        f"{RUN} --bus box://",
+        "its bus `box` raised TypeError: cannot unpack non-iterable NoneType object from `send`",
+    ),
+    "clock without a time": (
+        CLOCK_ROW,
+        f"{CLOCK}    def now(self): pass\n    def wait(self, until): pass\n",
+        "run --robot bot --for 1s",
+        "the clock of its robot `bot` returned None from `now`: it must return a finite number",
+    ),
+    "clock with a wrong speed": (
+        CLOCK_ROW,
+        f"{CLOCK}    speed = 'fast'\n    def now(self): return 0.0\n    def wait(self, until): pass\n",
+        "run --robot bot --for 1s",
+        "the clock of its robot `bot` has the speed 'fast': it must be a number or None",
+    ),
+    "clock that stops": (
+        CLOCK_ROW,
+        f"{CLOCK}    def now(self): return 0.0\n    def wait(self, until): 1 / 0\n",
+        "run --robot bot --for 1s",
+        "line 20 of `faulty_code` raised ZeroDivisionError: division by zero",
+    ),
+    "clock that loses the time": (
+        CLOCK_ROW,
+        f"{CLOCK}    time = 0.0\n    def now(self): return self.time\n    def wait(self, until): self.time = 'late'\n",
+        "run --robot bot --for 1s",
+        "the clock of its robot `bot` returned 'late' from `now`: it must return a finite number",
     ),
     "importer": (
         "importers={'.odd': Importer('behavior', 'faulty_code:read')}",

@@ -1,11 +1,13 @@
 """Faults of rows that lint, expressions, senses, voices and forgetting use: each costs its row alone."""
 
 import logging
+from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 import pytest
+from lumen.clock.checked import ability
 
 import lumen
 from lumen.bus import connect
@@ -16,7 +18,7 @@ from lumen.features.voice.speaker import AddedVoice
 from lumen.language.people import PersonName
 from lumen.lint import check_files
 from lumen.lint.fixes import fixes
-from lumen.ports import Joints, Message, Sense
+from lumen.ports import Dozes, HasSpeed, Joints, MeasuresPace, Message, Sense
 from lumen.project.files import read_files
 from lumen.robot.command_table import speech_duration
 from lumen.robot.remote import RemoteRobot
@@ -86,6 +88,23 @@ def test_lint_reports_a_faulty_row_once_and_names_its_package(case: str, install
     (finding,) = check_files(BASE, read_files(BASE))[1]
     assert finding.code == "broken-feature"
     assert finding.message.startswith(PREFIX + fault)
+
+
+OPTIONS = "modules={{'mood': ModuleRow('faulty_code:Mood', '', {{'odd': {schema}, 'even': {{'type': 'integer'}}}})}}"
+
+
+@pytest.mark.parametrize("schema", ["{'type': 'text'}", "{'$ref': '#/$defs/here'}", "{'pattern': '('}"])
+def test_lint_reports_an_option_whose_schema_cannot_be_used_and_checks_the_others(
+    schema: str, installed: Installed
+) -> None:
+    installed.write("faulty", MANIFEST.format(row=OPTIONS.format(schema=schema)))
+    files = read_files(BASE)
+    options = f"\nmodules: {{mood: {{odd: 7, even: half}}}}  # {schema}\n"
+    found = check_files(BASE, {**files, "lumen.yaml": files["lumen.yaml"] + options.encode()})[1]
+    broken, wrong = sorted(found, key=lambda each: each.code != "broken-feature")
+    fault = "the schema of the option `odd` of its module `mood` is no JSON Schema, or has `$ref`"
+    assert (broken.code, broken.message) == ("broken-feature", PREFIX + fault)
+    assert (wrong.code, wrong.message) == ("wrong-type", "`even` should be a whole number, not a text")
 
 
 @pytest.mark.parametrize(
@@ -235,6 +254,103 @@ def test_a_voice_is_silent_after_its_first_fault(
     voice.close()
     (record,) = caplog.records
     assert record.getMessage() == f"{PREFIX}its voice `growl` raised {fault}; the robot is silent from now on"
+
+
+SUBSCRIBER = """
+from lumen.run.parts.part import Part
+
+def make(services):
+    services.bus.subscribe("lumen.#", heed)
+    return Part()
+
+def heed(message):
+    if message.key == "lumen.bad":
+        {code}
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "fault"),
+    [
+        ("1 / 0", "ZeroDivisionError: division by zero"),
+        ("exit(3)", "SystemExit: 3"),
+        ("Part().leap()", "TypeError: Part.leap() missing 1 required positional argument: 'now'"),
+    ],
+)
+def test_an_exhibition_continues_after_the_fault_of_a_subscriber(
+    code: str, fault: str, installed: Installed, caplog: pytest.LogCaptureFixture
+) -> None:
+    row = "parts=(PartRow('odd', Phase.WATCH, 'faulty_code:make'),)"
+    installed.write("faulty", MANIFEST.format(row=row), faulty_code=SUBSCRIBER.format(code=code))
+    heard: list[str] = []
+    with lumen.open(ROOT / "examples/minimal", robot="recording") as exhibition:
+        bus = exhibition.services.bus
+        bus.subscribe("lumen.bad", lambda message: heard.append(message.key))
+        for _ in range(2):
+            bus.publish("lumen.bad", {})
+        assert exhibition.run(seconds=1) == pytest.approx(1)
+        [line] = exhibition.node.faults
+    assert heard == ["lumen.bad"] * 2
+    assert line.startswith(f"{PREFIX}its subscriber of `lumen.#` raised {fault} (update `faulty`")
+    [record] = [record for record in caplog.records if record.levelno >= logging.ERROR]
+    assert record.getMessage() == line
+
+
+def test_the_fault_of_a_subscriber_of_lumen_stays_one(caplog: pytest.LogCaptureFixture) -> None:
+    with lumen.open(ROOT / "examples/minimal", robot="recording") as exhibition:
+        exhibition.services.bus.subscribe("lumen.bad", lambda message: exhibition.tick(1))  # type: ignore[call-arg]
+        exhibition.services.bus.publish("lumen.bad", {})
+        assert exhibition.node.faults == []
+    assert "a subscriber of `lumen.bad` failed on `lumen.bad`" in caplog.text
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "call", "fault"),
+    [
+        ("return until", "return 'late'", lambda clock: clock.doze(3.0), "returned 'late' from `doze`"),
+        ("realtime = 4.0, 0.5", "realtime = 4.0, None", lambda clock: clock.realtime, "returned None from `realtime`"),
+    ],
+)
+def test_a_wrong_time_of_a_clock_names_its_package(
+    old: str, new: str, call: Callable[[Any], object], fault: str, installed: Installed
+) -> None:
+    row = MANIFEST.format(row="robots={'bot': RobotRow('faulty_code:make')}")
+    assert old in CLOCK
+    installed.write("faulty", row, faulty_code=CLOCK.replace(old, new))
+    clock = set_up("bot", lumen.load(ROOT / "examples/minimal"), "max").clock
+    with pytest.raises(LumenError) as raised:
+        call(clock)
+    expected = f"{PREFIX}the clock of its robot `bot` {fault}: it must return a finite number"
+    assert str(raised.value).startswith(expected)
+
+
+def test_a_clock_of_a_package_keeps_its_abilities(installed: Installed) -> None:
+    installed.write("faulty", MANIFEST.format(row="robots={'bot': RobotRow('faulty_code:make')}"), faulty_code=CLOCK)
+    clock = set_up("bot", lumen.load(ROOT / "examples/minimal"), "max").clock
+    assert isinstance(clock, Dozes)
+    assert isinstance(clock, MeasuresPace)
+    assert (clock.now(), clock.doze(3.0), clock.realtime) == (1.0, 3.0, 0.5)
+    paced = ability(clock, HasSpeed)
+    assert paced
+    assert paced.speed == 4.0
+    clock.hurry()
+    clock.wait(2.0)
+
+
+CLOCK = """
+from lumen.run.setup import Setup
+from lumen.robot.none import NoRobot
+
+class Clock:
+    speed, realtime = 4.0, 0.5
+    def now(self): return 1.0
+    def wait(self, until): pass
+    def doze(self, until): return until
+    def hurry(self): pass
+
+def make(request):
+    return Setup(NoRobot(), Clock(), None)
+"""
 
 
 def test_a_forgetter_that_leaves_keeps_no_other_from_forgetting(

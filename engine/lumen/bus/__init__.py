@@ -5,6 +5,7 @@
     amqp.py           the bus on RabbitMQ, made of the files below
     addresses.py      the kinds of buses, by the schemes of their addresses
     validated.py      any bus, with every body checked against the schema of its route
+    checked_bus.py    the bus of an installed package, whose faults name the package
 
 What crosses a bus:
 

@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping
 
+from lumen.bus.checked_bus import CheckedBus
 from lumen.errors import BusAddressError
-from lumen.feature import BusRow, owner, table
+from lumen.feature import BusRow, distribution_of, owner, table
 from lumen.ports import Bus
-from lumen.project.broken_features import called, need_made
+from lumen.project.broken_features import called, faulty, need_made
 
 
 def open_bus(url: str, sender: str) -> Bus:
@@ -15,9 +16,12 @@ def open_bus(url: str, sender: str) -> Bus:
     """
     row = row_of(url)
     if row and "://" in url:
-        feature = owner("buses", url.partition(":")[0])
+        scheme = url.partition(":")[0]
+        feature = owner("buses", scheme)
         bus: Bus = called(feature, row.open, url, sender)
         need_made(feature, row.open, bus, Bus, "a bus")
+        if distribution_of(feature):
+            return CheckedBus(bus, lambda what: faulty(feature, f"its bus `{scheme}` {what}"))
         return bus
     schemes: Mapping[str, BusRow] = table("buses")
     begins = [f"`{scheme}://`" for scheme, row in schemes.items() if row.example]

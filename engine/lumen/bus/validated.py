@@ -13,10 +13,14 @@ from lumen.language.projects import Project
 from lumen.language.routes import Route
 from lumen.language.routing_keys import KEY_PREFIXES
 from lumen.ports import Ability, Bus, KnowsListeners, Message, MessageHandler, Outgoing
+from lumen.project.broken_features import fault_of_subscriber
 from lumen.upkeep.drops import ReasonLog
 
 OnRefused = Callable[[str, str], object]
 """Called for a message that was not handed on, with its key and the reason."""
+
+MAX_FAULTS = 100
+"""The number of different faults of subscribers that are reported; later ones are not."""
 
 _log = logging.getLogger(__name__)
 
@@ -29,7 +33,8 @@ class ValidatedBus(Bus):
     unchecked where they begin with `avatar` or `lumen`, else they don't pass. What has an alias is sent and heard under
     that, too. `use` takes another bundle of the project while messages flow.
 
-    `arrived` is called, on any thread, when a subscriber has taken a message.
+    `arrived` is called, on any thread, when a subscriber has taken a message, and `failed` with the fault of a
+    subscriber of an installed package, once for each fault: that costs the message, and is logged with its traceback.
 
     On a bus in this process a message that was sent here comes back with the very same object as its id: it is not
     checked again for each subscriber.
@@ -41,6 +46,7 @@ class ValidatedBus(Bus):
         project: Project,
         on_refused: OnRefused | None = None,
         arrived: Callable[[], None] | None = None,
+        failed: Callable[[str], None] = lambda _: None,
     ) -> None:
         self._bus, self._listeners = bus, bus.ability(KnowsListeners)
         self._on_refused = on_refused or ReasonLog(_log, "a message on `%(key)s` was refused: %(reason)s")
@@ -48,7 +54,8 @@ class ValidatedBus(Bus):
         self._routed: frozenset[str] = frozenset()
         self._passed: str | None = None
         self._aliases, self._listening = Aliases(), list[_Listening]()
-        self._arrived = arrived
+        self._arrived, self._failed = arrived, failed
+        self._faults: set[str] = set()
         self.use(project)
 
     def ability(self, kind: type[Ability]) -> Ability | None:
@@ -89,7 +96,14 @@ class ValidatedBus(Bus):
             if message.id is not self._passed and (reason := self._wrong(message.key, message.body)):
                 self._on_refused(message.key, reason)
                 raise Refused(reason)
-            handler(message)
+            try:
+                handler(message)
+            except (Refused, KeyboardInterrupt):
+                raise
+            except BaseException as error:  # even SystemExit
+                if not (fault := fault_of_subscriber(error, pattern)):
+                    raise
+                self._report(fault, error)
             if arrived:
                 arrived()
 
@@ -121,6 +135,13 @@ class ValidatedBus(Bus):
 
     def close(self) -> None:
         self._bus.close()
+
+    def _report(self, fault: str, error: BaseException) -> None:
+        """Report a fault of a subscriber once."""
+        if fault not in self._faults and len(self._faults) < MAX_FAULTS:
+            self._faults.add(fault)
+            _log.error("%s", fault, exc_info=error)
+            self._failed(fault)
 
     def _listen(self, listening: "_Listening") -> None:
         """Listen under the alias that the pattern has now, if any."""
@@ -160,7 +181,11 @@ def by_key(project: Project) -> dict[str, Route]:
 
 
 def validated(
-    bus: Bus, project: Project, on_refused: OnRefused | None = None, arrived: Callable[[], None] | None = None
+    bus: Bus,
+    project: Project,
+    on_refused: OnRefused | None = None,
+    arrived: Callable[[], None] | None = None,
+    failed: Callable[[str], None] = lambda _: None,
 ) -> ValidatedBus:
     """Return the bus, with everything on it checked against the project's message schemas."""
-    return ValidatedBus(bus, project, on_refused, arrived)
+    return ValidatedBus(bus, project, on_refused, arrived, failed)

@@ -8,7 +8,7 @@ pattern is one of Lumen's: its letters are those of every script, and none tries
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from functools import cache, cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from lumen.errors import ExpressionError
 from lumen.expressions.patterns import compile_pattern, for_every_script
@@ -133,6 +133,11 @@ def _prepared(schema: Any) -> Any:
     if isinstance(patterns := prepared.get("patternProperties"), dict):
         prepared["patternProperties"] = {for_every_script(pattern): inner for pattern, inner in patterns.items()}
     return prepared
+
+
+def is_usable_alone(schema: object) -> TypeGuard[dict[str, Any]]:
+    """Return True for a JSON Schema whose patterns can be used, and that refers to no other by `$ref`."""
+    return isinstance(schema, dict) and "$ref" not in keywords(schema) and JsonSchema(schema).is_sound
 
 
 def keywords(schema: Any) -> Iterator[str]:

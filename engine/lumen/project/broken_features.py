@@ -1,6 +1,6 @@
 """Findings about features that were installed beside Lumen and can't be used."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from traceback import walk_tb
 from typing import Any
@@ -18,9 +18,10 @@ BROKEN_FEATURE = Code("broken-feature", "features", WARNING, "an installed featu
 def broken_features() -> list[Diagnostic]:
     """Return a finding for each installed distribution whose feature, or a row of it, is ignored."""
     from lumen.project.added_verbs import faulty_verbs  # and with it all of the expressions
+    from lumen.project.feature_schemas import faulty_options
 
-    verbs = ((distribution_of(feature), fault) for feature, fault in faulty_verbs())
-    faults = [*found().faults, *(FeatureFault(distribution, fault) for distribution, fault in verbs if distribution)]
+    rows = ((distribution_of(feature), fault) for feature, fault in (*faulty_verbs(), *faulty_options()))
+    faults = [*found().faults, *(FeatureFault(distribution, fault) for distribution, fault in rows if distribution)]
     return [broken(fault.distribution, fault.message) for fault in faults]
 
 
@@ -91,6 +92,21 @@ def faults_reported(feature: Feature, what: str, findings: list[Diagnostic]) -> 
         findings.append(broken(distribution, f"{what} raised {described(error)}"))
 
 
+@contextmanager
+def faults_named(fault: Callable[[str], LumenError], method: str) -> Iterator[None]:
+    """Run a method of an object that a package made; raise an error that names the package for any fault of it.
+
+    `fault` makes the error, from words such as "raised KeyError: 3 from `send`". LumenErrors pass.
+    """
+    try:
+        yield
+    except (LumenError, KeyboardInterrupt):
+        raise
+    except BaseException as error:  # even SystemExit
+        named = fault_of_package(error)
+        raise (LumenError(named) if named else fault(f"raised {described(error)} from `{method}`")) from error
+
+
 def blamed(feature: Feature, where: str, error: BaseException) -> LumenError:
     """Return an error that names the distribution in whose module `error` was raised.
 
@@ -106,8 +122,7 @@ def faulty(feature: Feature, message: str) -> LumenError:
     distribution = distribution_of(feature)
     if distribution is None:
         return LumenError(f"the feature `{feature.name}` is faulty: {message}")
-    finding = broken(distribution, message)
-    return LumenError(f"{finding.message} ({finding.hint})")
+    return LumenError(_sentence(distribution, message))
 
 
 def shown(value: object) -> str:
@@ -121,17 +136,42 @@ def fault_of_package(error: BaseException) -> str:
 
     The innermost call of Lumen's code or of a package's decides; the text is empty if that is Lumen's.
     """
-    packages = {package: each for each in distributions() for package in each.packages}
-    calls = [(frame.f_globals.get("__name__", ""), line) for frame, line in walk_tb(error.__traceback__)]
-    for module, line in reversed(calls):
+    packages = _packages()
+    for module, line in reversed(_calls(error)):
         package = module.partition(".")[0]
         if package == PACKAGE.name:
             return ""
         if package in packages:
-            what = f"line {line} of `{module}` raised {described(error)}"
-            finding = broken(packages[package], what)
-            return f"{finding.message} ({finding.hint})"
+            return _sentence(packages[package], f"line {line} of `{module}` raised {described(error)}")
     return ""
+
+
+def fault_of_subscriber(error: BaseException, pattern: str) -> str:
+    """Return the fault of a subscriber to this pattern of keys, if code of an installed package took part in it.
+
+    The outermost call of a package's code decides; the text is empty if all calls are of Lumen's code.
+    """
+    packages = _packages()
+    called = (packages.get(module.partition(".")[0]) for module, _ in _calls(error))
+    distribution = next(filter(None, called), None)
+    what = f"its subscriber of `{pattern}` raised {described(error)}"
+    return _sentence(distribution, what) if distribution else ""
+
+
+def _packages() -> dict[str, Distribution]:
+    """Return the distributions that were installed beside Lumen, by the packages and modules that they contain."""
+    return {package: each for each in distributions() for package in each.packages}
+
+
+def _calls(error: BaseException) -> list[tuple[str, int]]:
+    """Return the module and the line of each call that an error ended, the outermost first."""
+    return [(frame.f_globals.get("__name__", ""), line) for frame, line in walk_tb(error.__traceback__)]
+
+
+def _sentence(distribution: Distribution, message: str) -> str:
+    """Return the fault of a distribution as a sentence, with what to do."""
+    finding = broken(distribution, message)
+    return f"{finding.message} ({finding.hint})"
 
 
 def need_made(feature: Feature, where: str, value: Any, kind: type, what: str) -> None:

@@ -5,7 +5,7 @@ from dataclasses import is_dataclass, replace
 from functools import cache
 from typing import Any
 
-from lumen.expressions.json_schema import JsonSchema, keywords
+from lumen.expressions.json_schema import is_usable_alone
 from lumen.feature import Section, resolve, rows, table
 from lumen.language.diagnostics import Diagnostic
 from lumen.project.broken_features import faults_reported
@@ -71,7 +71,7 @@ def _read(row: Section, data: Mapping[str, Any], report: DocumentReport) -> obje
 def _schema(where: str) -> Mapping[str, Any]:
     """Return the JSON Schema that an import string names. Raises TypeError if there is no usable one."""
     schema = resolve(where)
-    if not isinstance(schema, dict) or "$ref" in keywords(schema) or not JsonSchema(schema).is_sound:
+    if not is_usable_alone(schema):
         raise TypeError(f"`{where}` is no JSON Schema, or has `$ref`")
     return schema
 

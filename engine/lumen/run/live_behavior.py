@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from typing import Protocol
 
+from lumen.clock.checked import ability
 from lumen.insight.migration import MigrationPlan, MigrationVerdict
 from lumen.insight.replay.entries import JumpKind
 from lumen.language.people import PersonName
@@ -50,7 +51,8 @@ class LiveBehavior:
     ) -> None:
         self._story, self._local_timezone = story, "" if story else local_timezone()
         self.loop = BehaviorLoop(staged(project, story), setup.robot, bus, setup.clock, setup.tracking, refuse)
-        real = story is None and isinstance(setup.clock, HasSpeed) and setup.clock.speed == 1.0
+        paced = ability(setup.clock, HasSpeed)
+        real = story is None and paced is not None and paced.speed == 1.0
         self.loop.wall_clock = WallClockWatch(self._timezone, real=real)
         self.trace = TracePublisher(
             bus,

@@ -71,7 +71,7 @@ class Node:
         self.bus, self.presence = bus, presence
         self.parts: list[Part] = []
         self.faults: list[str] = []
-        """The faults of packages whose parts are stopped or left out."""
+        """The faults of packages: of parts that are stopped or left out, and of subscribers."""
         self._before = before
         self._nap = nap or Nap()
         self.now, self._asked = clock.now(), time.monotonic()

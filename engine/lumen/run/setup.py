@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
+from lumen.clock.checked import checked_clock
 from lumen.clock.real import RealClock
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import LumenError, UsageError
@@ -126,12 +127,15 @@ def _check(feature: Feature, where: str, setup: Setup) -> None:
 
 
 def _bounded(kind: str, row: RobotRow, setup: Setup, project: Project) -> Setup:
-    """Return a setup whose robot keeps within the limits of its body; that of a package is checked as well."""
+    """Return a setup whose robot keeps within the limits of its body; robot and clock of a package are checked, too."""
     feature = owner("robots", kind)
 
     def fault(what: str) -> LumenError:
         return faulty(feature, f"its robot `{kind}` {what}")
 
+    if distribution_of(feature):
+        clock = checked_clock(setup.clock, lambda what: faulty(feature, f"the clock of its robot `{kind}` {what}"))
+        setup = replace(setup, clock=clock)
     if not row.bounded:
         return replace(setup, robot=BoundedRobot(setup.robot, project.body, fault))
     return replace(setup, robot=CheckedRobot(setup.robot, fault)) if distribution_of(feature) else setup

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 
+from lumen.clock.checked import ability
 from lumen.feature import table
 from lumen.language.commands import Command, Say, Start
 from lumen.language.events import Event
@@ -66,12 +67,13 @@ class RobotPart(Part, Observer):
     ) -> None:
         self._silent, self._presence, self._before = silent, presence, before
         self.robot = setup.robot
+        paced = ability(setup.clock, HasSpeed)
         self.server = server or RobotServer(
             self._sensed(project),
             setup.robot,
             bus,
             listeners=(*listeners, Urgency(setup), *filter(None, [before.kept])),
-            direct=presence is None and isinstance(setup.clock, HasSpeed) and setup.clock.speed is None,
+            direct=presence is None and paced is not None and paced.speed is None,
         )
         self.faces = FaceDetector(project, setup.hall, bus) if setup.hall else None
 
