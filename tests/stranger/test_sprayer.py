@@ -3,21 +3,27 @@
 import re
 import shutil
 from collections.abc import Iterator
+from contextlib import closing
+from itertools import count
 from pathlib import Path
 
 import pytest
 from scripts.rule_pages import said
 
 import lumen
+from lumen.errors import RobotFailedError
 from lumen.feature import resolve
 from lumen.insight.changes import changes
+from lumen.language.commands import Do
 from lumen.language.stories import Visitor
 from lumen.lint import check_files
 from lumen.lint.pages import page
 from lumen.project.files import read_files
+from lumen.robot.skill_runner import SkillRunner
 from tests import ROOT
 from tests.stranger.installing import call_lumen, install, used
 from tests.tables import for_each
+from tests.waiting import until
 
 pytestmark = pytest.mark.process
 SPRAYER = ROOT / "examples/sprayer"
@@ -114,6 +120,17 @@ def test_lint_finds_mistakes(
 def test_a_nozzle_without_the_section_is_a_mistake(hall: Path) -> None:
     replace(hall / MAIN, "sprayer: {nozzles: {left: lavender, right: rose}}\n", "")
     assert findings(hall) == [(BEHAVIOR, "no-nozzle", "there is no nozzle `left`")]
+
+
+def test_its_performer_reads_the_nozzles_of_the_section(hall: Path) -> None:
+    sections, clock = lumen.load(hall).sections, count()
+    with closing(SkillRunner()) as runner:
+        top = runner.begin(Do("spray", {"duration": "2s", "nozzle": "top"}, sections), 0.0)
+        with pytest.raises(RobotFailedError, match="there is no nozzle `top`"):
+            until(lambda: top.advance(0.0))
+        left = runner.begin(Do("spray", {"duration": "2s", "nozzle": "left"}, sections), 0.0)
+        until(lambda: left.advance(next(clock)))
+    assert left.result == {}
 
 
 def test_the_page_of_the_code_shows_what_lint_finds() -> None:
