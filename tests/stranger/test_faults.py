@@ -1,5 +1,6 @@
 """Faulty code of a package ends with a sentence that names the package; an exhibition goes on without its module."""
 
+import json
 import shutil
 from pathlib import Path
 
@@ -284,6 +285,20 @@ def test_faulty_code_ends_with_a_sentence_that_names_its_package(
     assert main(words.split()) == 2
     verb, told = words.split()[0], capsys.readouterr().err.splitlines()[-1]
     assert told.startswith(f"lumen {verb}: the installed package `faulty` 1.2 is faulty: {fault}")
+
+
+@pytest.mark.process
+def test_an_alert_about_the_end_of_a_run_names_the_package(installed: Installed, hall: Path) -> None:
+    row, code, words, _ = FAULTS["robot that raises"]
+    installed.write("faulty", MANIFEST.format(row=row), version="1.2", faulty_code=code)
+    program = hall / "told.sh"
+    program.write_text("#!/bin/sh\ncat > told.json\n")
+    program.chmod(0o755)
+    main_file = hall / "lumen.yaml"
+    main_file.write_text(f"{main_file.read_text()}\nalerts: {{to: [{{command: [./told.sh]}}]}}\n")
+    assert main(words.split()) == 2
+    told = json.loads((hall / "told.json").read_text())
+    assert "it ended because of a fault in the package faulty 1.2 (ZeroDivisionError)" in told["text"]
 
 
 MODULE = "from lumen.run.module import Module\n\n\nclass Mood(Module):\n    "

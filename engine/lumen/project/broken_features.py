@@ -136,14 +136,29 @@ def fault_of_package(error: BaseException) -> str:
 
     The innermost call of Lumen's code or of a package's decides; the text is empty if that is Lumen's.
     """
+    found = _raiser(error)
+    if not found:
+        return ""
+    distribution, module, line = found
+    return _sentence(distribution, f"line {line} of `{module}` raised {described(error)}")
+
+
+def package_at_fault(error: BaseException) -> Distribution | None:
+    """Return the distribution whose fault `fault_of_package` describes; None if there is none."""
+    found = _raiser(error)
+    return found[0] if found else None
+
+
+def _raiser(error: BaseException) -> tuple[Distribution, str, int] | None:
+    """Return the distribution, the module and the line that raised an error; None if that is code of Lumen's."""
     packages = _packages()
     for module, line in reversed(_calls(error)):
         package = module.partition(".")[0]
         if package == PACKAGE.name:
-            return ""
+            return None
         if package in packages:
-            return _sentence(packages[package], f"line {line} of `{module}` raised {described(error)}")
-    return ""
+            return packages[package], module, line
+    return None
 
 
 def fault_of_subscriber(error: BaseException, pattern: str) -> str:

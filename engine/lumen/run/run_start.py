@@ -12,6 +12,7 @@ from lumen.features.alerts.settings import Alerts
 from lumen.features.fleet.installing import finish as finish_installing
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
+from lumen.project.broken_features import package_at_fault
 from lumen.project.building import main_settings
 from lumen.project.settings import Settings
 from lumen.run.presence import BRAIN, ROBOT_PART
@@ -70,7 +71,8 @@ class Failures:
         if isinstance(error, LumenError):
             desk("start", f"it could not start or continue: {_why(error)}")
         else:  # the message of a fault of ours may contain anything
-            desk("crashed", f"it ended because of a fault in Lumen ({type(error).__name__})")
+            where = f"the package {package}" if (package := package_at_fault(error)) else "Lumen"
+            desk("crashed", f"it ended because of a fault in {where} ({type(error).__name__})")
 
 
 @dataclass(frozen=True, slots=True)
