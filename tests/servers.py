@@ -41,6 +41,7 @@ SWITCHES = (
     "disable-background-timer-throttling",
     "disable-backgrounding-occluded-windows",
     "disable-renderer-backgrounding",
+    "process-per-site",  # the next page of a window reuses the process of the last one
     "force-prefers-reduced-motion",
     "hide-scrollbars",
     "lang=en-GB",

@@ -34,7 +34,8 @@ class Viewer:
     def open(self, address: str, path: str = "", *, ready: str = "main h1", width: int = 1400, **kept: str) -> None:
         """Open a page and wait until it shows `ready`; `kept` is what it remembers from before, as `theme="dark"`."""
         self._address = address
-        self.driver.get("about:blank")  # the page before may still ask its console
+        # The last page may still send requests to its console. An empty page that it opens itself keeps its process.
+        self.run("location.replace('about:blank')")
         self.size(width)
         where = {"origin": address.rstrip("/"), "storageTypes": "local_storage,session_storage,cookies"}
         self.command("Storage.clearDataForOrigin", where)
