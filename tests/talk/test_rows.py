@@ -1,9 +1,11 @@
 """Which row of `hears` a sentence takes: alone, refused, asked about, of several states, and at last `else`."""
 
+import gc
 from typing import Any
 
 from lumen.language.events import Event
 from lumen.statechart import Machine, initial, step
+from lumen.talk.hearing import hearing_of
 from tests.tables import for_each
 from tests.talk.machines import caught, hearing, said, taken
 
@@ -261,3 +263,18 @@ def test_what_comes_again_is_the_same() -> None:
 def test_a_long_text_ends_however_many_ways_a_pattern_fits() -> None:
     machine = hearing({"any": "told", "else": "other"}, {"any": {"en": ["{text:a} x {text:b} x {text:c} x {name} y"]}})
     assert taken(machine, "a x " * 400) == "other"
+
+
+def test_no_garbage_is_searched_for_while_phrases_are_compiled() -> None:
+    phrases = {"dance": {"en": [f"dance number {number} of {number + 1}" for number in range(2000)]}}
+    machine, searches = hearing({"dance": "."}, phrases), list[str]()
+
+    def note(phase: str, _: dict[str, int]) -> None:
+        searches.append(phase)
+
+    gc.callbacks.append(note)
+    try:
+        hearing_of(machine)
+    finally:
+        gc.callbacks.remove(note)
+    assert searches.count("start") <= 1  # the one that is due afterwards

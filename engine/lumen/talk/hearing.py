@@ -9,6 +9,7 @@ from lumen.language.machines import Answer, Hears, MachineDefinition
 from lumen.talk.finder import Find, Finder, ReadSentence
 from lumen.talk.patterns import Form, Slot, forms
 from lumen.talk.speech import WORD_LISTS, Speech
+from lumen.upkeep.garbage import gc_paused
 
 HEARD = "heard"
 """The event that rows of `hears` wait for; its text is `event.data.result`."""
@@ -209,7 +210,8 @@ def hearing_of(machine: MachineDefinition) -> Hearing:
     """The rows of a machine, made when they are first needed and kept beside it."""
     found: Hearing | None = machine.__dict__.get("_hearing")
     if found is None:
-        found = Hearing(machine)
+        with gc_paused():  # of what is made here nothing is garbage
+            found = Hearing(machine)
         object.__setattr__(machine, "_hearing", found)  # frozen, and the same for all who hold it
     return found
 
