@@ -2,6 +2,7 @@
 
 import asyncio
 import errno
+import io
 import json
 import math
 import sys
@@ -21,14 +22,28 @@ from lumen.features.console.jobs import MAX_WAITING, Jobs
 from lumen.features.console.poses import Poses
 from lumen.features.console.requests import DeniedError
 from lumen.upkeep import judge_process
-from lumen.upkeep.judge_process import Fault, NoAnswerError
+from lumen.upkeep.garbage import RARELY
+from lumen.upkeep.judge_process import Fault, NoAnswerError, receive
 from tests.console.conftest import Hosted
 from tests.console.pages import Browser, Served, Stream
-from tests.guarded import PIPE, Guarded
+from tests.guarded import PIPE, Guarded, run_guarded
 from tests.tables import for_each
 from tests.waiting import until
 
 JOINTS = "avatar.NAO.data.joint"
+FREE_OF_OTHERS = """
+import gc, sys
+import lumen.features.answers.retrieval.words
+from lumen.console import job
+
+def found(*_):
+    dear = {"lumen.run.recalling", "lumen.features.console.kept_days", "lumen.lint", "snowballstemmer"}
+    yield repr((gc.get_threshold()[0], dear & sys.modules.keys())).encode()
+
+job.JOBS["found"] = found
+job.main("found", "", "[]")
+"""
+"""A job that answers with the pause between two searches for garbage, and the dear modules that are imported."""
 
 
 @pytest.fixture(name="gone_wrong")
@@ -68,6 +83,11 @@ def test_who_waits_too_long_and_who_comes_too_late_is_told_so(monkeypatch: pytes
     late = "this takes longer than 0.5 s: use `lumen` in a terminal"
     assert [reason for _, reason in told].count(late) == MAX_WAITING
     assert "try again in a moment" in told[-1][1]
+
+
+def test_a_job_imports_its_own_modules_and_searches_rarely_for_garbage() -> None:
+    printed = run_guarded([sys.executable, "-c", FREE_OF_OTHERS], input=b"", capture_output=True, check=True).stdout
+    assert receive(io.BytesIO(printed)) == repr((RARELY, set())).encode()
 
 
 def test_a_process_that_can_not_be_started_is_said(monkeypatch: pytest.MonkeyPatch) -> None:

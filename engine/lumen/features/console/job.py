@@ -3,7 +3,8 @@
 PROJECT is a folder, ARGUMENTS are JSON: the first is a robot of `robots:`, empty if there is only one.
 
 It is run by a `JudgeProcess`, and answers with JSON. Its memory and its time are limited; the system ends it if it
-needs more. Only `poses` gives several answers, one for each question.
+needs more. Only `poses` gives several answers, one for each question. Each job imports its own
+modules, because imports are most of its time.
 """
 
 import json
@@ -18,16 +19,8 @@ from typing import Any
 import orjson
 
 from lumen.errors import LumenError
-from lumen.features.console.day_csv import day_csv
 from lumen.features.console.job_promises import JOB_TIME, NOTHING
-from lumen.features.console.kept_days import KeptDays
-from lumen.language.sayings import Saying
-from lumen.lint import check_files
-from lumen.project.files import read_files
-from lumen.run.recalling import answer_from_journal
-from lumen.run.replaying.journals import chosen
-from lumen.run.replaying.kept_bundles import KeptBundles
-from lumen.run.replaying.other_files import against
+from lumen.upkeep.garbage import search_rarely
 from lumen.upkeep.judge_process import MAX_MEMORY, AnswerPipe, answering, limit_time
 
 TOO_LONG_AGO = "too long ago"
@@ -37,6 +30,9 @@ REPLAY_TIME = 10.0
 
 def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
     """A day, for a page or as a `csv`: from this machine's files, or from pages of entries that are read (`told`)."""
+    from lumen.features.console.day_csv import day_csv
+    from lumen.features.console.kept_days import KeptDays
+
     days, chosen_day = KeptDays(root, robot), date.fromisoformat(wanted) if wanted else None
     found = days.told(_read(iter(pipe.receive, None)), chosen_day) if whose == "told" else days.day(chosen_day)
     if found is None:
@@ -49,11 +45,19 @@ def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose:
 
 def why(pipe: AnswerPipe, root: Path, robot: str, question: str, what: str, at: str | None) -> Iterator[bytes]:
     """Why something happened, or did not, from the journal."""
+    from lumen.run.recalling import answer_from_journal
+
     yield orjson.dumps(answer_from_journal(str(root), question, what, at, TOO_LONG_AGO, robot), default=str)
 
 
 def replay(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
     """What the files on the disk would have done in the visits that are kept; nothing where that can't be said."""
+    from lumen.lint import check_files
+    from lumen.project.files import read_files
+    from lumen.run.replaying.journals import chosen
+    from lumen.run.replaying.kept_bundles import KeptBundles
+    from lumen.run.replaying.other_files import against
+
     project = check_files(root, read_files(root, robot))[0]
     if project is None:
         yield NOTHING
@@ -70,6 +74,7 @@ def saying(
     pipe: AnswerPipe, root: Path, robot: str, behavior: str, state: str, row: str, language: str, text: str
 ) -> Iterator[bytes]:
     """Add a sentence of a visitor to the sayings, with the row that should have taken it."""
+    from lumen.language.sayings import Saying
     from lumen.run.new_saying import write_saying
 
     yield orjson.dumps({"file": write_saying(root, Saying(behavior, state, row, language, text), robot).as_posix()})
@@ -105,6 +110,7 @@ def _read(questions: Iterable[bytes]) -> Iterator[Any]:
 
 def main(name: str, root: str, arguments: str) -> None:
     """Do a job; a LumenError is an answer."""
+    search_rarely()
     with answering(MAX_MEMORY) as pipe:
         limit_time(JOB_TIME)
         try:

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 from functools import cache
 
-import snowballstemmer
-
 from lumen.talk.folding import unbroken
 
 STEMMERS = {"en": "english", "id": "indonesian", "de": "german", "fr": "french", "es": "spanish", "it": "italian",
@@ -41,5 +39,8 @@ def words(text: str) -> list[str]:
 
 @cache
 def _stemmer(language: str) -> Callable[[str], str]:
-    name = STEMMERS.get(language)
-    return cache(snowballstemmer.stemmer(name).stemWord) if name else str
+    if (name := STEMMERS.get(language)) is None:
+        return str
+    import snowballstemmer  # it has a module for each of 30 languages
+
+    return cache(snowballstemmer.stemmer(name).stemWord)
