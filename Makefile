@@ -74,13 +74,13 @@ docs: .venv/docs
 packages:
 	@sh scripts/packages.sh packages.txt
 
-.venv/run: requirements-core.txt requirements.txt requirements-no-deps.txt pyproject.toml
+.venv/run: locks/core.txt locks/run.txt pyproject.toml
 	@PYTHON="$(PYTHON)" sh scripts/set_up.sh run
 
-.venv/test: .venv/run requirements-test.txt
+.venv/test: .venv/run locks/test.txt
 	@sh scripts/set_up.sh test
 
-.venv/docs: .venv/test requirements-docs.txt
+.venv/docs: .venv/test locks/docs.txt
 	@sh scripts/set_up.sh docs
 
 clean:

@@ -12,8 +12,11 @@ import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
+import locks
 import yaml
 from documented import NOT_RUN, all_pages, blocks
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 
 from lumen.expressions.function_table import functions
 from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
@@ -22,9 +25,10 @@ ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
 WORKFLOWS = ["action.yml", ".github/workflows/tests.yml", ".pre-commit-hooks.yaml"]
-REQUIREMENTS = [f"requirements{part}.txt" for part in ("-core", "", "-no-deps", "-test", "-docs")]
+REQUIREMENTS = [f"locks/{group}.txt" for group in locks.GROUPS]
 SIMULATION = {"mujoco", "dm-control", "scipy", "pillow", "imageio-ffmpeg", "matplotlib", "labmaze"}
 """Packages that the core must not require."""
+PACKAGE_FILES = "https://files.pythonhosted.org/packages/"
 BLOCK_WORDS = {"in", "file", "append", "ends", "physics", "broker", "robot", "network", "by", "not"}
 """The words to the runner that the fence of a block may carry."""
 
@@ -65,9 +69,30 @@ def packages_are_pinned_to_one_version() -> Iterator[Looked]:
 def the_core_needs_no_simulation() -> Iterator[Looked]:
     core, whole = ({package for package, _, _ in requirements(file)} for file in REQUIREMENTS[:2])
     for package in sorted(core):
-        yield f"requirements-core.txt: {package}", "belongs to requirements.txt only" if package in SIMULATION else ""
+        yield f"locks/core.txt: {package}", "belongs to locks/run.txt only" if package in SIMULATION else ""
     for package in sorted(SIMULATION - {"scipy", "labmaze"}):
-        yield f"requirements.txt: {package}", "" if package in whole else "is missing"
+        yield f"locks/run.txt: {package}", "" if package in whole else "is missing"
+
+
+def requirements_for_pip_are_written_from_the_lock() -> Iterator[Looked]:
+    for path, text in locks.exports(locks.read()).items():
+        yield _name(path), "" if path.read_text(encoding="utf-8") == text else "write it again: scripts/locks.py"
+
+
+def the_lock_names_files_of_the_package_index_only() -> Iterator[Looked]:
+    for package in locks.read()["packages"]:
+        urls = [file["url"] for file in [package.get("sdist", {"url": PACKAGE_FILES}), *package.get("wheels", ())]]
+        yield package["name"], _listed("is elsewhere", [url for url in urls if not url.startswith(PACKAGE_FILES)])
+
+
+def the_lock_meets_what_pyproject_requires() -> Iterator[Looked]:
+    pinned, known = locks.pins(locks.read()), set[str]()
+    for group, lines in locks.required().items():
+        known |= {package for package, _, _ in requirements(f"locks/{group}.txt")}
+        for requirement in map(Requirement, lines):
+            name = canonicalize_name(requirement.name)
+            fits = name in known and requirement.specifier.contains(pinned[name])
+            yield f"{group}: {requirement}", "" if fits else "lock it: scripts/locks.py"
 
 
 def set_up_checks_the_hashes() -> Iterator[Looked]:
@@ -222,7 +247,10 @@ CHECKS: dict[Check, int] = {
     packages_are_pinned_by_the_hashes_of_their_files: 100,
     packages_are_pinned_to_one_version: 100,
     the_core_needs_no_simulation: 10,
-    set_up_checks_the_hashes: 5,
+    requirements_for_pip_are_written_from_the_lock: 4,
+    the_lock_names_files_of_the_package_index_only: 150,
+    the_lock_meets_what_pyproject_requires: 50,
+    set_up_checks_the_hashes: 4,
     links_lead_to_files_and_headings: 150,
     the_index_lists_every_page: 40,
     each_decision_has_a_title_and_a_status: 80,
@@ -250,7 +278,7 @@ def wrong(check: Check, at_least: int) -> list[str]:
 
 def requirements(file: str) -> Iterator[tuple[str, str, int]]:
     """Name, version and number of hashes of each requirement in a file; a row that is no pin has an empty version."""
-    text = re.sub(r"(?m)^(#|-r requirements-core.txt).*\n", "", (ROOT / file).read_text(encoding="utf-8"))
+    text = re.sub(r"(?m)^(#|-r ).*\n", "", (ROOT / file).read_text(encoding="utf-8"))
     for row in text.replace("\\\n", " ").splitlines():
         found = re.match(r"([A-Za-z0-9._-]+)==([^ ;]+)", row)
         name, version = found.groups() if found else (row[:60], "")

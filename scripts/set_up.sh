@@ -70,21 +70,20 @@ on Linux. pip printed: $error ($log)"
 case $stage in
 run)
     make_environment
-    announce "the engine and the simulated robot" "$(packages requirements-core.txt requirements.txt)" 270\ MB 850\ MB 2\ minutes
+    announce "the engine and the simulated robot" "$(packages locks/core.txt locks/run.txt)" 270\ MB 850\ MB 2\ minutes
     : >"$log"
-    install --require-hashes -r requirements.txt
-    install --no-deps --require-hashes -r requirements-no-deps.txt
+    install --no-deps --require-hashes -r locks/run.txt
     install --no-deps --no-build-isolation -e .
     ;;
 test)
-    announce "the tests" "$(packages requirements-test.txt)" 310\ MB 800\ MB 2\ minutes
+    announce "the tests" "$(packages locks/test.txt)" 310\ MB 800\ MB 2\ minutes
     : >"$log"
-    install --no-deps --require-hashes -r requirements-test.txt
+    install --no-deps --require-hashes -r locks/test.txt
     ;;
 docs)
-    announce "the documentation" "$(packages requirements-docs.txt)" 20\ MB 60\ MB "20 s"
+    announce "the documentation" "$(packages locks/docs.txt)" 20\ MB 60\ MB "20 s"
     : >"$log"
-    install --no-deps --require-hashes -r requirements-docs.txt
+    install --no-deps --require-hashes -r locks/docs.txt
     ;;
 *) fail "usage: sh scripts/set_up.sh run|test|docs" ;;
 esac

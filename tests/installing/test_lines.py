@@ -102,12 +102,14 @@ def test_each_python_gets_wheels_only(version: str, tmp_path: Path) -> None:
     assert names >= {"mujoco", "dm-env", "dm-tree", "lxml", "numpy", "pygls"}
 
 
-def test_dm_control_itself_is_pinned_where_it_is_installed_alone() -> None:
-    (line,) = re.findall(r"(?m)^dm-control==\S+ ; .*$", (ROOT / "requirements-no-deps.txt").read_text())
-    requirement = Requirement(line.rstrip(" \\"))
-    assert requirement.marker
-    assert [requirement.marker.evaluate({"python_full_version": f"3.{minor}.0"}) for minor in (11, 12, 13, 14)] == [
-        False, False, True, True]  # fmt: skip
+def test_dm_control_is_pinned_for_every_python_and_labmaze_where_it_has_a_wheel() -> None:
+    text = (ROOT / "locks/run.txt").read_text()
+    rows = re.findall(r"(?m)^(?:dm-control|labmaze)==[^\\\n]+", text)
+    dm_control, labmaze = map(Requirement, rows)
+    assert dm_control.marker is None
+    assert labmaze.marker
+    assert [labmaze.marker.evaluate({"python_full_version": f"3.{minor}.0"}) for minor in (11, 12, 13, 14)] == [
+        True, True, False, False]  # fmt: skip
 
 
 def planned(folder: Path, *command: str) -> set[str]:

@@ -32,8 +32,7 @@ class Checkout:
     def __init__(self, folder: Path, **programs: str) -> None:
         self.folder, self._programs = folder, folder / "bin"
         shutil.copytree(ROOT / "scripts", folder / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
-        for requirements in ROOT.glob("requirements*.txt"):
-            shutil.copy(requirements, folder)
+        shutil.copytree(ROOT / "locks", folder / "locks")
         self._programs.mkdir()
         for name in PROGRAMS:
             (self._programs / name).symlink_to(shutil.which(name) or name)

@@ -207,10 +207,10 @@ def test_the_action_does_not_pass_where_there_is_no_project(repository: Path, in
 
 def test_the_action_keeps_what_it_installed_until_a_package_changes(repository: Path) -> None:
     core = perform("place", repository, SIMULATION="false", VERSION="3.12.4")[1]
-    assert core["requirements"] == "requirements-core.txt"
-    assert re.fullmatch(r"lumen-Linux-X64-3\.12\.4-requirements-core\.txt-[0-9a-f]{20}", core["key"])
+    assert core["group"] == "core"
+    assert re.fullmatch(r"lumen-Linux-X64-3\.12\.4-core-[0-9a-f]{20}", core["key"])
     whole = perform("place", repository, SIMULATION="true", VERSION="3.12.4")[1]
-    assert whole["requirements"] == "requirements.txt"
+    assert whole["group"] == "run"
     assert whole["key"] != core["key"]
     cache = STEPS["cache"]["with"]
     assert cache == {"path": "${{ steps.place.outputs.environment }}", "key": "${{ steps.place.outputs.key }}"}
@@ -227,7 +227,7 @@ def test_the_action_installs_what_is_pinned_and_lints_with_it(repository: Path) 
     """From the index that this machine's pip asks: the packages by their hashes, and Lumen of this checkout."""
     place = perform("place", repository, SIMULATION="false", VERSION="3")[1]
     where = {"ENVIRONMENT": place["environment"]}
-    needs = {"PYTHON": sys.executable, "REQUIREMENTS": place["requirements"]}
+    needs = {"PYTHON": sys.executable, "GROUP": place["group"]}
     assert perform("Install the packages of Lumen", repository, **where, **needs)[0].returncode == 0
     inputs = {"PROJECT": "stand", "ARGUMENTS": "", "SARIF": "false", **where}
     assert "nothing wrong" in perform("lint", repository, **inputs)[0].stdout
