@@ -24,7 +24,7 @@ from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(DOCS.rglob("*.md"))]
-WORKFLOWS = ["action.yml", ".github/workflows/tests.yml", ".pre-commit-hooks.yaml"]
+WORKFLOWS = ["action.yml", ".github/workflows/tests.yml", ".pre-commit-config.yaml", ".pre-commit-hooks.yaml"]
 REQUIREMENTS = [f"locks/{group}.txt" for group in locks.GROUPS]
 SIMULATION = {"mujoco", "dm-control", "scipy", "pillow", "imageio-ffmpeg", "matplotlib", "labmaze"}
 """Packages that the core must not require."""
