@@ -187,7 +187,7 @@ def _package(package: Mapping[str, Any], marker: str) -> str:
 
 
 def _marker(name: str, markers: Mapping[str, Mapping[str, str]]) -> str:
-    """Return where a package is installed: a clause for each group that adds something to the groups before it."""
+    """Return the marker of a package: a clause for each group that adds something to the groups before it."""
     clauses, before = [], None
     for group, found in markers.items():
         marker = found.get(name, before)

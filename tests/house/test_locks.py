@@ -47,7 +47,7 @@ def test_a_file_for_pip_has_what_its_group_adds_to_those_before_it() -> None:
 
 
 def tags(minor: int) -> Iterator[Tag]:
-    """What CPython 3.MINOR installs on Linux."""
+    """The tags of wheels that CPython 3.MINOR installs on Linux."""
     yield from cpython_tags((3, minor), platforms=PLATFORMS)
     yield from compatible_tags((3, minor), interpreter=f"cp3{minor}", platforms=PLATFORMS)
 
