@@ -7,6 +7,8 @@ WITH := sh scripts/with_packages.sh
 STORY ?= visitor
 SPEED ?= 4
 TESTS ?= tests
+# The marks of the tests of `make rest` that are run: all, or for example "broker", "physics and not broker".
+ONLY ?=
 # What the tests of `make test` take of the processor, to print how long they will take [s].
 CPU := 500
 # The same for the rest, which waits half of its time for processes, brokers and the browser.
@@ -25,7 +27,7 @@ help:
 	@echo "make setup    what the tests need: .venv, Debian packages, what npm has"
 	@echo "make quick    for a minute the tests nearest to what changed, without the long ones (TESTS=tests/FOLDER)"
 	@echo "make test     what proves Lumen: style, types, all that is deterministic, and one broker, browser and physics"
-	@echo "make test-all every test; make rest: those that make test leaves out"
+	@echo "make test-all every test; make rest: those that make test leaves out (ONLY=broker: those with that mark)"
 	@echo "make broker   a private RabbitMQ on loopback, installed where it is missing"
 	@echo "make check    style, types and floors only"
 	@echo "make docs     the documentation as a site, build/docs/index.html; what it shows is run and compared"
@@ -54,7 +56,7 @@ tested:
 test-all: test rest
 
 rest: setup
-	@$(PYTEST) -m "not soak" --suite rest --expect-cpu $(REST)
+	@$(PYTEST) -m "not soak$(if $(ONLY), and ($(ONLY)))" --suite rest $(if $(ONLY),,--expect-cpu $(REST))
 
 soak: setup check
 	@$(PYTEST) -m soak --timeout 0 -p tests.soaking
