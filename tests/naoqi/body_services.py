@@ -4,9 +4,8 @@ from itertools import pairwise
 from math import cos, hypot, sin
 from typing import Any
 
-import qi
-
 from tests.naoqi.joints import bezier
+from tests.naoqi.library import qi
 from tests.naoqi.times import Blocked
 from tests.naoqi.world import World
 

@@ -3,13 +3,12 @@
 from collections.abc import Iterable
 from typing import Any
 
-import qi
-
 from lumen.features.naoqi.naoqi_events import event_of
 from lumen.language.robots import Body
 from lumen.language.stories import Visitor
 from lumen.motion.projection import seen
 from lumen.robot.recording import FACE_HEIGHT_FRACTION, PODIUM_HEIGHT, TORSO_HEIGHT
+from tests.naoqi.library import demand, qi
 from tests.naoqi.services import SERVICES, ALAudioDevice, ALMemory, ALSonar, ALVideoDevice
 from tests.naoqi.world import World
 
@@ -18,6 +17,7 @@ class FakeNao:
     """Answers at `url`; `world` is what it is about, `times` lets its time pass. `without` are services it lacks."""
 
     def __init__(self, body: Body, *, without: Iterable[str] = (), version: str = "2.8.6.23", port: int = 0) -> None:
+        demand()
         qi.logging.setLevel(qi.logging.FATAL)
         self.world = World(body)
         self.world.version = version

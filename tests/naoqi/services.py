@@ -2,10 +2,9 @@
 
 from typing import Any
 
-import qi
-
 from lumen.features.naoqi.hardware import CHARGE, CHARGING, INERTIAL, PLUGGED, device
 from tests.naoqi.body_services import ALMotion, ALRobotPosture
+from tests.naoqi.library import qi
 from tests.naoqi.times import Blocked
 from tests.naoqi.world import World
 

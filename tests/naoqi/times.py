@@ -7,7 +7,7 @@ from collections.abc import Callable
 from itertools import count
 from typing import Any
 
-import qi
+from tests.naoqi.library import qi
 
 
 class Blocked:

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 from dm_control import mjcf
-from dm_control.locomotion.arenas import floors
 
 from lumen.errors import RobotError
 from lumen.features.simulation.entity import Nao
 from lumen.language.robots import Body
 from tests.simulation.bodies import shipped
 from tests.simulation.conftest import MODELS
+from tests.simulation.locomotion import floors
 
 EXAMPLE = MODELS.parent / "examples" / "dm_control" / "nao_in_your_world.py"
 

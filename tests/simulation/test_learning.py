@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 from dm_control import composer
-from dm_control.locomotion.arenas import floors
-from dm_control.locomotion.tasks import go_to_target
 from gymnasium.utils.env_checker import check_env
 
 import lumen
 from lumen.features.simulation.entity import Nao
 from tests import ROOT
+from tests.simulation.locomotion import floors, go_to_target
 
 pytestmark = pytest.mark.rest  # dear
 
