@@ -57,6 +57,7 @@ def test_make_has_the_targets_and_variables_that_jobs_name() -> None:
     variables = {word.partition("=")[0] for word in words if "=" in word}
     assert variables == {"ONLY"}
     assert all(re.search(rf"(?m)^{variable} \?=", MAKEFILE) for variable in variables)
+    assert re.search(r"(?m)^rest: setup\n\t.*-m [^\n]*and \(\$\(ONLY\)\)", MAKEFILE)
 
 
 def test_each_test_of_the_rest_runs_in_one_job() -> None:
