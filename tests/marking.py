@@ -19,7 +19,7 @@ from tests.fetched import fetched
 from tests.guarded import Guarded, run_guarded
 from tests.rabbitmq import LentBroker, RabbitMQ
 
-PHYSICS = ("lumen.features.simulation.offers", "mujoco", "dm_control")
+PHYSICS = ("lumen.features.simulation", "mujoco", "dm_control")
 """What lives in MuJoCo's world."""
 NETWORK = ("http.", "socket", "lumen.features.console.serving", "lumen.features.rabbitmq.broker", "lumen.bus.local")
 """What opens ports or connections."""

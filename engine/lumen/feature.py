@@ -88,8 +88,8 @@ class RobotRow(NamedTuple):
 class BaseRow(NamedTuple):
     """A kind of base, which carries a body and moves it about: `roles: {base: {kind: NAME}}` in models/NAME.yaml.
 
-    `simulate` is the import string of a function from a `BaseRequest` to a `RobotBase` (both in
-    `lumen.features.simulation.base`). `title` is how messages name such a body, such as `a biped`. One with `legs` walks
+    `simulate` is the import string of a function from a `BaseRequest` to a `RobotBase`, both in
+    `lumen.features.simulation.base`. `title` is how messages name such a body, such as `a biped`. One with `legs` walks
     as its gait and its joints allow; one that `drives` has the greatest `speed` and `turn` in its YAML. The driven
     `wheels` are the joints `left` and `right` there. A base with neither legs nor speeds stays in its place.
     """
@@ -244,7 +244,7 @@ class Subcommand(NamedTuple):
 class EditorRow(NamedTuple):
     """The answer of `lumen lsp` to a method of the Language Server Protocol.
 
-    `answer` is a function of the method's parameters and the `LanguageServer` of `lumen.features.editor.language_server`.
+    `answer` is a function of a `LanguageServer` of `lumen.features.editor.language_server` and the method's parameters.
     `options` names the value of `lsprotocol` that tells the editor more, such as the letters that begin a completion.
     """
 

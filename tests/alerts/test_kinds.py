@@ -11,11 +11,11 @@ import lumen
 from lumen.cli.main import main
 from lumen.errors import BusUnreachableError
 from lumen.features.alerts import disk
+from lumen.features.alerts import part as alerting
 from lumen.features.alerts.settings import KINDS, Alerts
 from lumen.language.events import Event
 from lumen.project.home import Home
 from lumen.run import claiming, node, presence, services
-from lumen.run.parts import alerting
 from lumen.run.recovery.run_directory import RunDirectory
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web

@@ -10,7 +10,7 @@ import pika
 import pytest
 
 from lumen.bus import Bus, connect
-from lumen.bus import intake as taking
+from lumen.features.rabbitmq import intake as taking
 from lumen.features.rabbitmq.intake import SPENT_BATCH, Intake
 from lumen.features.rabbitmq.properties import MessageProperties
 from lumen.features.rabbitmq.subscriptions import Delivery, Subscription

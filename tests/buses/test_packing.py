@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 from PIL import Image as Picture
 
 import lumen
-from lumen.bus import connect, publisher
+from lumen.bus import connect
 from lumen.bus.validated import validated
+from lumen.features.rabbitmq import publisher
 from lumen.features.rabbitmq.packing import packed, unpacked
 from lumen.language.projects import Project
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE, Direction, Route

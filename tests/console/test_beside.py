@@ -9,8 +9,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from lumen.features.console import part as console
 from lumen.features.console.part import ConsolePart
-from lumen.run.parts import console
 from tests.console.pages import Browser
 from tests.waiting import until
 

@@ -34,7 +34,7 @@ JOINTS = "avatar.NAO.data.joint"
 FREE_OF_OTHERS = """
 import gc, sys
 import lumen.features.answers.retrieval.words
-from lumen.console import job
+from lumen.features.console import job
 
 def found(*_):
     dear = {"lumen.run.recalling", "lumen.features.console.kept_days", "lumen.lint", "snowballstemmer"}

@@ -186,7 +186,7 @@ def test_what_is_kept_badly_is_judged(content: bytes, lint: Run, judged: list[in
 def test_what_is_known_needs_neither_rules_nor_the_language(project: Path) -> None:
     told = (
         "import sys; from lumen.project import looks; looks.SETTLED_NS = -10**18; from lumen.cli.main import main\n"
-        "main(['lint', sys.argv[1]]); print(sorted({'yaml', 'lumen.interpreters', 'lumen.lint'} & set(sys.modules)))"
+        "main(['lint', sys.argv[1]]); print(sorted({'yaml', 'lumen.expressions', 'lumen.lint'} & set(sys.modules)))"
     )
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
 
@@ -194,4 +194,4 @@ def test_what_is_known_needs_neither_rules_nor_the_language(project: Path) -> No
         done = run_guarded([sys.executable, "-c", told, str(project)], stdout=PIPE, text=True, env=environment)
         return str(done.stdout.splitlines()[-1])
 
-    assert [imported(), imported()] == ["['lumen.interpreters', 'lumen.lint', 'yaml']", "[]"]
+    assert [imported(), imported()] == ["['lumen.expressions', 'lumen.lint', 'yaml']", "[]"]

@@ -22,4 +22,4 @@ def test_outcomes_of_motions_depend_on_code_at_every_depth(name: str, monkeypatc
 
 def test_code_that_moved_away_is_not_left_out_silently() -> None:
     with pytest.raises(ModuleNotFoundError, match=r"lumen\.gone"):
-        engine_files.code_hash("lumen.interpreters", "lumen.gone")
+        engine_files.code_hash("lumen.motion", "lumen.gone")

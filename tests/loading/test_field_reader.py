@@ -7,7 +7,6 @@ from enum import StrEnum
 from typing import Any, Literal
 
 import pytest
-from lumen.project.field_reader import read_fields
 
 from lumen.features.console.settings import ConsoleSettings
 from lumen.features.fleet.settings import Fleet, FleetGroup, FleetHouse, FleetMeasure
@@ -17,6 +16,7 @@ from lumen.language.gestures import GestureLibrary
 from lumen.language.house import RobotSpec
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.roles import Base, EyeRoles
+from lumen.project.field_reader import read_fields
 from tests import ROOT
 from tests.tables import for_each
 

@@ -20,7 +20,7 @@ POSTER = ROOT / "examples/modules/poster.py"
 FACT = "lumen.NAO.persistence.fact"
 PATIENT = f"""
 import sys
-from lumen.app import claiming, node
+from lumen.run import claiming, node
 from lumen.cli.main import main
 claiming.CLAIM_DURATION = node.CLAIM_DURATION = {HANG}
 sys.exit(main(sys.argv[1:]))

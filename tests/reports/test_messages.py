@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from lumen.bus import connect
-from lumen.bus import intake as taking
 from lumen.bus.validated import validated
+from lumen.features.rabbitmq import intake as taking
 from lumen.features.rabbitmq.dispatcher import Dispatcher
 from lumen.features.rabbitmq.intake import Intake
 from lumen.features.rabbitmq.properties import MessageProperties

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from lumen.clock.checked import ability
 
 import lumen
 from lumen.bus import connect
+from lumen.clock.checked import ability
 from lumen.errors import ExpressionError, LumenError, Refused
 from lumen.expressions import Scope, compile_expression
 from lumen.feature import features, owner, resolve, table
@@ -176,7 +176,7 @@ def test_a_wrong_reading_of_a_robot_names_its_package(
     reading: Any, fault: str, bounded: bool, installed: Installed
 ) -> None:
     row = f"robots={{'bot': RobotRow('faulty_code:make', bounded={bounded})}}"
-    code = "from lumen.app.setup import set_up_with\nfrom lumen.robot.none import NoRobot\nROBOT = NoRobot()\n"
+    code = "from lumen.run.setup import set_up_with\nfrom lumen.robot.none import NoRobot\nROBOT = NoRobot()\n"
     installed.write("faulty", MANIFEST.format(row=row), faulty_code=f"{code}def make(r): return set_up_with(ROBOT)")
     resolve("faulty_code:ROBOT").read = lambda sense: reading
     robot = set_up("bot", lumen.load(ROOT / "examples/minimal"), "max").robot

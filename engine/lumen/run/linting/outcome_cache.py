@@ -20,14 +20,7 @@ from lumen.project.project_folders import MODELS
 from lumen.robot.motion_codec import encode_motion
 from lumen.upkeep.private_folder import private_folder
 
-CODE = (
-    "lumen.fuzzy",
-    "lumen.interpreters",
-    "lumen.language",
-    "lumen.motion",
-    "lumen.robot",
-    "lumen.features.simulation.trials",
-)
+CODE = ("lumen.features.simulation", "lumen.fuzzy", "lumen.language", "lumen.motion", "lumen.robot")
 """The packages whose code decides what comes of a motion in simulation."""
 
 
