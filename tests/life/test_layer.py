@@ -11,8 +11,7 @@ import lumen
 from lumen.language.body_parts import ARMS, HEAD, LEGS, WHOLE_BODY
 from lumen.language.commands import Say
 from lumen.language.life import STILL_STYLE, Asides, Glances, LifeStyle, Nods, Settles, Sway
-from lumen.motion.life import SETTLE_SLOPE, SPEED_SHARE, settle
-from lumen.motion.life import vigours as vigour
+from lumen.motion.life import SETTLE_SLOPE, SPEED_SHARE, settle, vigour
 from lumen.robot.life_layer import LifeLayer
 from tests import ROOT
 

@@ -4,6 +4,7 @@ from lumen.feature import Feature, Section, Subcommand
 
 FEATURE = Feature(
     name="alerts",
+    pages=("lumen.features.alerts.pages",),
     rules=("lumen.features.alerts.rules:check",),
     subcommands={
         "alerts": Subcommand("send a test alert to every recipient", "lumen.features.alerts.command", after="doctor"),

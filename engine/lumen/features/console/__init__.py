@@ -4,6 +4,7 @@ from lumen.feature import Feature, Section, Subcommand
 
 FEATURE = Feature(
     name="console",
+    pages=("lumen.features.console.explained",),
     rules=("lumen.features.console.rules:check",),
     subcommands={
         "console": Subcommand(

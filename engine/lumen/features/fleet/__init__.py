@@ -4,6 +4,7 @@ from lumen.feature import Feature, Subcommand
 
 FEATURE = Feature(
     name="fleet",
+    pages=("lumen.features.fleet.pages",),
     rules=("lumen.features.fleet.rules:check",),
     codes=("lumen.features.fleet.reading",),
     subcommands={

@@ -4,6 +4,7 @@ from lumen.feature import Feature, ModuleRow, Section
 
 FEATURE = Feature(
     name="show",
+    pages=("lumen.features.show.pages",),
     rules=("lumen.features.show.rules:check",),
     sections={
         "modules.show": Section(

@@ -2,8 +2,7 @@
 
 from math import inf
 
-from dm_control import mjcf
-
+from lumen.features.simulation.physics import mjcf
 from lumen.language.robots import Body
 
 

@@ -1,9 +1,8 @@
 """Play in the gears: a joint turns a little while its motor stands still."""
 
-from dm_control import mjcf
-
 from lumen.features.simulation.imperfections import BACKLASH
 from lumen.features.simulation.model_terms import PLAY_SUFFIX
+from lumen.features.simulation.physics import mjcf
 from lumen.language.robots import Body
 
 _GEAR_INERTIA, _GEAR_DAMPING = 0.01, 0.01

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Mapping
 
-import mujoco
 import numpy as np
 
+from lumen.features.simulation.physics import mujoco
 from lumen.features.simulation.visitor_figure import VISITOR_BODY
 
 Soles = Mapping[str, tuple[float, float]]

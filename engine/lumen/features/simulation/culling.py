@@ -2,8 +2,9 @@
 
 from math import hypot, radians, tan
 
-import mujoco
 import numpy as np
+
+from lumen.features.simulation.physics import mujoco
 
 HIDDEN = mujoco.mjNGROUP - 1
 """A group of geoms that is not drawn."""

@@ -2,11 +2,11 @@
 
 from typing import NamedTuple
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
+from lumen.features.simulation.physics import mujoco
 from lumen.features.simulation.world import World
 from lumen.motion.gait.pendulum import GRAVITY
 

@@ -3,6 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import lumen.features.simulation.physics  # noqa: F401  # first: it says what is not installed
+
+# isort: split
 import numpy as np
 from dm_control import mjcf
 from dm_control.locomotion.walkers import base, legacy_base

@@ -9,13 +9,13 @@ from math import atan2
 from pathlib import Path
 from typing import NamedTuple
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
 from lumen.features.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, subtitle_pages, title
 from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.physics import mujoco
 from lumen.features.simulation.rendering import FILM_QUALITY, PixelArray, RenderState, SceneRenderer, available
 from lumen.features.simulation.robot import SimulatedRobot
 from lumen.features.simulation.shots import (

@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Mapping
 from itertools import compress
 
-import mujoco
 import numpy as np
 
 from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.physics import mujoco
 from lumen.language.roles import Roles
 
 NEWTONS_PER_KILOGRAM = 9.81

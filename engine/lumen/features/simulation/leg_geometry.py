@@ -8,10 +8,10 @@ from itertools import pairwise, product
 from math import atan2, hypot
 from typing import NamedTuple
 
-import mujoco
 import numpy as np
 
 from lumen.errors import RobotModelError
+from lumen.features.simulation.physics import mujoco
 from lumen.language.robots import Body
 from lumen.language.roles import LEG_ROLES
 from lumen.motion.gait.legs import SIDE_ROLES, SIDES, LegGeometry, LegVector, Side, SoleSize, sign

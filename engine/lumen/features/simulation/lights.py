@@ -2,11 +2,11 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
-import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.physics import mujoco
 from lumen.language.lights import rgb
 
 RENDERED_COLOURS: Mapping[object, int] = {

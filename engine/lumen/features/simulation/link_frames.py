@@ -5,12 +5,11 @@ from math import cos, sin
 from pathlib import Path
 from typing import NamedTuple
 
-import mujoco
 import numpy as np
-from dm_control import mjcf
 from numpy.typing import NDArray
 
 from lumen.features.simulation.model import alone
+from lumen.features.simulation.physics import mjcf, mujoco
 from lumen.language.robots import Body
 from lumen.ports import Joints
 

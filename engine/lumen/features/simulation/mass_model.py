@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
+from lumen.features.simulation.physics import mujoco
 from lumen.language.robots import Body
 from lumen.language.roles import SIDES
 from lumen.project.packaged_models import mjcf_path

@@ -1,9 +1,9 @@
 """How fast a gyrometer turns."""
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from lumen.features.simulation.physics import mujoco
 from lumen.features.simulation.world import CONTROL_PERIOD
 
 

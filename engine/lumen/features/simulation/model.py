@@ -4,13 +4,11 @@ import re
 from math import degrees
 from pathlib import Path
 
-import mujoco
-from dm_control import mjcf
-
 from lumen.errors import RobotModelError
 from lumen.features.simulation.added_servos import add_servos
 from lumen.features.simulation.backlash import loosen
 from lumen.features.simulation.model_terms import ROBOT_PREFIX, STAGE_SITE, Variation
+from lumen.features.simulation.physics import mjcf, mujoco
 from lumen.features.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 from lumen.language.robots import Body
 from lumen.project.packaged_models import mjcf_path

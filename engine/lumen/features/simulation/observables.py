@@ -1,5 +1,8 @@
 """What a NAO feels and sees, as observables of dm_control's composer."""
 
+import lumen.features.simulation.physics  # noqa: F401  # first: it says what is not installed
+
+# isort: split
 import numpy as np
 from dm_control import composer, mjcf
 from dm_control.composer.observation import observable

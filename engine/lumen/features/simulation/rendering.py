@@ -5,13 +5,13 @@ import copy
 import threading
 from dataclasses import dataclass
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from lumen.features.simulation import gl
 from lumen.features.simulation.contact_shadows import NO_SOLES, ContactShadows, Soles
 from lumen.features.simulation.culling import FrustumCulling
+from lumen.features.simulation.physics import mujoco
 
 PixelArray = NDArray[np.uint8]
 """Shape (height, width, 3), RGB."""

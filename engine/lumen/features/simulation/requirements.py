@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 
-from dm_control import mjcf
-
+from lumen.features.simulation.physics import mjcf
 from lumen.language.robots import Body
 from lumen.language.roles import LEG_ROLES, SIDES
 

@@ -2,12 +2,12 @@
 
 from math import atan2, hypot
 
-import mujoco
 import numpy as np
 
 from lumen.features.simulation.gyrometer import Gyrometer
 from lumen.features.simulation.imperfections import ENCODER_NOISE, ENCODER_STEP
 from lumen.features.simulation.mean_rates import MeanRates
+from lumen.features.simulation.physics import mujoco
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.world import CONTROL_PERIOD, World
 from lumen.motion.gait.poses import wrap

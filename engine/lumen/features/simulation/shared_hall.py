@@ -5,10 +5,9 @@ from math import cos, sin
 from pathlib import Path
 from typing import NamedTuple
 
-from dm_control.mujoco import Physics, wrapper
-
 from lumen.features.simulation.model import compile_world, place, read_hall
 from lumen.features.simulation.model_terms import ROBOT_PREFIX, STAGE_SITE
+from lumen.features.simulation.physics import Physics, wrapper
 from lumen.features.simulation.robot import SimulatedRobot
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.visitor_figure import VisitorFigure

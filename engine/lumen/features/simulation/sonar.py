@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from math import cos, pi, sin
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.physics import mujoco
 from lumen.language.robots import Ultrasound
 from lumen.language.roles import SIDES
 

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import mujoco
 import numpy as np
 
 from lumen.features.simulation.model_terms import ROBOT_PREFIX, Variation
+from lumen.features.simulation.physics import mujoco
 from lumen.features.simulation.robot import SimulatedRobot
 from lumen.features.simulation.settings import Imperfections
 from lumen.language.robots import Body

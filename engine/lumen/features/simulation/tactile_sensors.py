@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable
 
-import mujoco
 import numpy as np
 
 from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.physics import mujoco
 
 _SOLID = 2
 """The collision type of what stands in a hall and is not its ground."""

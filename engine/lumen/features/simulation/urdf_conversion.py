@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-import mujoco
-
 from lumen.errors import RobotModelError
+from lumen.features.simulation.physics import mujoco
 
 READ = (".stl", ".obj", ".msh")
 """Endings of meshes that MuJoCo reads."""

@@ -2,9 +2,8 @@
 
 from math import atan2, cos, sin
 
-import mujoco
-
 from lumen.features.simulation.model_terms import STAGE_SITE
+from lumen.features.simulation.physics import mujoco
 from lumen.language.stories import Visitor
 
 VISITOR_BODY = "visitor"

@@ -4,14 +4,13 @@ from collections.abc import Mapping
 from math import acos, pi
 from pathlib import Path
 
-import mujoco
 import numpy as np
-from dm_control.mujoco import Physics
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
 from lumen.features.simulation.joint_envelope import JointVector
 from lumen.features.simulation.model_terms import PLAY_SUFFIX, ROBOT_PREFIX, Variation
+from lumen.features.simulation.physics import Physics, mujoco
 from lumen.features.simulation.world_model import physics
 from lumen.language.robots import Body
 from lumen.language.roles import SIDES

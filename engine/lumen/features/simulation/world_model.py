@@ -8,12 +8,10 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
-import dm_control
-import mujoco
 import numpy as np
-from dm_control.mujoco import Physics, wrapper
 
 from lumen.features.simulation.model_terms import Variation
+from lumen.features.simulation.physics import Physics, dm_control, mujoco, wrapper
 from lumen.language.robots import Body
 from lumen.project.engine_files import files_hash
 from lumen.project.memoization import memoize
