@@ -194,6 +194,13 @@ def test_what_visitors_may_say_is_understood(
     assert meaning(project, state, sphinx.recognise(speak(text, voice))) == meaning(project, state, text)
 
 
+@pytest.mark.slow
+def test_a_sound_is_recognised_alike_after_any_others(sphinx: Sphinx, speak: Speak) -> None:
+    sounds = [speak(text, "en-us") for text in (SONG, "how many joints do you have")]
+    first = [sphinx.hypotheses(sound) for sound in sounds]
+    assert [sphinx.hypotheses(sound) for sound in (*reversed(sounds), *sounds)] == [*reversed(first), *first]
+
+
 def meaning(project: Project, state: str, text: str) -> tuple[str, dict[str, Any]]:
     """The row of `hears` that a sentence takes in a state of the tour, and what is caught."""
     machine = project.machine

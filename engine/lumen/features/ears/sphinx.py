@@ -78,6 +78,7 @@ class Sphinx(RankingRecogniser):
             return []
         self._prepare(self._expected)
         decoder = self._decoder
+        decoder.reinit_feat()  # forgets the noise of the sounds before: a sound is heard alike after any others
         decoder.start_utt()
         decoder.process_raw(_hissing(samples), full_utt=True)
         decoder.end_utt()
