@@ -170,7 +170,7 @@ def sphinx(recogniser: Sphinx, project: Project) -> Sphinx:
 def speak(tmp_path: Path) -> Speak:
     """Return a function that speaks its first text always alike.
 
-    espeak-ng varies each text by what it spoke before, so this one is a copy of the library that has spoken nothing.
+    espeak-ng varies a text after it spoke others. This function has a copy of the library that has spoken nothing.
     """
     library = str(shutil.copy(espeakng_loader.get_library_path(), tmp_path))
     ctypes.CDLL(library).espeak_ng_SetRandSeed(1)
