@@ -9,6 +9,7 @@ from written_distribution import on_path, write_distribution
 
 from tests import ROOT
 from tests.scanning import matching
+from tests.waiting import finished, threads
 
 HERE = ROOT / "tests/stranger_verbs"
 
@@ -21,6 +22,8 @@ def blinker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv("PYTHONPATH", str(tmp_path / "packages"))  # for processes that a test starts
     with on_path(tmp_path / "packages"):
         yield
+        for thread in threads("lumen-skill-"):
+            finished(thread)  # one that imports its performer later would leave it to the next test
 
 
 @pytest.fixture
