@@ -78,10 +78,10 @@ def test_who_has_unsubscribed_is_not_told_what_is_being_delivered() -> None:
     assert heard == ["first", "third"]
 
 
-def test_buses_without_a_name_are_strangers_and_a_name_is_shared() -> None:
+def test_buses_without_a_name_are_strangers_and_a_name_is_shared(address: str) -> None:
     seen = Collector()
     connect("memory://").subscribe("lumen.a", seen)
-    one, other = connect("memory://hall"), connect("memory://hall")
+    one, other = connect(address), connect(address)
     one.subscribe("lumen.a", seen)
     connect("memory://").publish("lumen.a", "private")
     other.publish("lumen.a", "shared")
@@ -123,9 +123,9 @@ def test_what_waits_is_bounded_and_the_newest_stay(caplog: pytest.LogCaptureFixt
     assert seen.bodies[-1] == "after"
 
 
-def test_closing_is_not_dropped_with_what_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_closing_is_not_dropped_with_what_waits(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("lumen.bus.memory.MAX_QUEUED_MESSAGES", 10)
-    one, other, seen = connect("memory://full"), connect("memory://full"), Collector()
+    one, other, seen = connect(address), connect(address), Collector()
     one.subscribe("lumen.a", seen)
     ended, inside = threading.Thread(target=one.close), threading.Event()
 

@@ -41,22 +41,22 @@ def test_a_body_that_nests_without_end_is_refused_before_anybody_looks_into_it()
             bus.publish(key, body)
 
 
-def test_a_wrong_body_that_comes_in_is_reported_and_goes_no_further() -> None:
+def test_a_wrong_body_that_comes_in_is_reported_and_goes_no_further(address: str) -> None:
     seen, refused = Collector(), []
-    bus = connect("memory://hall", project(), on_refused=lambda key, reason: refused.append((key, reason)))
+    bus = connect(address, project(), on_refused=lambda key, reason: refused.append((key, reason)))
     bus.subscribe("lumen.#", seen)
-    stranger = connect("memory://hall")
+    stranger = connect(address)
     stranger.publish(FACE, {"x": 1, "y": None})
     stranger.publish(FACE, {"x": 1, "y": 2, "confidence": 0.9})
     assert seen.bodies == [{"x": 1, "y": 2, "confidence": 0.9}]
     assert refused == [(FACE, "y: None is not of type 'integer'")]
 
 
-def test_a_refusal_is_logged_where_nobody_else_is_told(caplog: pytest.LogCaptureFixture) -> None:
-    bus = connect("memory://hall", project())
+def test_a_refusal_is_logged_where_nobody_else_is_told(address: str, caplog: pytest.LogCaptureFixture) -> None:
+    bus = connect(address, project())
     bus.subscribe(FACE, Collector())
     with caplog.at_level(logging.WARNING):
-        connect("memory://hall").publish(FACE, "here")
+        connect(address).publish(FACE, "here")
     assert f"a message on `{FACE}` was refused: 'here' is not of type 'object'" in caplog.text
 
 
@@ -119,11 +119,12 @@ def test_what_is_on_its_way_as_another_bundle_comes_has_to_fit_that() -> None:
 
 
 def test_a_message_of_ours_is_checked_once_and_one_of_somebody_else_by_each_subscriber(
+    address: str,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     checked, fits = [], JsonSchema.fits
     monkeypatch.setattr(JsonSchema, "fits", lambda self, body: checked.append(body["x"]) or fits(self, body))
-    bus, stranger, seen = connect("memory://hall", project()), connect("memory://hall"), Collector()
+    bus, stranger, seen = connect(address, project()), connect(address), Collector()
 
     def answer(message: Message) -> None:
         seen(message)
@@ -141,8 +142,8 @@ def test_a_message_of_ours_is_checked_once_and_one_of_somebody_else_by_each_subs
     assert set(checked[3:]) == {1, 2}
 
 
-def test_a_reply_needs_no_key_of_ours() -> None:
-    bus, plain, seen = connect("memory://hall", project()), connect("memory://hall"), Collector()
+def test_a_reply_needs_no_key_of_ours(address: str) -> None:
+    bus, plain, seen = connect(address, project()), connect(address), Collector()
     plain.subscribe("answers", seen)
     bus.subscribe("avatar.NAO.command", lambda message: bus.reply(message, "command finished"))
     plain.publish("avatar.NAO.command", {"method": "rest"}, reply_to="answers", correlation_id="1")
