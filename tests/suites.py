@@ -4,13 +4,18 @@
 network, no physics), and a few real tests marked `once`: one broker, one browser, one physics. A test is in the
 rest if it uses one of `REAL`, which `tests/marking.py` finds in its code, or if it is marked `rest` by hand because it
 is dear. The mark is checked: in `make test` a test without `once` fails if it starts a process or opens a connection.
+So does one that reads a project as `lumen run` does, for a process reads it unless an earlier test did.
 """
 
 import sys
-from collections.abc import Generator
-from typing import Any
+from collections.abc import Generator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
+
+if TYPE_CHECKING:
+    from lumen.language.projects import Project
 
 REAL = ("broker", "browser", "network", "npm", "physics", "process")
 """The marks of what is real, slow and not deterministic."""
@@ -60,10 +65,19 @@ class Touches:
     def __init__(self, file: str | None) -> None:
         self._file, self._found = file, set[str]()
         sys.addaudithook(self._hear)
+        from lumen.run.reload import validation_worker
+
+        self._recall = validation_worker.recall
+        pytest.MonkeyPatch().setattr(validation_worker, "recall", self._recalled)
 
     def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
         if event in TOUCHES:
             self._found.add(TOUCHES[event])
+
+    def _recalled(self, root: Path, files: Mapping[str, bytes]) -> "Project | None":
+        """Recall a project, and count the process that it would take if it were not kept."""
+        self._found.add(TOUCHES["subprocess.Popen"])
+        return self._recall(root, files)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_setup(self, item: pytest.Item) -> Generator[None]:

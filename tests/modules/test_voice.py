@@ -144,6 +144,7 @@ def test_a_language_that_espeak_lacks_is_spoken_in_the_first(tmp_path: Path) -> 
     assert speaker.begin("Selamat pagi", "xx", 1.0, 0.0) == pytest.approx(length, abs=0.01)
 
 
+@pytest.mark.process
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("flags", "said"),

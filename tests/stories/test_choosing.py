@@ -35,7 +35,7 @@ def test_a_file_says_which_project_it_is_of(
     assert names([str(copy / "behaviors" / "stories" / "only_here.yaml")], capsys) == ["only_here"]
 
 
-@pytest.mark.parametrize("command", [["test"], ["run", "--story"]])
+@pytest.mark.parametrize("command", [["test"], pytest.param(["run", "--story"], marks=pytest.mark.process)])
 def test_a_file_elsewhere_is_not_the_story_of_that_name(
     copy: Path, tmp_path: Path, command: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -48,6 +48,7 @@ def test_a_file_elsewhere_is_not_the_story_of_that_name(
     assert "no story `no/such/shi.yaml`: did you mean `shy`?" in capsys.readouterr().err
 
 
+@pytest.mark.process
 def test_one_story_at_a_time_is_run(
     copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -110,6 +110,7 @@ def test_a_project_without_stories_says_how_to_begin(copy: Path, capsys: pytest.
     assert "docs/stories.md" in capsys.readouterr().err
 
 
+@pytest.mark.process
 def test_only_the_recording_robot_plays_what_it_is_told_to_fail_in(
     project: Project, capsys: pytest.CaptureFixture[str]
 ) -> None:
