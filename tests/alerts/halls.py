@@ -1,6 +1,5 @@
 """A small exhibition that tells a server on loopback, whole or in parts on one bus, as fast as it can."""
 
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -26,6 +25,7 @@ from lumen.run.recovery.startup import startup_project
 from lumen.run.setup import Setup
 from tests import ROOT
 from tests.alerts.servers import Web
+from tests.copying import copied_project
 from tests.nodes import Printed
 from tests.waiting import until
 
@@ -44,7 +44,7 @@ states:
 
 def files(folder: Path, web: Web) -> Path:
     """The files of the exhibition; people are told of the same each time."""
-    shutil.copytree(BASE, folder, dirs_exist_ok=True)
+    copied_project(BASE, folder)
     main = folder / "lumen.yaml"
     kept = "".join(line for line in main.read_text("utf-8").splitlines(keepends=True))
     main.write_text(f"alerts: {{interval: 1ms, to: [{{webhook: '{web.url}'}}]}}\n{kept}", "utf-8")

@@ -3,19 +3,19 @@
 import json
 from datetime import date
 from pathlib import Path
-from shutil import copytree
 
 import pytest
 
 import lumen
 from lumen.cli.main import main
 from tests import ROOT
+from tests.copying import copied_project
 
 
 @pytest.fixture
 def played(tmp_path: Path) -> Path:
     """A small exhibition in which a visitor was."""
-    folder = copytree(ROOT / "examples/minimal", tmp_path / "minimal")
+    folder = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
     (story,) = lumen.load(folder).stories
     with lumen.open(folder, story=story) as exhibition:
         exhibition.run()

@@ -1,7 +1,6 @@
 """An exhibition's own questions say how like a passage a question has to be, while it runs and in `lumen test`."""
 
 import json
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from lumen.language.commands import Ask
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.run.questions import Questions
 from tests import ROOT
+from tests.copying import copied_project
 
 PASSAGES = {
     "height": Passage("height", {"en": ("how tall are you",)}, {"en": "Small."}),
@@ -37,7 +37,7 @@ def test_they_count_while_it_runs() -> None:
 
 @pytest.fixture
 def small(tmp_path: Path) -> Path:
-    shutil.copytree(ROOT / "examples/minimal", tmp_path / "show", ignore=shutil.ignore_patterns(".lumen"))
+    copied_project(ROOT / "examples/minimal", tmp_path / "show")
     knowledge = tmp_path / "show/knowledge"
     (knowledge / "questions").mkdir(parents=True, exist_ok=True)
     for name, passage in PASSAGES.items():

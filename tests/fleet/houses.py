@@ -1,7 +1,6 @@
 """A small project of a fleet, keys, and what a centre sends."""
 
 import json
-import shutil
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from lumen.features.fleet.rollouts.orders import DesiredState
 from lumen.features.fleet.signing import ORDER, Signer
 from lumen.project.files import fingerprint, read_files
 from tests import ROOT
+from tests.copying import copied_project
 
 EXAMPLE = ROOT / "examples/fleet"
 HOUSE, ROBOT = "itb", "nao1"
@@ -21,7 +21,7 @@ HOUSE, ROBOT = "itb", "nao1"
 
 def project(folder: Path, key: str = "") -> Path:
     """A copy of the example's project, which trusts that key."""
-    shutil.copytree(EXAMPLE, folder)
+    copied_project(EXAMPLE, folder)
     if key:
         file = folder / "fleet.yaml"
         file.write_text(f"key: {key}\n{file.read_text()}")

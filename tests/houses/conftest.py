@@ -1,11 +1,11 @@
 """A house of two robots with the small example's files."""
 
-import shutil
 from pathlib import Path
 
 import pytest
 
 from tests import ROOT
+from tests.copying import copied_project
 
 ROBOTS = "robots:\n  ana: {model: nao, at: {y: -0.4}}\n  ben: {model: nao, at: {y: 0.4}}"
 
@@ -13,7 +13,7 @@ ROBOTS = "robots:\n  ana: {model: nao, at: {y: -0.4}}\n  ben: {model: nao, at: {
 @pytest.fixture
 def two(tmp_path: Path) -> Path:
     folder = tmp_path / "two"
-    shutil.copytree(ROOT / "examples/minimal", folder, ignore=shutil.ignore_patterns(".lumen"))
+    copied_project(ROOT / "examples/minimal", folder)
     main = folder / "lumen.yaml"
     text = main.read_text("utf-8")
     assert "robot: {name: NAO, model: nao}" in text

@@ -4,7 +4,6 @@ import json
 import random
 from collections.abc import Iterator
 from pathlib import Path
-from shutil import copytree
 from typing import Any
 
 import pytest
@@ -14,6 +13,7 @@ from lumen.cli.main import main
 from lumen.journal.frames import FramePacker
 from lumen.journal.journal_file import encode, read_header, read_lines
 from tests import ROOT
+from tests.copying import copied_project
 from tests.tables import for_each
 
 ODD: tuple[Any, ...] = (
@@ -25,7 +25,7 @@ ODD: tuple[Any, ...] = (
 @pytest.fixture(scope="module")
 def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The journal of a small exhibition in which a visitor was."""
-    folder = copytree(ROOT / "examples/minimal", tmp_path_factory.mktemp("odd") / "minimal")
+    folder = copied_project(ROOT / "examples/minimal", tmp_path_factory.mktemp("odd") / "minimal")
     (story,) = lumen.load(folder).stories
     with lumen.open(folder, story=story) as exhibition:
         exhibition.run()

@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import sys
 from io import BytesIO, TextIOWrapper
 from pathlib import Path
@@ -12,6 +11,7 @@ import pytest
 from lumen.cli.main import main
 from lumen.lint.codes import codes, families
 from tests import ROOT
+from tests.copying import copied_project
 from tests.guarded import CompletedProcess, run_guarded
 from tests.tour.conftest import copy
 from tests.waiting import HANG
@@ -24,7 +24,7 @@ ENGINE = ROOT / "engine"
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    shutil.copytree(BASE, tmp_path / "project")
+    copied_project(BASE, tmp_path / "project")
     return tmp_path / "project"
 
 
@@ -153,7 +153,7 @@ def test_files_of_a_project_show_their_own_findings(project: Path, capsys: pytes
 
 def test_several_projects(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     edit(project / "lumen.yaml", "story: hello", "story: helo")
-    shutil.copytree(BASE, tmp_path / "other")
+    copied_project(BASE, tmp_path / "other")
     assert main(["lint", str(project), str(tmp_path / "other"), "--format", "concise"]) == 1
     assert capsys.readouterr().out.endswith("1 error in 1 file; 20 files checked in 2 projects\n")
 

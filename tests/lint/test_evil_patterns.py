@@ -4,13 +4,13 @@ Each program below would take Python's `re` longer than the universe is old. It 
 that a busy machine does not matter; then the system ends it.
 """
 
-import shutil
 import sys
 from pathlib import Path
 
 import pytest
 
 from tests import ROOT
+from tests.copying import copied_project
 from tests.guarded import run_guarded
 
 BASE = Path(__file__).parent / "pages" / "base"
@@ -101,7 +101,7 @@ def test_it_ends(code: str) -> None:
 
 
 def test_lint_ends(tmp_path: Path) -> None:
-    shutil.copytree(BASE, tmp_path, dirs_exist_ok=True)
+    copied_project(BASE, tmp_path)
     for folder in ("schemas/messages", "behaviors/stories"):
         (tmp_path / folder).mkdir(parents=True)
     routes = "".join(f"  {name}: {{key: lumen.{name}, direction: in, schema: {name}}}\n" for name in ("said", "keys"))

@@ -1,6 +1,5 @@
 """`--fix` and `--diff`: what is repaired, what is left to its author, and that nothing gets worse."""
 
-import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from lumen.lint.fixes import edited, fixes
 from lumen.lint.fixes.misspellings import near
 from lumen.lint.repairs import repaired
 from lumen.project.files import read_files
+from tests.copying import copied_project
 from tests.tables import for_each
 
 HERE = Path(__file__).parent
@@ -165,7 +165,7 @@ def test_near(word: str, meant: str, is_near: bool) -> None:
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    shutil.copytree(HERE / "base", tmp_path / "p")
+    copied_project(HERE / "base", tmp_path / "p")
     file = tmp_path / "p" / TOUR
     file.write_text(file.read_text().replace("onError: idle", "onError: idel   # home"))
     file.chmod(0o640)

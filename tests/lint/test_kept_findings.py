@@ -15,6 +15,7 @@ from lumen.lint import traps
 from lumen.project import engine_files, looks
 from lumen.run.linting import kept_findings
 from tests import ROOT
+from tests.copying import copied_project
 from tests.guarded import PIPE, run_guarded
 
 BASE = Path(__file__).parent / "base"
@@ -29,7 +30,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """One that names a sound, a mesh and a fact with a last day; each of its files has been left alone for long."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(looks, "SETTLED_NS", -(10**18))
-    root = Path(shutil.copytree(BASE, tmp_path / "project"))
+    root = copied_project(BASE, tmp_path / "project")
     edit(root / TOUR, "play: wave", "sound: hum.wav")
     (root / MODEL).write_text('<mujoco>\n  <asset><mesh file="foot.stl"/></asset>\n</mujoco>\n')
     (root / "knowledge").mkdir()

@@ -1,6 +1,5 @@
 """What lint worked out of each file is kept, and comes to the same as what it works out anew."""
 
-import shutil
 from pathlib import Path
 
 import pytest
@@ -9,6 +8,7 @@ from lumen.lint import check_files
 from lumen.project import looks, memoization
 from lumen.project.files import read_files
 from lumen.run.linting.kept_memory import MUCH, keep_memory, recall_memory
+from tests.copying import copied_project
 
 BASE = Path(__file__).parent / "base"
 TOUR = "behaviors/tour.yaml"
@@ -20,7 +20,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(looks, "SETTLED_NS", -(10**18))
     forget(monkeypatch)
-    return Path(shutil.copytree(BASE, tmp_path / "project"))
+    return copied_project(BASE, tmp_path / "project")
 
 
 def forget(monkeypatch: pytest.MonkeyPatch) -> None:

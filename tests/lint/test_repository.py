@@ -14,6 +14,7 @@ import yaml
 from lumen.project.files import read_files
 from lumen.project.project_folders import FLEET_FILE, FOLDERS
 from tests import ROOT
+from tests.copying import copied_project
 from tests.guarded import CompletedProcess, run_guarded
 from tests.provided import program
 from tests.waiting import HANG
@@ -33,7 +34,7 @@ def made(home: Path, *projects: str) -> Path:
     """A git repository with projects in these folders of it, all staged; `lumen` and `pre-commit` on its PATH."""
     repository = home / "repository"
     for folder in projects:
-        shutil.copytree(BASE, repository / folder, dirs_exist_ok=True)
+        copied_project(BASE, repository / folder)
     bin_folder = home / "bin"
     bin_folder.mkdir()
     for name, module in (("lumen", "lumen"), ("pre-commit", "pre_commit")):

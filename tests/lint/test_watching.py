@@ -1,7 +1,6 @@
 """`lumen lint --watch`: saved files are answered, and Ctrl-C is a good end."""
 
 import os
-import shutil
 import signal
 import sys
 import threading
@@ -11,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests import ROOT
+from tests.copying import copied_project
 from tests.guarded import PIPE, Guarded
 from tests.waiting import HANG
 
@@ -21,7 +21,7 @@ END = "waiting for the next change, Ctrl-C ends"
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    shutil.copytree(HERE / "base", tmp_path / "p")
+    copied_project(HERE / "base", tmp_path / "p")
     return tmp_path / "p"
 
 

@@ -11,7 +11,6 @@ import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from shutil import copytree
 from typing import Any
 
 import numpy as np
@@ -27,6 +26,7 @@ from lumen.run.reload_journal import Journal
 from tests import ROOT
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web
+from tests.copying import copied_project
 from tests.guarded import PIPE, STDOUT, Guarded
 from tests.waiting import HANG, until
 
@@ -201,7 +201,7 @@ def test_who_stands_there_is_forgotten_by_an_exhibition_that_runs(
 def test_a_journal_without_a_row_is_named_among_what_a_broker_keeps(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = copytree(ROOT / "examples" / "minimal", tmp_path / "minimal")
+    folder = copied_project(ROOT / "examples" / "minimal", tmp_path / "minimal")
     hello = folder / "behaviors" / "hello.yaml"
     said = "[{publish: {route: journal, body: {visitor: \"'Budi'\"}}}, {play: wave}"
     hello.write_text(hello.read_text("utf-8").replace("[{play: wave}", said), "utf-8")

@@ -1,7 +1,6 @@
 """What saved files and hands bring about names them, and what invoked behaviours do is told as well."""
 
 from pathlib import Path
-from shutil import copytree
 
 import pytest
 
@@ -11,6 +10,7 @@ from lumen.language.causes import VISITOR, Cause
 from lumen.run.replaying.journals import chosen
 from lumen.run.replaying.kept_bundles import KeptBundles
 from tests import ROOT
+from tests.copying import copied_project
 from tests.live.shows import Live
 from tests.waiting import Collector
 
@@ -21,7 +21,7 @@ HELLO = "behaviors/hello.yaml"
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    return copytree(ROOT / "examples" / "minimal", tmp_path / "minimal")
+    return copied_project(ROOT / "examples" / "minimal", tmp_path / "minimal")
 
 
 def test_states_that_a_saved_file_enters_are_told_with_the_file(folder: Path) -> None:

@@ -1,9 +1,9 @@
 """A saved behaviour that hears another event, or publishes to another route, gets the route that comes with Lumen."""
 
 from pathlib import Path
-from shutil import copytree
 
 from tests import ROOT
+from tests.copying import copied_project
 from tests.live.shows import Live
 from tests.waiting import Collector
 
@@ -13,7 +13,7 @@ TEXTS = "lumen.NAO.audio.text.stream"
 
 
 def test_the_running_bus_listens_to_what_a_saved_behaviour_hears(tmp_path: Path) -> None:
-    live = Live(copytree(ROOT / "examples" / "minimal", tmp_path / "minimal"))
+    live = Live(copied_project(ROOT / "examples" / "minimal", tmp_path / "minimal"))
     bus, said = live.show.loop.bus, Collector()
     bus.subscribe(TEXTS, said)
     bus.publish(KEY, {"gender": "female"})

@@ -2,7 +2,6 @@
 
 import sys
 from pathlib import Path
-from shutil import copytree
 from types import SimpleNamespace
 
 import pytest
@@ -22,6 +21,7 @@ from lumen.run.replaying.kept_bundles import KeptBundles
 from lumen.run.replaying.latest_visits import latest_first
 from lumen.statechart import serialize
 from tests import ROOT
+from tests.copying import copied_project
 from tests.live.shows import Live
 
 pytestmark = pytest.mark.rest  # dear
@@ -33,7 +33,7 @@ VISITS = 3
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A small exhibition that keeps some visits."""
-    folder = copytree(ROOT / "examples" / "minimal", tmp_path / "minimal")
+    folder = copied_project(ROOT / "examples" / "minimal", tmp_path / "minimal")
     (story,) = lumen.load(folder).stories
     for _ in range(VISITS):
         with lumen.open(folder, story=story) as exhibition:

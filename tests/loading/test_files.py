@@ -20,13 +20,14 @@ from lumen.project.packaged import find_project, shipped_root
 from lumen.project.yaml_reader import parse
 from lumen.upkeep.regular_files import read_regular
 from tests import ROOT
+from tests.copying import copied_project
 
 BASE = ROOT / "tests/lint/base"
 
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    shutil.copytree(BASE, tmp_path / "project")
+    copied_project(BASE, tmp_path / "project")
     return tmp_path / "project"
 
 

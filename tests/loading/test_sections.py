@@ -15,13 +15,14 @@ from lumen.insight.changes import changes, live
 from lumen.language.projects import Project
 from lumen.run.reload.delta import DeltaDecoder, DeltaEncoder
 from tests import ROOT
+from tests.copying import copied_project
 from tests.tables import for_each
 
 
 @pytest.fixture
 def small(tmp_path: Path) -> Path:
     """A copy of a small project without any section of a feature."""
-    return shutil.copytree(ROOT / "tests/lint/base", tmp_path / "small")
+    return copied_project(ROOT / "tests/lint/base", tmp_path / "small")
 
 
 def with_section(folder: Path, text: str) -> Project:
@@ -80,7 +81,7 @@ CHANGED = {
 @for_each("key", CHANGED)
 def test_a_section_that_comes_is_described_and_travels(key: str, tmp_path: Path) -> None:
     text, sentence = CHANGED[key]
-    folder = shutil.copytree(ROOT / "tests/lint/base", tmp_path / "small")
+    folder = copied_project(ROOT / "tests/lint/base", tmp_path / "small")
     above, _, name = key.rpartition(".")
     without = with_section(folder, f"{above}: {{{name}: {{here: false}}}}") if above else lumen.load(folder)
     shutil.copy(ROOT / "tests/lint/base/lumen.yaml", folder)

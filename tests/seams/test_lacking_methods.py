@@ -1,6 +1,5 @@
 """A robot, hall, bus or clock of one's own works without its optional methods, and is refused without a needed one."""
 
-import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from threading import Event as Signal
@@ -32,6 +31,7 @@ from lumen.ports import (
 from lumen.robot.remote import RemoteHall, RobotHost
 from lumen.statechart import VirtualClock
 from tests import ROOT
+from tests.copying import copied_project
 from tests.tables import for_each
 
 BEHAVIOR = """\
@@ -193,7 +193,7 @@ REFUSED = [
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    root = shutil.copytree(ROOT / "examples/minimal", tmp_path_factory.mktemp("lacking") / "hall")
+    root = copied_project(ROOT / "examples/minimal", tmp_path_factory.mktemp("lacking") / "hall")
     (root / "behaviors/hello.yaml").write_text(BEHAVIOR)
     (root / "behaviors/stories/visitor.yaml").write_text(STORY)
     (root / "behaviors/stories/touching.yaml").write_text(TOUCHING)

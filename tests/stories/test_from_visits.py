@@ -28,6 +28,7 @@ from lumen.run.replaying.other_files import with_machines
 from lumen.run.storytelling.story_text import story_text
 from lumen.run.storytelling.visit_story import renaming, visit_story
 from tests import ROOT
+from tests.copying import copied_project
 
 pytestmark = pytest.mark.rest  # dear
 
@@ -119,7 +120,7 @@ def _fails_where_something_else_is_said(project: Project) -> None:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    folder = copytree(ROOT / "examples/minimal", tmp_path / "minimal")
+    folder = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
     assert recorded(folder, "visitor")
     return folder
 

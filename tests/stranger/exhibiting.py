@@ -1,11 +1,11 @@
 """A project that uses what the stranger's distribution adds."""
 
-import shutil
 from pathlib import Path
 
 import pytest
 
 from tests import ROOT
+from tests.copying import copied_project
 
 MAIN = """
 bus: postbox://hall
@@ -51,7 +51,7 @@ steps:
 @pytest.fixture
 def hall(tmp_path: Path) -> Path:
     """A project with the stranger's bus, module, sense and function."""
-    root = shutil.copytree(ROOT / "examples/minimal", tmp_path / "hall")
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "hall")
     (root / "lumen.yaml").write_text((root / "lumen.yaml").read_text() + MAIN)
     (root / "behaviors/hello.yaml").write_text(BEHAVIOR)
     (root / "behaviors/stories/visitor.yaml").write_text(STORY)

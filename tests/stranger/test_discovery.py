@@ -1,7 +1,6 @@
 """Features are found in installed distributions; a faulty one is one finding, and everything else works without it."""
 
 import re
-import shutil
 import sys
 from collections.abc import Iterable, Iterator
 from importlib.metadata import entry_points
@@ -20,6 +19,7 @@ from lumen.project.packaged import PACKAGE
 from lumen.run.linting import outcome_cache
 from lumen.run.workers import tasks
 from tests import ROOT
+from tests.copying import copied_project
 from tests.guarded import run_guarded
 from tests.stranger.installing import Installed
 from tests.tables import for_each
@@ -120,7 +120,7 @@ def test_a_faulty_manifest_is_one_finding_that_names_its_distribution(case: str,
 def test_a_run_reports_a_faulty_feature_once_and_continues(
     installed: Installed, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    project = shutil.copytree(ROOT / "examples/minimal", tmp_path / "minimal")
+    project = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
     installed.write("lumen-greeter", "1 / 0\n")
     assert main(["run", str(project), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0
     error = capsys.readouterr().err

@@ -1,7 +1,6 @@
 """Faulty code of a package ends with a sentence that names the package; an exhibition goes on without its module."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
@@ -16,6 +15,7 @@ from lumen.run.plan import Plan
 from lumen.run.rehearsal import RehearsalTrace
 from lumen.run.setup import set_up
 from tests import ROOT
+from tests.copying import copied_project
 from tests.stranger.installing import Installed
 from tests.waiting import HANG
 
@@ -269,7 +269,7 @@ FAULTS = {
 
 @pytest.fixture
 def hall(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    root = shutil.copytree(ROOT / "examples/minimal", tmp_path / "hall")
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "hall")
     (root / "a.odd").write_text("odd")
     monkeypatch.chdir(root)
     return root

@@ -1,7 +1,6 @@
 """A stranger's feature forgets a person, in each process that forgets; a faulty one keeps no other from forgetting."""
 
 import logging
-import shutil
 from contextlib import closing
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from lumen.run.forgetting.report import OF_A_PACKAGE, out_of_reach
 from tests import ROOT
 from tests.alerts.halls import Hall
 from tests.alerts.servers import Web
+from tests.copying import copied_project
 from tests.stranger.installing import Installed
 
 MANIFEST = """
@@ -42,7 +42,7 @@ def forgotten(module: str) -> list[str]:
 
 @pytest.mark.process
 def test_a_part_and_a_function_forget_a_person(stranger: Path, tmp_path: Path) -> None:
-    root = shutil.copytree(ROOT / "examples/minimal", tmp_path / "minimal")
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
     with lumen.open(root, robot="recording") as exhibition:
         book = exhibition.services[resolve("lumen_stranger.guests:GuestBook")]
         exhibition.visitor.arrive(Visitor())

@@ -1,12 +1,12 @@
 """A stranger's format of findings or of verdicts is chosen by --format; a faulty one names its distribution."""
 
-import shutil
 from pathlib import Path
 
 import pytest
 
 from lumen.cli.main import main
 from tests import ROOT
+from tests.copying import copied_project
 from tests.stranger.installing import Installed
 
 PROJECT = ROOT / "tests/lint/pages/base"
@@ -22,7 +22,7 @@ FEATURE = Feature(
 @pytest.fixture
 def played(tmp_path: Path) -> str:
     """A project with a story."""
-    return str(shutil.copytree(ROOT / "examples/minimal", tmp_path / "minimal"))
+    return str(copied_project(ROOT / "examples/minimal", tmp_path / "minimal"))
 
 
 @pytest.mark.process

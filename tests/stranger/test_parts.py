@@ -2,7 +2,6 @@
 
 import json
 import logging
-import shutil
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path
@@ -26,6 +25,7 @@ from lumen.run.plan import Plan
 from lumen.run.rehearsal import RehearsalTrace
 from lumen.run.setup import set_up
 from tests import ROOT
+from tests.copying import copied_project
 from tests.stranger.installing import Installed
 from tests.tables import for_each
 
@@ -63,7 +63,7 @@ FAULTY = "the installed package `lumen-counter` 1.0 is faulty: its module `count
 
 @pytest.fixture
 def minimal(tmp_path: Path) -> Path:
-    return shutil.copytree(ROOT / "examples/minimal", tmp_path / "minimal")
+    return copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
 
 
 def write(installed: Installed, make: str, manifest: str = MANIFEST) -> None:

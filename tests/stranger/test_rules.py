@@ -2,7 +2,6 @@
 
 import json
 import os
-import shutil
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,6 +16,7 @@ from lumen.lint.codes import codes, families
 from lumen.lint.pages import page
 from lumen.project.files import read_files
 from tests import ROOT
+from tests.copying import copied_project
 from tests.lsp.client import Client
 from tests.stranger.installing import Installed, Lumen
 
@@ -44,7 +44,7 @@ def other(draft):
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     """A project whose name begins with a small letter."""
-    root = shutil.copytree(BASE, tmp_path / "project")
+    root = copied_project(BASE, tmp_path / "project")
     text = (root / "lumen.yaml").read_text()
     assert "name: Small" in text
     (root / "lumen.yaml").write_text(text.replace("name: Small", "name: small"))

@@ -1,7 +1,6 @@
 """A section of lumen.yaml that an installed package adds: checked, read, completed, compared and reloaded."""
 
 import json
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from lumen.run.reload.delta import DeltaDecoder, DeltaEncoder
 from lumen.run.reload.idle_process import end_idle
 from lumen.run.reload.validation_worker import ValidationWorker
 from tests import ROOT
+from tests.copying import copied_project
 from tests.stranger.installing import SOURCES, Installed
 from tests.tables import for_each
 
@@ -143,7 +143,7 @@ def test_a_section_that_is_the_same_stays_the_same_object_in_another_process(str
 @pytest.mark.slow
 def test_saved_files_are_judged_with_the_section(stranger: Path, tmp_path: Path) -> None:
     end_idle()  # a process that another test began would not find the package
-    root = shutil.copytree(ROOT / "tests/lint/base", tmp_path / "small")
+    root = copied_project(ROOT / "tests/lint/base", tmp_path / "small")
     judge = ValidationWorker(root)
     judge.begin()
     found, diagnostics = judge.load(files(LAMP))
@@ -158,7 +158,7 @@ def test_saved_files_are_judged_with_the_section(stranger: Path, tmp_path: Path)
 @pytest.mark.process
 def test_lumen_diff_prints_the_entries(stranger: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, lamp in (("old", LAMP), ("new", "lamp: {first: night, scenes: {night: 0.2, day: 1}}\n")):
-        root = shutil.copytree(ROOT / "tests/lint/base", tmp_path / name)
+        root = copied_project(ROOT / "tests/lint/base", tmp_path / name)
         (root / "lumen.yaml").write_bytes(files(lamp)["lumen.yaml"])
     assert main(["diff", str(tmp_path / "old"), str(tmp_path / "new")]) == 0
     assert "lumen.yaml\n  scene of the lamp `night` changed (wiring)\n" in capsys.readouterr().out

@@ -21,6 +21,7 @@ from lumen.lint.pages import page
 from lumen.project.files import read_files
 from lumen.robot.skill_runner import SkillRunner
 from tests import ROOT
+from tests.copying import copied_project
 from tests.stranger.installing import call_lumen, install, used
 from tests.tables import for_each
 from tests.waiting import until
@@ -45,7 +46,7 @@ def sprayer(sprayer_folder: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[N
 @pytest.fixture
 def hall(tmp_path: Path) -> Path:
     """A copy of the project that uses the package."""
-    return shutil.copytree(SPRAYER / "hall", tmp_path / "hall")
+    return copied_project(SPRAYER / "hall", tmp_path / "hall")
 
 
 def findings(root: Path) -> list[tuple[str, str, str]]:
@@ -74,7 +75,7 @@ def replace(file: Path, old: str, new: str) -> None:
 def test_the_commands_of_the_page_print_this(words: str, printed: str, hall: Path) -> None:
     shown = (ROOT / "docs/architecture.md").read_text("utf-8").replace("../../minimal", "../minimal")
     assert re.search(rf"^    lumen {re.escape(words)}( +#.*)?$", shown, re.MULTILINE)
-    shutil.copytree(ROOT / "examples/minimal", hall.parent / "minimal")
+    copied_project(ROOT / "examples/minimal", hall.parent / "minimal")
     done = call_lumen(hall, *words.split())
     assert done.returncode == 0, done.stderr
     assert printed in " ".join(done.stdout.split())

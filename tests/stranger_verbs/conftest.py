@@ -1,6 +1,5 @@
 """The package that teaches robots to blink, installed into a folder of its own for the tests of this folder."""
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -8,6 +7,7 @@ import pytest
 from written_distribution import on_path, write_distribution
 
 from tests import ROOT
+from tests.copying import copied_project
 from tests.scanning import matching
 from tests.waiting import finished, threads
 
@@ -29,4 +29,4 @@ def blinker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
     """A project whose robot blinks."""
-    return Path(shutil.copytree(HERE / "project", tmp_path / "project"))
+    return copied_project(HERE / "project", tmp_path / "project")

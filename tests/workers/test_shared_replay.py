@@ -1,7 +1,6 @@
 """A journal that several workers replay: the report is that of one."""
 
 from pathlib import Path
-from shutil import copytree
 
 import pytest
 
@@ -14,12 +13,13 @@ from lumen.run.replaying.other_files import against
 from lumen.run.replaying.replay_report import ReplayReport, replayed
 from lumen.run.workers.workers import Workers
 from tests import ROOT
+from tests.copying import copied_project
 
 
 @pytest.fixture(scope="module")
 def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small exhibition in which several visitors were, one after the other."""
-    folder = copytree(ROOT / "examples/minimal", tmp_path_factory.mktemp("played") / "minimal")
+    folder = copied_project(ROOT / "examples/minimal", tmp_path_factory.mktemp("played") / "minimal")
     (story,) = (folder / "behaviors" / "stories").glob("*.yaml")
     text = story.read_text("utf-8")
     head, _, steps = text.partition("steps:\n")

@@ -1,0 +1,10 @@
+"""Copies of projects of this repository."""
+
+import shutil
+from pathlib import Path
+
+
+def copied_project(source: Path, target: Path) -> Path:
+    """Copy a project's folder without what runs left in it, and return the copy; the target may exist."""
+    left = shutil.ignore_patterns(".lumen", "__pycache__")
+    return Path(shutil.copytree(source, target, ignore=left, dirs_exist_ok=True))
