@@ -128,6 +128,7 @@ def test_over_the_bus_it_is_stopped_asked_and_let_go_on() -> None:
     assert ask(stand, "avatar.NAO.stop", "resume", by="Bo") == "command finished"
     assert told.events == [Event("stop", {"by": "Ada"}), Event("resume", {"by": "Bo"})]
     assert [command for _, command in stand.robot.started][1:] == [Wake()]  # this behaviour knows no `resume`
+    stand.server.close()
 
 
 def test_a_modules_rest_is_nobodys_stop() -> None:
@@ -135,6 +136,7 @@ def test_a_modules_rest_is_nobodys_stop() -> None:
     ask(stand, "avatar.NAO.command", "rest")
     ask(stand, "avatar.NAO.command", "wakeUp")
     assert [command for _, command in stand.robot.started] == [Rest(), Wake()]
+    stand.server.close()
 
 
 @pytest.mark.slow

@@ -97,6 +97,8 @@ def test_the_same_samples_leave_in_the_same_order(direct: bool) -> None:
     again = Stand(**without("image"))
     again.live(2.0)
     assert [m.key for m in again.heard.messages] == [m.key for m in stand.heard.messages]
+    for each in (stand, again):
+        each.server.close()
 
 
 def test_each_sense_publishes_from_a_thread_of_its_own() -> None:
