@@ -14,6 +14,7 @@ from lumen.cli.transcript import Transcript
 from lumen.errors import UsageError
 from tests import ROOT
 from tests.cli.conftest import Terminal
+from tests.copying import copied_project
 from tests.guarded import DEVNULL, PIPE, Guarded
 from tests.waiting import HANG
 
@@ -32,9 +33,9 @@ class Full(StringIO):
         raise OSError(28, "No space left on device")
 
 
-def called(*words: str, stdout: int, stderr: int = PIPE) -> tuple[int, str]:
+def called(*words: str, stdout: int, stderr: int = PIPE, folder: Path = ROOT) -> tuple[int, str]:
     command = [sys.executable, "-m", "lumen.cli.main", *words]
-    with Guarded(command, cwd=ROOT, stdin=DEVNULL, stdout=stdout, stderr=stderr, text=True) as process:
+    with Guarded(command, cwd=folder, stdin=DEVNULL, stdout=stdout, stderr=stderr, text=True) as process:
         said = process.communicate(timeout=HANG)[1]
     return process.returncode, said or ""
 
@@ -54,12 +55,13 @@ def unread() -> int:
         ("explain", "unknown-state"),
         ("export", "asyncapi"),
         ("run", "--help"),
-        ("run", "--robot", "recording", "--speed", "max", "--story", "shy", "--fresh"),
+        ("run", "--robot", "recording", "--speed", "max", "--story", "visitor"),
     ],
     ids=" ".join,
 )
-def test_a_verb_whose_output_nobody_reads_says_nothing(unread: int, words: tuple[str, ...]) -> None:
-    assert called(*words, stdout=unread) == (0, "")
+def test_a_verb_whose_output_nobody_reads_says_nothing(unread: int, words: tuple[str, ...], tmp_path: Path) -> None:
+    folder = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
+    assert called(*words, stdout=unread, folder=folder) == (0, "")
 
 
 def test_an_error_that_nobody_reads_is_one_all_the_same(unread: int) -> None:

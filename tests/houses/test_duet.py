@@ -1,6 +1,7 @@
 """The duet: two NAOs in one physics world speak in turns and dance in step; what one sends, the other hears."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from lumen.run.house import House
 from lumen.run.plan import Plan
 from lumen.run.setup import set_up_house
 from tests import ROOT
+from tests.copying import copied_project
 from tests.waiting import Collector
 
 DUET = ROOT / "examples/duet"
@@ -39,9 +41,10 @@ def duet(kind: str) -> tuple[House, dict[str, Exhibition]]:
 
 
 @pytest.mark.process
-def test_they_speak_in_turns(capsys: pytest.CaptureFixture[str]) -> None:
+def test_they_speak_in_turns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert check(DUET) == []
-    assert main(["run", str(DUET), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0
+    folder = copied_project(DUET, tmp_path / "duet")
+    assert main(["run", str(folder), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0
     lines = capsys.readouterr().out.splitlines()
     said = [line.split(" robot    ") for line in lines if " robot    “" in line]
     assert [when[-3:] + text for when, text in said] == [

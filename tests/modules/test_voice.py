@@ -18,6 +18,8 @@ from lumen.language.projects import Project
 from lumen.robot.none import NoRobot
 from lumen.run.setup import Setup
 from lumen.run.sound import Sound, sound_of, wav
+from tests import ROOT
+from tests.copying import copied_project
 from tests.modules.conftest import Stand
 from tests.tables import for_each
 
@@ -155,8 +157,11 @@ def test_a_language_that_espeak_lacks_is_spoken_in_the_first(tmp_path: Path) -> 
         (["--voice", "espeak", "--sound", "a.mp3"], "name a .wav file"),
     ],
 )
-def test_flags_that_do_not_go_together(flags: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", *flags, "--for", "0.1s", "--speed", "max"]) == 2
+def test_flags_that_do_not_go_together(
+    flags: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied_project(ROOT / "examples/minimal", tmp_path / "minimal")
+    assert main(["run", str(folder), *flags, "--for", "0.1s", "--speed", "max"]) == 2
     assert said in capsys.readouterr().err
 
 

@@ -10,6 +10,7 @@ import socket
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import pika
@@ -32,6 +33,7 @@ from lumen.ports import BlockableBus, UsesBroker
 from lumen.project.files import read_files
 from lumen.run import node
 from tests import ROOT
+from tests.copying import copied_project
 from tests.guarded import run_guarded
 from tests.rabbitmq import RabbitMQ
 from tests.relay import Relay
@@ -164,10 +166,10 @@ def test_the_hint_explains_how_to_write_it_elsewhere() -> None:
 @pytest.mark.parametrize("words", [["doctor"], ["topic", "list"], ["status"], ["run", "--robot", "recording"]])
 @pytest.mark.process
 def test_each_command_keeps_the_password(
-    words: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("LUMEN_BUS", "amqp://u:12/pa#ss@h/")
-    monkeypatch.chdir(MINIMAL)
+    monkeypatch.chdir(copied_project(MINIMAL, tmp_path / "minimal"))
     assert main(words) != 0
     printed = capsys.readouterr()
     assert "write %2F for `/`, %23 for `#`" in printed.err
@@ -425,9 +427,9 @@ def test_each_command_names_what_the_broker_is_short_of(
 
 
 def test_no_second_brain_starts_while_the_first_is_unreachable(
-    short: RabbitMQ, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    short: RabbitMQ, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(MINIMAL)
+    monkeypatch.chdir(copied_project(MINIMAL, tmp_path / "minimal"))
     monkeypatch.setattr(node, "CLAIM_DURATION", HANG)
     assert main(["run", "--only", "brain", "--bus", short.url]) == 2
     assert "can't check whether another process is the brain of NAO" in capsys.readouterr().err

@@ -1,9 +1,12 @@
 """examples/bodies: models of packages, described in YAML alone, greet whoever comes."""
 
+from pathlib import Path
+
 import pytest
 
 from lumen.cli.main import main
 from tests import ROOT
+from tests.copying import copied_project
 from tests.scanning import matching
 
 EXAMPLES = ROOT / "examples/bodies"
@@ -23,6 +26,7 @@ def test_nothing_is_wrong_with_it(name: str, capsys: pytest.CaptureFixture[str])
 
 @pytest.mark.physics
 @pytest.mark.parametrize("name", BODIES)
-def test_its_story_goes_well_at_honest_physics(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", str(EXAMPLES / name), "--story", "visitor", "--speed", "max"]) == 0
+def test_its_story_goes_well_at_honest_physics(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = copied_project(EXAMPLES / name, tmp_path / name)
+    assert main(["run", str(folder), "--story", "visitor", "--speed", "max"]) == 0
     assert "All well" in capsys.readouterr().out

@@ -112,9 +112,9 @@ def test_a_project_without_stories_says_how_to_begin(copy: Path, capsys: pytest.
 
 @pytest.mark.process
 def test_only_the_recording_robot_plays_what_it_is_told_to_fail_in(
-    project: Project, capsys: pytest.CaptureFixture[str]
+    copy: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["run", project.root, "--robot", "simulation", "--story", "voiceless"]) == 2
+    assert main(["run", str(copy), "--robot", "simulation", "--story", "voiceless"]) == 2
     error = capsys.readouterr().err
     assert "play it with --robot recording" in error
     assert error.count("\n") == 1

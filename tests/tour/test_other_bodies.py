@@ -1,5 +1,7 @@
 """The shipped tour performed by other bodies: the same files, without errors, from the first word to the last."""
 
+from pathlib import Path
+
 import pytest
 
 import lumen
@@ -36,8 +38,8 @@ def test_pepper_is_guided_through_by_the_recording_robot(monkeypatch: pytest.Mon
 
 @pytest.mark.process
 def test_a_body_without_a_model_is_not_simulated(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    copy: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv(MODEL_VARIABLE, "pepper")
-    assert main(["run", "--robot", "simulation", str(ROOT), "--for", "1s"]) == 2
+    assert main(["run", "--robot", "simulation", str(copy), "--for", "1s"]) == 2
     assert "Pepper has no MJCF: run it with --robot naoqi or --robot recording" in capsys.readouterr().err
