@@ -28,7 +28,7 @@ PAGES = (
 )
 WORD = r"""(?:'[^'\n]*'|"[^"\n]*"|[^\s`'"),;:]+)"""
 COMMAND = re.compile(rf"pip install ((?:--no-deps )?(?!-){WORD})")
-FOREIGN = {"dm-control>=1.0.50,<2"}
+FOREIGN = {"dm-control>=1.0.50,<2", "uv"}
 REPOSITORY = "lumen-robot @ git+https://github.com/OWNER/lumen@COMMIT"
 """What stands for the address of a copy of Lumen, and a commit in it."""
 

@@ -4,6 +4,9 @@ import unicodedata
 from functools import lru_cache
 from typing import NamedTuple
 
+import lumen.features.simulation.installed  # noqa: F401  # first: it says what is not installed
+
+# isort: split
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
