@@ -8,8 +8,8 @@ from tests import ROOT
 from tests.scanning import matching
 
 ENGINE = ROOT / "engine/lumen"
-MAY = ("features/naoqi/", "formats/", "rules/pages/")
-"""What speaks with NAOqi or reads files made for it, and examples of findings."""
+MAY = ("features/naoqi/", "features/formats_motion/")
+"""What speaks with NAOqi or reads files made for it."""
 
 
 def test_no_joint_or_link_of_nao_is_named_in_the_engine() -> None:

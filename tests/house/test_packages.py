@@ -12,7 +12,7 @@ ENGINE = ROOT / "engine/lumen"
 LINE = re.compile(r"^    (\w+(?:\.py|/)) +\S", re.MULTILINE)
 
 
-@pytest.mark.parametrize("folder", ["buses", "modules", "robots"])
+@pytest.mark.parametrize("folder", ["bus", "features/rabbitmq", "robot"])
 def test_each_file_is_named_once(folder: str) -> None:
     said = ast.get_docstring(ast.parse((ENGINE / folder / "__init__.py").read_text()), clean=False)
     assert said

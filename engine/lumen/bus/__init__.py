@@ -1,8 +1,7 @@
-"""Messages by topic: the buses behind `lumen.ports.Bus`, to be had from `lumen.standalone.bus.connect`.
+"""Messages by topic: the buses behind `lumen.ports.Bus`, to be had from `lumen.bus.connect`.
 
     memory.py         the embedded bus, in this process
     local/            the embedded bus of another process of this machine: a server, its clients
-    amqp.py           the bus on RabbitMQ, made of the files below
     addresses.py      the kinds of buses, by the schemes of their addresses
     validated.py      any bus, with every body checked against the schema of its route
     checked_bus.py    the bus of an installed package, whose faults name the package
@@ -11,31 +10,9 @@ What crosses a bus:
 
     bodies.py         JSON data as bytes and back, and what bodies and keys may be
     identities.py     ids of messages, and what others say theirs are
+    routing.py        which keys a pattern of a subscription matches
     aliases.py        second names of keys, while one robot is on the bus
     checking.py       what is wrong with a body, by its JSON Schema, in a line
-
-How RabbitMQ is used, from the inside out:
-
-    broker.py         where a broker is, and in one line why it can't be used
-    queues.py         which queue a route has, and its bounds
-    declarer.py       declares queues, binds and deletes them
-    stream_reader.py  a stream of RabbitMQ, read on from where it was left
-    subscriptions.py  who has subscribed, and what is delivered to whom
-    outbox.py         what waits to be sent: bounded
-    packing.py        images and joints as bytes
-    intake.py         what of all that comes is taken, held back or dropped, and counted
-    connection.py     a connection that belongs to one thread, and is opened again when it is lost
-    properties.py     what AMQP says of a message, whatever it says
-    wire.py           pika's connection, which writes and reads messages itself
-    asked_channel.py  a channel of its own for what the broker is asked, and may refuse
-    poll_loop.py      the loop that pika's connection lives in: waiting apart from what is done then
-    turn_clock.py     when a message came, where this process stood still
-    polled.py         pika's asynchronous connection, driven by that thread, and lent to others while it waits
-    publisher.py      the connection that sends, on the thread of whoever publishes, and hears what the broker has
-    consumer.py       the connection that receives
-    dispatcher.py     the thread that runs handlers, one at a time
-    transport.py      a publisher, a consumer and a dispatcher; routes of stops have one of their own
-    probe.py          what a broker lets us do, for `lumen doctor`
 
 Each name is imported when it is first used. `__init__.pyi` has the same names for type checkers.
 """

@@ -1,7 +1,5 @@
 """Robots behind `lumen.ports.Robot`, and what they share.
 
-    simulation/           the NAO in MuJoCo
-    naoqi/                a real NAO, through NAOqi
     remote/               a robot in another process, on the bus
     recording.py          performs nothing and remembers everything: for stories and tests
     none.py               no robot: every command is refused
