@@ -9,7 +9,7 @@ from tests.scanning import matching
 
 ENGINE = ROOT / "engine/lumen"
 MAY = ("features/naoqi/", "features/formats_motion/")
-"""What speaks with NAOqi or reads files made for it."""
+"""Code that speaks with NAOqi, or reads files made for it."""
 
 
 def test_no_joint_or_link_of_nao_is_named_in_the_engine() -> None:

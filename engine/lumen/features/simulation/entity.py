@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-import lumen.features.simulation.physics  # noqa: F401  # first: it says what is not installed
+import lumen.features.simulation.physics  # noqa: F401  # first: names what is not installed
 
 # isort: split
 import numpy as np

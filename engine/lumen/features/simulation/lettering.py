@@ -4,7 +4,7 @@ import unicodedata
 from functools import lru_cache
 from typing import NamedTuple
 
-import lumen.features.simulation.installed  # noqa: F401  # first: it says what is not installed
+import lumen.features.simulation.installed  # noqa: F401  # first: names what is not installed
 
 # isort: split
 import numpy as np

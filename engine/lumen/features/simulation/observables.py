@@ -1,6 +1,6 @@
 """What a NAO feels and sees, as observables of dm_control's composer."""
 
-import lumen.features.simulation.physics  # noqa: F401  # first: it says what is not installed
+import lumen.features.simulation.physics  # noqa: F401  # first: names what is not installed
 
 # isort: split
 import numpy as np
