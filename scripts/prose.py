@@ -234,8 +234,8 @@ def changed_lines() -> dict[str, set[int]]:
             break
     else:
         return {}
-    kinds = ["*.py", "*.md", TEXTS, ":!docs/rules", ":!docs/commands"]
-    diff = subprocess.run(["git", "diff", "-U0", known, "--", *kinds], cwd=ROOT, capture_output=True, text=True).stdout
+    command = ["git", "diff", "-U0", "-M", "-l0", known]  # all files, without a limit: else a moved file is a new one
+    diff = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, errors="replace").stdout
     before = {row[1:].strip() for row in diff.splitlines() if row.startswith("-")}
     added: dict[str, set[int]] = {}
     file, line = "", 0
@@ -248,7 +248,12 @@ def changed_lines() -> dict[str, set[int]]:
             if row[1:].strip() not in before:  # else it was moved
                 added.setdefault(file, set()).add(line)
             line += 1
-    return {file: lines for file, lines in added.items() if (ROOT / file).exists()}
+    return {file: lines for file, lines in added.items() if (ROOT / file).exists() and _is_read(file)}
+
+
+def _is_read(file: str) -> bool:
+    """Return whether a file is Python, a page that people write, or the texts of the console."""
+    return file == TEXTS or (file.endswith((".py", ".md")) and not file.startswith(("docs/rules/", "docs/commands/")))
 
 
 def draw(count: int, seed: int) -> None:

@@ -1,4 +1,4 @@
-"""A job of the console that goes wrong, in the way it is called: stands in for `lumen.features.console.job`."""
+"""A job of the console that fails as its argument says, in place of `lumen.features.console.job`."""
 
 import os
 import signal

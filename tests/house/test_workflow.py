@@ -61,7 +61,7 @@ def test_make_has_the_targets_and_variables_that_jobs_name() -> None:
 
 
 def test_each_test_of_the_rest_runs_in_one_job() -> None:
-    """Whatever marks a test has, one of the jobs selects it."""
+    """One of the jobs selects each test, with any marks."""
     selections = [word.removeprefix("ONLY=") for job in JOBS for word in of_make(job) if word.startswith("ONLY=")]
     named = sorted(set().union(*map(marks, selections)))
     assert named == ["broker", "browser", "physics"]

@@ -101,7 +101,7 @@ SCHEMAS = {
     Base: (f"body properties/{ROLES}/base/properties", set()),
     EyeRoles: (f"body properties/{ROLES}/eyes/properties", set()),
 }
-"""Where the schemas have the keys of each dataclass, and those that its builder reads under another name, or not."""
+"""The places in the schemas of the keys of each dataclass, and the keys that its builder reads under another name."""
 
 
 @for_each("kind", SCHEMAS)

@@ -50,6 +50,6 @@ class RunVerdict(NamedTuple):
 def troubles_of(node: Node, *, judged: bool) -> list[str]:
     """Return the troubles of a process at its end, after it was closed.
 
-    A story has judged those of the behaviour, and fails for what it does not expect; the faults of packages remain.
+    A story has judged the troubles of the behaviour, and fails for each unexpected one; the faults of packages remain.
     """
     return [*([] if judged else node.troubles), *node.faults]

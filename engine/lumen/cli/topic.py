@@ -87,7 +87,7 @@ def _check_words(options: argparse.Namespace) -> None:
 
 def _check_right(broker: str, key: str) -> None:
     """Raises BusError where the broker does not let this user send under that key."""
-    from lumen.features.rabbitmq.probe import BrokerProbe  # with pika: only where there is a broker
+    from lumen.features.rabbitmq.probe import BrokerProbe  # imports pika, which only a broker needs
 
     with closing(BrokerProbe(broker)) as probe:
         if reason := probe.writing(key):

@@ -1,6 +1,6 @@
 """The routes that come with Lumen: those of Lumen Server in 2015, with the robot's name in their keys.
 
-lumen.yaml of the tour lists all of them, and says what each is for; `lumen.project.used_routes` gives the others those
+lumen.yaml of the tour lists all of them with their purposes; `lumen.project.used_routes` gives the others those
 that their behaviours use.
 """
 

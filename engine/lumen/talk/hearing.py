@@ -210,7 +210,7 @@ def hearing_of(machine: MachineDefinition) -> Hearing:
     """The rows of a machine, made when they are first needed and kept beside it."""
     found: Hearing | None = machine.__dict__.get("_hearing")
     if found is None:
-        with gc_paused():  # of what is made here nothing is garbage
+        with gc_paused():  # nothing that is made here is garbage
             found = Hearing(machine)
         object.__setattr__(machine, "_hearing", found)  # frozen, and the same for all who hold it
     return found

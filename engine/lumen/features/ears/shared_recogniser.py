@@ -35,6 +35,6 @@ class SharedRecogniser(RankingRecogniser):
 
 def shared_sphinx() -> SharedRecogniser:
     """PocketSphinx, as it comes with its package."""
-    from lumen.features.ears.sphinx import Sphinx  # nobody who brings another needs it
+    from lumen.features.ears.sphinx import Sphinx  # needless for another recogniser
 
     return SharedRecogniser("sphinx", Sphinx)

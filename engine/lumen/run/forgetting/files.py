@@ -78,7 +78,7 @@ def _database(file: Path, name: str, found: Forgetting) -> None:
 
 
 def _faces(file: Path, name: str, found: Forgetting) -> None:
-    from lumen.features.eyes.gallery import FaceGallery  # OpenCV takes its time to import
+    from lumen.features.eyes.gallery import FaceGallery  # importing OpenCV is slow
 
     if gone := FaceGallery(file, time.time).forget(name):
         found.pictures += gone

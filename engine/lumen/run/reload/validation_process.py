@@ -26,7 +26,7 @@ class EnoughError(Exception):
 
 def failure(project: Project, story: str, seconds: float) -> "Rehearsal | None":
     """How a story fails with a project; None where it does not, or not within `seconds` of this machine's time."""
-    from lumen.run.rehearsal import rehearse  # half of what this process imports: only where a story is played
+    from lumen.run.rehearsal import rehearse  # half of what this process imports, for stories only
 
     until = time.perf_counter() + seconds
 
