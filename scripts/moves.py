@@ -247,8 +247,14 @@ class Mover:
 
     def _new_packages(self, targets: Iterable[str]) -> None:
         """Write the `__init__.py` of each new package that no file becomes."""
-        python = [PurePosixPath(target) for target in targets if target.endswith(PYTHON)]
-        for folder in sorted({folder for target in python for folder in target.parents}):
+        python = {folder for target in targets if target.endswith(PYTHON) for folder in PurePosixPath(target).parents}
+        data = {
+            folder
+            for target in targets
+            for folder in PurePosixPath(target).parents
+            if str(folder) in self.plan.packages
+        }
+        for folder in sorted(python | data):
             file = self.root / PACKAGE / folder / "__init__.py"
             if not file.exists():
                 file.write_text(f'"""{self.plan.packages[folder.as_posix()]}"""\n', "utf-8")

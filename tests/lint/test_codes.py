@@ -14,7 +14,7 @@ from tests.scanning import matching
 from tests.tables import for_each
 
 ENGINE = Path(lumen.__file__).parent
-RAISING = ("loading", "rules", "expressions", "app/reload")
+RAISING = ("project", "lint", "expressions", "run/reload", "features")
 
 
 @cache

@@ -1,0 +1,1 @@
+"""The explain pages of alerts."""
