@@ -144,7 +144,7 @@ def fault_of_package(error: BaseException) -> str:
 
 
 def package_at_fault(error: BaseException) -> Distribution | None:
-    """Return the distribution whose fault `fault_of_package` describes; None if there is none."""
+    """Return the distribution that caused an error, as `fault_of_package` finds it; None if none did."""
     found = _raiser(error)
     return found[0] if found else None
 

@@ -35,5 +35,6 @@ def unpacked(data: bytes, most: int) -> dict[str, bytes]:
             if sum(entry.file_size for entry in archive.infolist()) > most:
                 raise DamagedBundleError("is larger than a project may be")
             return {name: archive.read(name) for name in archive.namelist()}
+    # zipfile lets all of these through for damaged bytes: of its own format, of the compression, of names and flags
     except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError, RuntimeError, EOFError, zlib.error):
         raise DamagedBundleError("is damaged or incomplete") from None

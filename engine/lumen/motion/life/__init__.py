@@ -1,4 +1,4 @@
-"""What a robot does of its own accord: pure functions of a style, a seed and the time."""
+"""Idle life of a robot: pure functions of a style, a seed and the time."""
 
 from lumen.motion.life.blinking import eyes_closed
 from lumen.motion.life.looking import Attention, aside, glance, look_towards, nod
