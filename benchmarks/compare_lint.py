@@ -28,8 +28,8 @@ PROJECT = ROOT / "tests/golden/projects/tour"
 """A tour that stays as it is, so that the mistakes stay the same."""
 sys.path[:0] = [str(ROOT), str(ROOT / "engine")]
 
+from tests.features.editor.client import Client  # noqa: E402
 from tests.guarded import CompletedProcess, run_guarded  # noqa: E402
-from tests.lsp.client import Client  # noqa: E402
 
 from lumen.lint import check_files  # noqa: E402
 from lumen.project.files import read_files  # noqa: E402

@@ -21,7 +21,7 @@ from lumen.language.modules import ANSWERS, ModuleSettings
 from lumen.run.questions import Questions
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
-from tests.conversation.fake_model import fake_model, says
+from tests.features.answers.fake_model import fake_model, says
 from tests.waiting import until
 
 TIMES = 30

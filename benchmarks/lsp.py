@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
-from tests.lsp.client import Client
+from tests.features.editor.client import Client
 
 from lumen.project.files import read_files
 

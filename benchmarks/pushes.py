@@ -14,7 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-from tests.simulation.pushes import (  # noqa: E402
+from tests.features.simulation.pushes import (  # noqa: E402
     DIRECTIONS,
     Doing,
     PushTrial,

@@ -19,8 +19,8 @@ import numpy as np
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-from tests.simulation.bodies import shipped  # noqa: E402
-from tests.simulation.walks import RESTED, any_robot, bump, ramp, strayed, truth, walk  # noqa: E402
+from tests.features.simulation.bodies import shipped  # noqa: E402
+from tests.features.simulation.walks import RESTED, any_robot, bump, ramp, strayed, truth, walk  # noqa: E402
 
 from lumen.features.simulation.offers import SimulatedRobot  # noqa: E402
 from lumen.language.commands import Move, Walk  # noqa: E402

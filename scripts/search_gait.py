@@ -23,8 +23,8 @@ import yaml
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT))
 
-from tests.simulation.bodies import shipped  # noqa: E402
-from tests.simulation.walks import any_robot, truth  # noqa: E402
+from tests.features.simulation.bodies import shipped  # noqa: E402
+from tests.features.simulation.walks import any_robot, truth  # noqa: E402
 
 from lumen.errors import LumenError, UsageError  # noqa: E402
 from lumen.features.simulation.leg_geometry import read_legs  # noqa: E402

@@ -23,7 +23,7 @@ PHYSICS = ("lumen.features.simulation", "mujoco", "dm_control")
 """What lives in MuJoCo's world."""
 NETWORK = ("http.", "socket", "lumen.features.console.serving", "lumen.features.rabbitmq.broker", "lumen.bus.local")
 """What opens ports or connections."""
-BROWSER = "tests.console.browser"
+BROWSER = "tests.features.console.browser"
 OWN_SERVERS = "own servers"
 """The group of tests with a broker of their own, which run one after another: one such broker at a time."""
 

@@ -13,7 +13,7 @@ from lumen.lint import check_files
 from lumen.project.yaml_reader import parse
 from tests.attack.files import foreign_file, project_file
 from tests.attack.test_files import BASE, NUMBERED, blanks
-from tests.formats import test_hostile
+from tests.features.formats_charts import test_hostile
 from tests.formats.test_large import SHAPES, imported
 from tests.loading.test_yaml_composer import DEEP
 

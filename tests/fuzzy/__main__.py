@@ -2,7 +2,7 @@
 
 import sys
 
-from tests.fuzzy.test_fuzzylite import EXAMPLES, compared, example
+from tests.features.formats_fuzzy.test_fuzzylite import EXAMPLES, compared, example
 
 
 def main() -> None:

@@ -92,6 +92,6 @@ def raise_floors(names: list[str]) -> None:
 
 
 def _folder(name: str) -> str:
-    """Return the folder of tests/ that a file or test is in, `tests` if it is in none."""
-    parts = name.partition("::")[0].split("/")
-    return "/".join(parts[:2]) if len(parts) > 2 else "tests"
+    """Return the folder of tests/ or tests/features/ that a file or test is in, `tests` if it is in none."""
+    *folders, _ = name.partition("::")[0].split("/")
+    return "/".join(folders[: 3 if "features" in folders else 2])

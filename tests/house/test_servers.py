@@ -27,7 +27,7 @@ def test_a_part_is_given_to_each(broker: RabbitMQ) -> None:
 """
 ENDS = """
 import pytest
-from tests.console.chromium import Chromium
+from tests.features.console.chromium import Chromium
 
 def test_a_browser_that_ends_fails_who_uses_it() -> None:
     one, other = Chromium(), Chromium()

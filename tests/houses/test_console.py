@@ -14,8 +14,8 @@ from lumen.run.house import House
 from lumen.run.plan import Plan
 from lumen.run.recovery.run_directory import RunDirectory
 from lumen.run.setup import set_up_house
-from tests.console.pages import Served
-from tests.console.viewer import Viewer
+from tests.features.console.pages import Served
+from tests.features.console.viewer import Viewer
 from tests.waiting import HANG, until
 
 NAMES = ("ana", "ben")

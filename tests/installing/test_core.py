@@ -9,9 +9,9 @@ import pytest
 
 from lumen.extras import INSTALL_BARE, MissingExtraError, demand
 from tests import ROOT
+from tests.features.editor.client import Client
 from tests.guarded import run_guarded
 from tests.installing.conftest import Lumen
-from tests.lsp.client import Client
 from tests.waiting import HANG
 
 pytestmark = [pytest.mark.xdist_group("installing"), pytest.mark.slow]

@@ -24,9 +24,9 @@ from lumen.journal.frames import unpack
 from lumen.journal.journal_file import JOURNAL_SUFFIX
 from lumen.run.reload_journal import Journal
 from tests import ROOT
-from tests.alerts.halls import Hall
-from tests.alerts.servers import Web
 from tests.copying import copied_project
+from tests.features.alerts.halls import Hall
+from tests.features.alerts.servers import Web
 from tests.guarded import PIPE, STDOUT, Guarded
 from tests.waiting import HANG, until
 

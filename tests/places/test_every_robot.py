@@ -14,9 +14,9 @@ from lumen.language.robots import Body as RobotBody
 from lumen.motion.dead_reckoning import turned
 from lumen.ports import Joints, Robot, Sense, Whereabouts
 from lumen.run.navigator import Navigator
+from tests.features.simulation.conftest import body
+from tests.features.simulation.walks import any_robot, truth
 from tests.seams.test_robot import ROBOTS, Body
-from tests.simulation.conftest import body
-from tests.simulation.walks import any_robot, truth
 from tests.tour.conftest import project
 
 __all__ = ["body", "project"]

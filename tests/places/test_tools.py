@@ -14,7 +14,7 @@ from lumen.insight.exploration import explore
 from lumen.lint import check_files
 from lumen.statechart import Machine
 from tests import ROOT
-from tests.lsp.test_services import SHIPPED, TOUR, place
+from tests.features.editor.test_services import SHIPPED, TOUR, place
 from tests.reload.test_changes import FILES
 from tests.tour.conftest import copy, project
 

@@ -27,7 +27,7 @@ from lumen.language.projects import Project
 from lumen.ports import RobotCommand, Whereabouts
 from lumen.robot.command_codec import decode_command
 from tests import ROOT
-from tests.naoqi.fake import FakeNao
+from tests.features.naoqi.fake import FakeNao
 from tests.tables import for_each
 from tests.tour.conftest import project
 

@@ -20,7 +20,7 @@ from lumen.ports import Aim, Battery, Hall, Joints, Live, Perform, Record, Robot
 from lumen.robot.recording import RecordingRobot
 from lumen.robot.remote import RemoteHall, RemoteRobot, RobotHost
 from tests import ROOT
-from tests.naoqi.lockstep import Lockstep
+from tests.features.naoqi.lockstep import Lockstep
 
 
 class Body(Robot, Hall, Protocol):

@@ -14,7 +14,7 @@ from lumen.lint import check_files
 from lumen.project.files import read_files
 from lumen.project.schema import load_schema
 from tests import ROOT
-from tests.lsp.test_services import place
+from tests.features.editor.test_services import place
 from tests.stranger.installing import Installed
 from tests.tables import for_each
 

@@ -6,7 +6,7 @@ import pytest
 
 from lumen.features.editor.server import server
 from tests import ROOT
-from tests.lsp.client import ENGINE, Client
+from tests.features.editor.client import ENGINE, Client
 from tests.stranger.installing import Installed
 
 FAULTY = """

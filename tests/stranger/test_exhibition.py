@@ -31,7 +31,7 @@ from lumen.run.plan import Plan
 from lumen.run.presence import all_parts, unique_parts
 from lumen.run.setup import set_up, set_up_house
 from tests import ROOT
-from tests.lsp.test_services import place
+from tests.features.editor.test_services import place
 from tests.stranger.installing import Installed, Lumen
 from tests.waiting import HANG, until
 

@@ -15,9 +15,9 @@ from lumen.project.files import read_files
 from lumen.run.forgetting.added import FeatureForgetter
 from lumen.run.forgetting.report import OF_A_PACKAGE, out_of_reach
 from tests import ROOT
-from tests.alerts.halls import Hall
-from tests.alerts.servers import Web
 from tests.copying import copied_project
+from tests.features.alerts.halls import Hall
+from tests.features.alerts.servers import Web
 from tests.stranger.installing import Installed
 
 MANIFEST = """

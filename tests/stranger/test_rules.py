@@ -17,7 +17,7 @@ from lumen.lint.pages import page
 from lumen.project.files import read_files
 from tests import ROOT
 from tests.copying import copied_project
-from tests.lsp.client import Client
+from tests.features.editor.client import Client
 from tests.stranger.installing import Installed, Lumen
 
 BASE = ROOT / "tests/lint/pages/base"

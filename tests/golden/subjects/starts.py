@@ -88,7 +88,7 @@ def record(folder: Path) -> None:
 @contextmanager
 def _fake_nao() -> Iterator[str]:
     """A NAOqi in a process of its own; its address."""
-    with Guarded([sys.executable, "-m", "tests.naoqi"], cwd=ROOT, stdout=PIPE, text=True) as process:
+    with Guarded([sys.executable, "-m", "tests.features.naoqi"], cwd=ROOT, stdout=PIPE, text=True) as process:
         assert process.stdout
         yield process.stdout.readline().split()[-1]
         process.terminate()

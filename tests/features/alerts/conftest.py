@@ -1,0 +1,27 @@
+"""Servers that take what is told, and nothing of this machine's own settings."""
+
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from tests.features.alerts.servers import Web
+
+
+@pytest.fixture(autouse=True)
+def no_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("LUMEN_ALERT_TOKEN", "LUMEN_ALERT_URL", "LUMEN_SMTP_USER", "LUMEN_SMTP_PASSWORD", "LUMEN_BUS"):
+        monkeypatch.delenv(name, raising=False)
+
+
+@pytest.fixture
+def web() -> Iterator[Callable[..., Web]]:
+    """Makes web servers; they are closed at the end."""
+    made: list[Web] = []
+
+    def make(*statuses: int) -> Web:
+        made.append(Web(*statuses))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()

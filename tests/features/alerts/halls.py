@@ -1,0 +1,144 @@
+"""A small exhibition that tells a server on loopback, whole or in parts on one bus, as fast as it can."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import lumen
+from lumen.bus.memory import MemoryBus
+from lumen.clock.real import RealClock
+from lumen.clock.simulated import SimulatedClock
+from lumen.features.alerts.alert import Origin
+from lumen.features.alerts.desk import AlertDesk
+from lumen.features.alerts.settings import Alerts
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from lumen.ports import Clock
+from lumen.project.files import read_files
+from lumen.robot.recording import RecordingRobot
+from lumen.run.compose import compose
+from lumen.run.exhibition import Exhibition
+from lumen.run.node import Node
+from lumen.run.plan import Plan
+from lumen.run.recovery.run_directory import RunDirectory
+from lumen.run.recovery.startup import startup_project
+from lumen.run.setup import Setup
+from tests import ROOT
+from tests.copying import copied_project
+from tests.features.alerts.servers import Web
+from tests.nodes import Printed
+from tests.waiting import until
+
+BASE = ROOT / "tests/lint/pages/base"
+TOUR = """id: tour
+initial: idle
+states:
+  idle:
+    on: {fallen: rises}
+  rises:
+    do: [{posture: Stand}]
+    onDone: idle
+    onError: idle
+"""
+
+
+def files(folder: Path, web: Web) -> Path:
+    """The files of the exhibition; people are told of the same each time."""
+    copied_project(BASE, folder)
+    main = folder / "lumen.yaml"
+    kept = "".join(line for line in main.read_text("utf-8").splitlines(keepends=True))
+    main.write_text(f"alerts: {{interval: 1ms, to: [{{webhook: '{web.url}'}}]}}\n{kept}", "utf-8")
+    for stale in (*folder.glob("behaviors/**/*.yaml"), *folder.glob("fuzzy/*.yaml")):
+        stale.unlink()
+    (folder / "behaviors/tour.yaml").write_text(TOUR, "utf-8")
+    return folder
+
+
+class NearBus(MemoryBus):
+    """A shared bus in memory whose broker a test can make unreachable or short of a resource."""
+
+    host, away, blocked = "near", False, ""
+
+    def close(self) -> None:
+        """It ends with the test."""
+
+
+class Hall:
+    """Exhibitions and parts of them that live while somebody waits."""
+
+    def __init__(self, folder: Path, web: Web) -> None:
+        self.folder, self.web, self.bus = files(folder, web), web, NearBus()
+        self.robot = RecordingRobot(lumen.load(folder).body)
+        self.nodes: list[Node] = []
+        self.closing: list[Callable[[], None]] = []
+
+    def whole(self, *, last_good: bool = False, **behaves: str) -> Exhibition:
+        """`lumen run`, or `lumen run --last-good`."""
+        directory = RunDirectory(self.folder)
+        if last_good:
+            project = startup_project(self.folder, directory, last_good=True)
+        else:
+            project = lumen.load(self.folder)
+            directory.begin(project, read_files(self.folder))
+        self.robot = RecordingRobot(project.body, behaves)
+        setup = Setup(self.robot, SimulatedClock(self.robot.advance), None)
+        exhibition = Exhibition(
+            Plan(
+                project,
+                setup,
+                self.bus,
+                options={"directory": directory, "reload": "auto", "fresh": False, "alerts": self._desk(project)},
+            )
+        )
+        exhibition.start()
+        self.nodes.append(exhibition.node)
+        self.closing += [exhibition.close, lambda: directory.close(forget=False)]
+        return exhibition
+
+    def part(self, *names: str) -> Node:
+        """`lumen run --only NAMES`."""
+        directory = RunDirectory(self.folder, guest="brain" not in names)
+        project = lumen.load(self.folder)
+        clock: Clock = RealClock()
+        setup: Setup | None = None
+        if "robot" in names:
+            self.robot = RecordingRobot(project.body)
+            setup = Setup(self.robot, SimulatedClock(self.robot.advance, 1.0), None)
+        narrator = Printed(clock.now, lambda: node.project.machine)
+        options = {"directory": directory, "operated": True, "reload": "manual", "alerts": self._desk(project, *names)}
+        clock = setup.clock if setup else clock
+        node = compose(
+            Plan(project, setup, self.bus, narrator=narrator, roles=names, clock=clock, options=options)
+        ).node
+        self.nodes.append(node)
+        self.closing += [node.close, lambda: directory.close(forget=False)]
+        return node
+
+    def _desk(self, project: Project, *parts: str) -> AlertDesk:
+        return AlertDesk(project.section(Alerts), Origin(project.name, project.robot, parts), self.folder, print)
+
+    def happen(self, name: str, **data: Any) -> None:
+        """The robot notices something."""
+        self.robot._notice(Event(name, data, self.robot.time))
+
+    def until(self, condition: Callable[[], object]) -> None:
+        until(condition, meanwhile=lambda: self.live(1), shown=lambda: [body["text"] for body in self.web.bodies])
+
+    def told(self, kind: str) -> str:
+        """What was told first of that kind, once it was."""
+        self.until(lambda: self.web.of(kind))
+        text: str = self.web.of(kind)[0]["text"]
+        return text.partition(": ")[2]
+
+    def live(self, ticks: int) -> None:
+        for _ in range(ticks):
+            for node in self.nodes:
+                node.tick()
+
+    def kill(self, node: Node) -> None:
+        """It lives no more, and tells nobody."""
+        self.nodes.remove(node)
+
+    def close(self) -> None:
+        for close in reversed(self.closing):
+            close()

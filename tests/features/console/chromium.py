@@ -1,0 +1,117 @@
+"""Windows with pages of the console, and what a person sees and does there."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from typing import Any
+
+from selenium import webdriver
+from selenium.common.exceptions import WebDriverException
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.remote.webelement import WebElement
+
+from tests.features.console.browser import DrivenBrowser
+from tests.waiting import HANG, until
+
+REST = "rest-button[main] button.rest"
+PRESSES = "return document.querySelector('rest-button[main]')?.presses ?? 0"
+SAID = """
+const said = document.querySelector("rest-button[main] .rest-said");
+if (said) return said.hidden ? "" : said.innerText;
+const broken = document.querySelector(".broken");
+return broken && broken.offsetParent ? broken.innerText : "";
+"""
+QUIET = """
+const said = document.querySelector("rest-button[main] .rest-said");
+if (said) said.querySelector(":scope > button").click();
+document.activeElement?.blur();
+"""
+
+
+class Chromium:
+    """Windows of one person, who was never here before, until `close`; in English, `size` is theirs [px]."""
+
+    def __init__(self, size: tuple[int, int] = (1200, 900)) -> None:
+        self._browser = DrivenBrowser(size=size, page_load_strategy="none")
+        self.driver = self._browser.driver
+        self.driver.set_script_timeout(HANG)
+
+    def run(self, script: str, *arguments: Any) -> Any:
+        """What a script in the page returns."""
+        return self.driver.execute_script(script, *arguments)
+
+    def open(self, address: str) -> None:
+        """Go to an address, and don't wait for it."""
+        self.driver.get(address)
+
+    def window(self) -> str:
+        """Another window, which is looked at from now on."""
+        return self._browser.window()
+
+    def look(self, window: str) -> None:
+        self.driver.switch_to.window(window)
+
+    def find(self, selector: str) -> WebElement:
+        """The first element that is shown and that this is true of, once there is one."""
+        found: list[WebElement] = []
+
+        def there() -> bool:
+            found[:] = [one for one in self.all(selector) if one.is_displayed()]
+            return bool(found)
+
+        until(there, HANG)
+        return found[0]
+
+    def all(self, selector: str) -> Sequence[WebElement]:
+        return self.driver.find_elements(By.CSS_SELECTOR, selector)
+
+    def text(self) -> str:
+        """All that is shown."""
+        return str(self.run("return document.body ? document.body.innerText : ''"))
+
+    def shows(self, *texts: str) -> bool:
+        shown = self.text()
+        return all(text in shown for text in texts)
+
+    def click(self, selector: str, text: str) -> None:
+        """Click the first that says this, wherever it is by then: what comes meanwhile moves it."""
+
+        def clicked() -> bool:
+            with suppress(WebDriverException, StopIteration):
+                next(one for one in self.all(selector) if text in one.text).click()
+                return True
+            return False
+
+        until(clicked, HANG)
+
+    def rest(self, *, keys: bool = False) -> None:
+        """Press Rest as a person does, as soon as the page has it: with the mouse, or Escape twice.
+
+        Two keys that a slow machine passes on too late for one another are pressed again.
+        """
+
+        def pressed() -> bool:
+            try:
+                if not (found := self.all(REST)):
+                    return False
+                if keys:
+                    before = self.run(PRESSES)
+                    webdriver.ActionChains(self.driver, 0).send_keys(Keys.ESCAPE, Keys.ESCAPE).perform()
+                    return bool(self.run(PRESSES) > before)
+                found[0].click()
+            except WebDriverException:  # the page was another one meanwhile
+                return False
+            return True
+
+        until(pressed, HANG)
+
+    def said(self) -> str:
+        """What the page says became of Rest, in its words; empty for nothing."""
+        return str(self.run(SAID))
+
+    def quiet(self) -> None:
+        """Close what it said before."""
+        self.run(QUIET)
+
+    def close(self) -> None:
+        self._browser.close()

@@ -1,0 +1,183 @@
+"""A page that was away is live again soon, and has every entry once: the server was killed, the network or a wire cut.
+
+What was taken is collected in the page itself, and compared with the journal, which is asked on the bus.
+"""
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from threading import Event, Thread
+from typing import Any
+
+import pytest
+
+from tests.features.console.chromium import Chromium
+from tests.features.console.conftest import lived_in
+from tests.features.console.house import CONSOLE, House
+from tests.tour.conftest import copied
+from tests.waiting import HANG, until
+
+HEARD = "lumen.NAO.audio.gender.identification"
+EACH = 0.03
+"""How often something happens [s]: while a page is away more of it than it would be given without asking."""
+SHORT, FULL = 4.0, 30.0
+"""How long it is away [s]."""
+COLLECT = """
+const done = arguments[arguments.length - 1];
+import("/pages/live.js").then(({ live, listen }) => {
+  Object.assign(globalThis, { live, taken: [], times: [] });
+  listen((kind, data) => { if (kind === "entry") taken.push(data.position), times.push(Date.now() / 1000); });
+  done();
+});
+"""
+
+
+class Speaker:
+    """Is heard again and again until `close`, of which the robot makes nothing."""
+
+    def __init__(self, house: House) -> None:
+        self._house, self._ending = house, Event()
+        self._thread = Thread(target=self._speak)
+        self._thread.start()
+
+    def _speak(self) -> None:
+        while not self._ending.wait(EACH):
+            self._house.send(HEARD, {"gender": "male"})
+
+    def close(self) -> None:
+        self._ending.set()
+        self._thread.join()
+
+
+class Window:
+    """A window on one page, which notes what it takes."""
+
+    def __init__(self, chromium: Chromium, handle: str, address: str) -> None:
+        self._chromium, self._handle = chromium, handle
+        chromium.look(handle)
+        chromium.open(address)
+        until(lambda: chromium.run("return document.readyState") == "complete", HANG)
+        chromium.driver.set_script_timeout(HANG)
+        chromium.driver.execute_async_script(COLLECT)
+        until(lambda: self.taken, HANG)
+
+    def run(self, script: str) -> Any:
+        self._chromium.look(self._handle)
+        return self._chromium.run(script)
+
+    @property
+    def taken(self) -> list[int]:
+        return list(self.run("return taken"))
+
+    @property
+    def state(self) -> str:
+        return str(self.run("return live.state"))
+
+    def time_of(self, number: int) -> float:
+        """When it took the one of that number [s since 1970]."""
+        return float(self.run(f"return times[{number}]"))
+
+
+@pytest.fixture(scope="module")
+def begun_house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[House]:
+    yield from lived_in(House(copied(tmp_path_factory.mktemp("house")), speed="4"))
+
+
+@pytest.fixture
+def house(begun_house: House) -> House:
+    """The one of the test before, whole again."""
+    begun_house.await_robot()
+    return begun_house
+
+
+def journaled(house: House, first: int, last: int) -> list[int]:
+    """The positions that the journal has, from one to another."""
+    found: list[int] = []
+    while not found or found[-1] < last:
+        page = house.ask_brain({"ask": "journal", "from": found[-1] + 1 if found else first})
+        assert isinstance(page, dict)
+        assert page["entries"], f"the journal ends at {found[-1:]}, the page had {last}"
+        found += [entry["position"] for entry in page["entries"]]
+    return [position for position in found if position <= last]
+
+
+def away(house: House, chromium: Chromium, what: str, seconds: float, leave: Callable[[], object], back: Any) -> None:
+    """Two pages are away and come back, while things happen; both have all of it, once and in order."""
+    handles = (str(chromium.driver.current_window_handle), chromium.window())
+    speaker = Speaker(house)
+    try:
+        addresses = (house.address, f"{house.address}robot/NAO")
+        windows = [Window(chromium, *one) for one in zip(handles, addresses, strict=True)]
+        leave()
+        until(lambda: all(window.state == "away" for window in windows), HANG)
+        before = [len(window.taken) for window in windows]
+        Event().wait(seconds)
+        back()
+        moment = time.time()
+        until(lambda: all(len(w.taken) > had for w, had in zip(windows, before, strict=True)), HANG)
+        late = max(w.time_of(had) for w, had in zip(windows, before, strict=True)) - moment
+        seen = max(window.taken[-1] for window in windows)
+        until(lambda: all(window.taken[-1] > seen for window in windows), HANG)
+    finally:
+        speaker.close()
+    for window in windows:
+        taken = window.taken
+        assert taken == journaled(house, taken[0], taken[-1])
+        assert len(taken) > seconds / EACH / 4
+    told = f"{what} for {seconds:g} s: live {max(late, 0.0):.1f} s after it was back; {len(windows[0].taken)} entries"
+    sys.stdout.write(f"{told}, each once, none missing\n")
+
+
+def killed(house: House) -> tuple[Callable[[], object], Callable[[], object]]:
+    def back() -> None:
+        house.begin(CONSOLE)
+        until(house.listens, HANG)
+
+    return lambda: house.kill(CONSOLE), back
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("away")
+def test_a_server_that_was_killed_and_started_again(house: House, chromium: Chromium) -> None:
+    away(house, chromium, "console killed", SHORT, *killed(house))
+
+
+@pytest.mark.slow
+@pytest.mark.xdist_group("away")
+def test_a_network_that_was_cut(house: House, chromium: Chromium) -> None:
+    away(house, chromium, "network cut", SHORT, house.network.cut, house.network.mend)
+
+
+@pytest.mark.slow
+def test_a_server_that_was_started_again_before_its_broker_was_there(
+    house_on_a_broker: House, chromium: Chromium
+) -> None:
+    """Pages come back to a console that knows of no robot yet."""
+    house = house_on_a_broker
+    assert house.wire
+    wire = house.wire
+
+    def leave() -> None:
+        wire.refuse()
+        house.kill(CONSOLE)
+
+    def back() -> None:
+        house.begin(CONSOLE)
+        until(lambda: house.listens() and not house.browser.robots, HANG)
+        until(lambda: chromium.run("return live.state === 'live' && live.robots.size === 0"), HANG)
+        wire.mend()
+
+    away(house, chromium, "console killed, and its broker away,", SHORT, leave, back)
+
+
+@pytest.mark.soak
+@pytest.mark.xdist_group("away")
+def test_a_network_that_was_cut_for_half_a_minute(house_on_a_broker: House, chromium: Chromium) -> None:
+    house = house_on_a_broker
+    away(house, chromium, "network cut", FULL, house.network.cut, house.network.mend)
+
+
+@pytest.mark.soak
+@pytest.mark.xdist_group("away")
+def test_a_server_that_was_away_for_half_a_minute(house_on_a_broker: House, chromium: Chromium) -> None:
+    away(house_on_a_broker, chromium, "console killed", FULL, *killed(house_on_a_broker))

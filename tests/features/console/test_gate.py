@@ -1,0 +1,187 @@
+"""What a foreign page, a rebound name, a guesser of PINs or a careless program may send, and what becomes of it."""
+
+import json
+import socket
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from lumen.errors import UsageError
+from lumen.features.console.access import Access, TooFastError
+from lumen.features.console.gate import MAX_BODY
+from lumen.features.console.people import Person, Role
+from lumen.features.console.requests import REQUESTS_PER_SECOND
+from lumen.features.console.serving import Console
+from lumen.upkeep.ratelimit import BURST
+from tests.features.console.pages import Browser, Served, Stream
+from tests.waiting import until
+
+PINS = {Role.SHOW: "show-1", Role.OPERATOR: "operator-2", Role.AUTHOR: "author-3"}
+REST = {"id": "r", "robot": "NAO", "command": "rest"}
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A console without an exhibition, and with PINs."""
+    served = Served(tmp_path_factory.mktemp("nobody"), pins=PINS)
+    yield served.browser
+    served.close()
+
+
+@pytest.fixture(scope="module")
+def open_to_all(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A console without an exhibition, and without PINs."""
+    served = Served(tmp_path_factory.mktemp("nobody"))
+    yield served.browser
+    served.close()
+
+
+@pytest.mark.parametrize(
+    "host", ["evil.example", "127.0.0.1.evil.example", "localhost@evil", "", "0.0.0.0", "127.0.0.1:x"]
+)
+def test_a_name_that_is_not_ours_is_refused(open_to_all: Browser, host: str) -> None:
+    answer = open_to_all.get("/api/now", Host=host)
+    assert answer.status == 421
+    assert "unknown host" in answer.data["reason"]
+
+
+@pytest.mark.parametrize("host", ["localhost", "127.0.0.1:1", "[::1]:8080"])
+def test_names_of_this_machine_are_ours(open_to_all: Browser, host: str) -> None:
+    assert open_to_all.get("/api/now", Host=host).status == 200
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "null", "http://127.0.0.1:1", "http://localhost"])
+def test_pages_of_others_may_not_ask(open_to_all: Browser, origin: str) -> None:
+    assert open_to_all.post("/api/commands", REST, Origin=origin).status == 403
+    assert open_to_all.get("/api/events", Origin=origin).status == 403
+    assert open_to_all.get("/camera/NAO", Sec_Fetch_Site="cross-site").status == 403
+    ours = f"http://{open_to_all.host}:{open_to_all.port}"
+    assert open_to_all.post("/api/commands", REST, Origin=ours).data["state"] == "unsent"
+
+
+def test_only_json_objects_of_some_size_are_taken(open_to_all: Browser) -> None:
+    assert open_to_all.ask("POST", "/api/commands", b"id=1", Content_Type="text/plain").status == 415
+    for body in (b"", b"[1]", b"{", b"\xff", b"[" * 50_000):
+        answer = open_to_all.ask("POST", "/api/commands", body, Content_Type="application/json")
+        assert (answer.status, set(answer.data)) == (400, {"reason"})
+    large = json.dumps({**REST, "text": "x" * MAX_BODY}).encode()
+    assert open_to_all.ask("POST", "/api/commands", large, Content_Type="application/json").status == 413
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"command": "rest"}, {"id": "a b", "command": "rest", "robot": "NAO"}, {"id": "1", "command": "explode"},
+        {"id": "1", "command": ["rest"]}, {"id": 1, "command": "say", "robot": "NAO", "text": "x"},
+    ],
+)  # fmt: skip
+def test_what_is_wrong_with_a_command_is_said_in_a_sentence(open_to_all: Browser, body: object) -> None:
+    answer = open_to_all.post("/api/commands", body)
+    assert answer.status == 400
+    assert answer.data["reason"]
+
+
+def test_every_answer_has_the_headers_that_keep_others_out(open_to_all: Browser) -> None:
+    for path in ("/", "/api/now", "/pages/rest.js", "/nowhere", "/robot/NAO/day"):
+        headers = open_to_all.get(path).headers
+        assert headers["content-security-policy"].startswith("default-src 'self'")
+        assert "frame-ancestors 'none'" in headers["content-security-policy"]
+        assert (headers["x-content-type-options"], headers["referrer-policy"]) == ("nosniff", "no-referrer")
+
+
+@pytest.mark.parametrize(
+    "path", ["../site.py", "..%2fsite.py", "%2e%2e/site.py", "/etc/passwd", "vendor/../../site.py"]
+)
+def test_nothing_but_pages_is_served(open_to_all: Browser, path: str) -> None:
+    with socket.create_connection((open_to_all.host, open_to_all.port), 30) as wire:
+        wire.sendall(f"GET /pages/{path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n".encode())
+        answer = b"".join(iter(lambda: wire.recv(65536), b""))
+    assert b" 404 " in answer.splitlines()[0]
+
+
+def test_without_a_role_one_may_rest_and_nothing_else(alone: Browser) -> None:
+    now = alone.get("/api/now").data
+    assert now["role"] == "nobody"
+    for path in (
+        "/camera/NAO",
+        "/api/day",
+        "/api/why",
+        "/api/files",
+        "/api/shape",
+        "/api/poses?robot=NAO",
+        "/api/entries",
+    ):
+        assert alone.get(path).status == 401, path
+    assert alone.post("/api/fork", {}).status == 401
+    assert alone.command("say", text="x", robot="NAO").status == 401
+    assert alone.command("rest", robot="NAO").data["state"] == "unsent"
+
+
+def test_a_pin_gives_a_role_and_a_session_keeps_it(alone: Browser) -> None:
+    assert alone.get("/api/now", Authorization="Bearer operator-2").data["role"] == "operator"
+    answer = alone.post("/api/session", {"pin": "show-1", "name": "Ada"})
+    assert (answer.status, answer.data["role"]) == (200, "show")
+    cookie = answer.headers["set-cookie"]
+    assert "HttpOnly" in cookie
+    assert "samesite=strict" in cookie.lower()
+    value = cookie.partition(";")[0]
+    now = alone.get("/api/now", Cookie=value).data
+    assert (now["role"], now["name"]) == ("show", "Ada")
+    assert alone.get("/api/now", Cookie=value[:-1] + ("0" if value[-1] != "0" else "1")).data["role"] == "nobody"
+    assert alone.ask("DELETE", "/api/session", Cookie=value).status == 200
+    assert alone.get("/api/now", Cookie=value).data["role"] == "nobody"
+
+
+def test_a_session_outlives_the_console_but_not_its_pin() -> None:
+    secret = b"x" * 32
+    cookie = Access(PINS, secret).sign(Person(Role.AUTHOR, "Ada"))
+    assert Access(PINS, secret).person("a", "", cookie) == (Role.AUTHOR, "Ada")
+    assert Access({**PINS, Role.AUTHOR: "another"}, secret).person("a", "", cookie).role is Role.NOBODY
+    assert Access(PINS, b"y" * 32).person("a", "", cookie).role is Role.NOBODY
+    for broken in ("", ".", "a.b", "é.é", cookie.partition(".")[2]):
+        assert Access(PINS, secret).person("a", "", broken).role is Role.NOBODY
+
+
+def test_pins_cannot_be_guessed_at_speed() -> None:
+    access, tried = Access(PINS), 0
+    for number in range(1_000):
+        try:
+            access.role("one", f"{number:04}")
+            tried += 1
+        except TooFastError as error:
+            assert error.wait >= 1  # noqa: PT017  what is raised is what is asked about
+    assert tried == 3
+    for number in range(1_000):
+        try:
+            access.role(f"address {number}", f"{number:04}")
+            tried += 1
+        except TooFastError:
+            break
+    assert tried == 20
+
+
+def test_rest_is_never_rationed(open_to_all: Browser) -> None:
+    statuses = [open_to_all.get("/api/now").status for _ in range(int(2 * BURST * REQUESTS_PER_SECOND))]
+    assert 429 in statuses
+    assert {open_to_all.command("rest", robot="NAO").status for _ in range(20)} == {200}
+
+
+def test_nobody_else_is_let_in_without_pins(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="no PINs are set"):
+        Console(lambda: pytest.fail("no bus is wanted"), tmp_path, "0.0.0.0", 0)
+
+
+def test_a_port_that_is_taken_is_said_in_a_line(open_to_all: Browser, tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match=f"port {open_to_all.port} of 127.0.0.1 is not available"):
+        Console(lambda: pytest.fail("no bus is wanted"), tmp_path, "127.0.0.1", open_to_all.port)
+
+
+def test_it_ends_at_once_with_pages_that_listen(tmp_path: Path) -> None:
+    served = Served(tmp_path)
+    streams = [Stream(served.browser) for _ in range(5)]
+    until(lambda: all(stream.comments for stream in streams))
+    served.close()
+    for stream in streams:
+        assert stream.ended.wait(10.0)
+        stream.close()

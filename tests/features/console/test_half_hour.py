@@ -1,0 +1,206 @@
+"""An operator's half hour: broken visitors, a bad edit, a fall, a robot and a broker that are gone.
+
+Whatever happens has to be seen on the pages, and mended from them; nothing else is looked at. Each page is waited for
+as a person would. `pytest -m soak` plays as many of them as fill half an hour.
+"""
+
+from collections.abc import Callable
+from random import Random
+
+import pytest
+from selenium.common.exceptions import WebDriverException
+
+from tests.features.console.chromium import Chromium
+from tests.features.console.house import ROBOT, House
+from tests.waiting import until
+
+HEARD, FACE = "lumen.NAO.audio.speech.recognition", "lumen.NAO.visual.face.detection"
+WAIT = 180.0
+"""How long a page may take on a crowded machine [s]."""
+LOOK = 0.25
+"""How often somebody looks [s]."""
+ROUNDS = 20
+LEFT = "visitor.left: goodbye"
+"""Of all scenes, in half an hour."""
+NONSENSE = ("blub <b>blab</b>", "\u202e\u0000", "?" * 200, "{{ visitor }}", "'; drop table visits; --")
+BROKEN = (None, 7, [], {"result": 12}, {"x": "left"}, {"result": "a" * 100_000})
+ALL = """
+const entries = [...document.querySelectorAll(".entry")].map((one) => one.textContent);
+return [document.body?.innerText ?? "", ...entries].join("\\n");
+"""
+"""All that is shown, with what is seen when the list of what happened is moved."""
+STATES = "return [...document.querySelectorAll('.leaf .state-name')].map((one) => one.innerText)"
+
+
+class Operator:
+    """Somebody who has nothing but the pages."""
+
+    def __init__(self, house: House, chromium: Chromium) -> None:
+        self._house, self._chromium = house, chromium
+
+    def looks_at(self, page: str = "") -> None:
+        self._chromium.open(f"{self._house.address}robot/NAO{page}")
+
+    def sees(self, *texts: str) -> None:
+        shown = ""
+
+        def seen() -> bool:
+            nonlocal shown
+            shown = self.shown()
+            return all(text in shown for text in texts)
+
+        try:
+            until(seen, WAIT, every=LOOK)
+        except AssertionError:
+            missing = [text for text in texts if text not in shown]
+            raise AssertionError(f"{missing} is not seen on\n{shown[:3000]}") from None
+
+    def shown(self) -> str:
+        return str(self._chromium.run(ALL))
+
+    def sees_no(self, selector: str) -> None:
+        until(lambda: not self._chromium.all(selector), WAIT, every=LOOK)
+
+    def sees_now(self, selector: str) -> bool:
+        return bool(self._chromium.all(selector))
+
+    def sees_it_in(self, state: str) -> None:
+        """One of the innermost states."""
+        until(lambda: self.sees_it_now_in(state), WAIT, every=LOOK)
+
+    def sees_it_now_in(self, state: str) -> bool:
+        return state in self._chromium.run(STATES)
+
+    def presses(self, selector: str) -> None:
+        def pressed() -> bool:
+            try:
+                self._chromium.find(selector).click()
+            except WebDriverException:  # it was drawn anew meanwhile
+                return False
+            return True
+
+        until(pressed, WAIT, every=LOOK)
+
+    def rests(self, *outcomes: str) -> None:
+        self._chromium.quiet()
+        self._chromium.rest()
+        until(lambda: any(outcome in self._chromium.said() for outcome in outcomes), WAIT, every=LOOK)
+
+    def lets_go_on(self) -> None:
+        self.presses("button.resume")
+        self.presses("dialog button.strong")
+        self.sees_no(".stopped")
+        self.sees_it_in("watching")
+
+    def raises(self, event: str) -> None:
+        """As a cue."""
+        assert self._house.browser.command("event", event=event, robot="NAO").data["state"] == "finished"
+
+
+def broken_visitors(house: House, operator: Operator) -> None:
+    for body in BROKEN:
+        house.send(HEARD, body)
+        house.send(FACE, body)
+    for words in NONSENSE:
+        house.send(HEARD, {"result": words, "language": "en"})
+    operator.sees(NONSENSE[-1])
+
+
+def a_bad_edit(house: House, operator: Operator) -> None:
+    tour = house.folder / "behaviors" / "tour.yaml"
+    good = tour.read_text("utf-8")
+    assert LEFT in good
+    tour.write_text(good.replace(LEFT, LEFT.replace("goodbye", "godbye")), "utf-8")
+    line = good[: good.index(LEFT)].count("\n") + 1
+    operator.sees("refused", f"behaviors/tour.yaml:{line}", "The robot continues with the previous files")
+    operator.looks_at("/files")
+    operator.sees(
+        "there is no state `godbye`", "did you mean `goodbye`?", "The robot continues with the previous files"
+    )
+    tour.write_text(good, "utf-8")
+    operator.sees("No findings.", "The saved files are the ones that run")
+    operator.looks_at()
+
+
+def a_fall(house: House, operator: Operator) -> None:
+    operator.sees_it_in("watching")
+    operator.raises("fallen")
+    operator.sees("The robot fell.", "Keep visitors away", "I fell")
+    operator.presses(".notice button")
+    operator.sees_no(".notice button")
+    operator.looks_at()  # what somebody has read does not come again with the next page
+    operator.sees("I am on my feet again")
+    operator.sees_it_in("watching")
+    assert not operator.sees_now(".notice button")
+
+
+def a_robot_that_is_gone(house: House, operator: Operator) -> None:
+    operator.sees_it_in("watching")
+    house.kill(ROBOT)
+    operator.sees("the robot is not connected", "The process of NAO has ended", "lumen run --only robot")
+    operator.sees_it_in("robot_lost")
+    operator.rests("NOT SENT", "The robot does not rest")
+    house.begin(ROBOT)
+    house.await_robot()
+    operator.sees("live")
+    operator.rests("Rests")
+    operator.lets_go_on()
+
+
+def a_broker_that_is_gone(house: House, operator: Operator) -> None:
+    assert house.broker
+    house.broker.kill()
+    operator.sees("NAO does not answer", "the broker")
+    operator.rests("NOT SENT")
+    house.broker.start()
+    house.await_robot()
+    operator.sees("live")
+    operator.rests("Rests")
+    operator.lets_go_on()
+
+
+SCENES: tuple[Callable[[House, Operator], None], ...] = (
+    broken_visitors,
+    a_bad_edit,
+    a_fall,
+    a_robot_that_is_gone,
+    a_broker_that_is_gone,
+)
+
+
+def begin(house: House, operator: Operator) -> None:
+    """Somebody comes, stays, and says their name whenever it is asked: a crowded machine may be slow to look."""
+    operator.looks_at()
+
+    def introduced() -> bool:
+        house.send(FACE, {"x": 160, "y": 120})
+        if operator.sees_it_now_in("ask_name"):
+            house.send(HEARD, {"result": "my name is Budi", "language": "en"})
+        return "Visitor: Budi" in operator.shown()
+
+    until(introduced, WAIT, every=LOOK)
+    operator.sees("my name is Budi")
+
+
+@pytest.mark.slow
+def test_whatever_happens_is_seen_on_the_pages_and_mended_from_them(
+    house_on_its_broker: House, chromium: Chromium
+) -> None:
+    operator = Operator(house_on_its_broker, chromium)
+    begin(house_on_its_broker, operator)
+    for scene in SCENES[:-1]:  # a second start of the broker costs as much as all else
+        scene(house_on_its_broker, operator)
+    operator.looks_at("/day")
+    operator.sees("Visit 1", "Budi")
+
+
+@pytest.mark.soak
+@pytest.mark.xdist_group("rest on a broker")
+def test_half_an_hour_of_it(house_on_its_broker: House, chromium: Chromium) -> None:
+    operator, draw = Operator(house_on_its_broker, chromium), Random(18)
+    begin(house_on_its_broker, operator)
+    for _ in range(ROUNDS):
+        for scene in draw.sample(SCENES, len(SCENES)):
+            scene(house_on_its_broker, operator)
+    operator.looks_at("/day")
+    operator.sees("Visit 1", "Budi")

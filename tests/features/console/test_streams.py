@@ -1,0 +1,79 @@
+"""Pages that listen: many of them, one that never reads, and one that was away for long."""
+
+import socket
+
+import pytest
+
+from lumen.features.console import gate
+from lumen.features.console.entry_clock import ToldPage
+from lumen.features.console.entry_ring import EntryRing
+from lumen.features.console.streams import positions_in
+from tests.features.console.conftest import Hosted
+from tests.features.console.pages import Browser, Served, Stream
+from tests.waiting import until
+
+
+def test_positions_are_read_from_what_a_browser_sends() -> None:
+    assert positions_in("12", "NAO") == {"NAO": 12}
+    assert positions_in("NAO:12,NAO2:5", "") == {"NAO": 12, "NAO2": 5}
+    assert positions_in("-1", "") == {"": -1}
+    for nonsense in ("", "x", "NAO:", "9" * 40, "NAO:1e5,;"):
+        assert positions_in(nonsense, "") == {}
+
+
+def test_a_ring_says_what_it_has_and_what_it_has_not() -> None:
+    ring = EntryRing("NAO")
+    ring.begin(9)
+    ring.add(ToldPage([{"position": 10 + number, "heard": "face", "at": number / 10} for number in range(3_000)]))
+    ring.add(ToldPage([{"position": 3_009, "heard": "face", "at": 300.0}]))
+    assert (ring.first, ring.last) == (1_009, 3_009)
+    assert ring.after(1_008) is None
+    found = ring.after(1_009)
+    assert found
+    assert [entry.position for entry in found] == list(range(1_010, 1_210))
+    assert [entry.position for entry in ring.after(3_007) or ()] == [3_008, 3_009]
+    assert ring.after(3_009) == []
+    assert ring.after(9_999) == []
+
+
+def test_many_pages_hear_the_same(browser: Browser, hosted: Hosted) -> None:
+    streams = [Stream(browser, "/api/events?after=-1") for _ in range(20)]
+    try:
+        browser.command("rest")
+        until(lambda: all("stop" in [e.data.get("heard") for e in stream.of("entry")] for stream in streams))
+        assert len({tuple(stream.positions()[:2]) for stream in streams}) == 1
+    finally:
+        for stream in streams:
+            stream.close()
+
+
+def test_who_asks_once_gets_what_there_is_and_no_more(served: Served, hosted: Hosted) -> None:
+    browser, view = served.browser, served.console.site.watch.robots["NAO"]
+    browser.command("mark", text="he waved")
+    last = browser.robots[0]["position"]
+    until(lambda: view.entries.last >= last)
+    with Stream(browser, "/api/events?after=-1&once=1") as stream:
+        until(stream.ended.is_set)
+    got = [int(position) for position in stream.positions()]
+    assert got == list(range(got[0], got[-1] + 1))
+    assert got[-1] >= last, "what came since it was asked may be there, too"
+    assert [event.data["robot"] for event in stream.of("now")] == ["NAO"]
+
+
+def test_who_never_reads_is_cut_off_and_nobody_else_hears_of_it(
+    served: Served, hosted: Hosted, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(gate, "READ_TIMEOUT", 0.5)
+    watch = served.console.site.watch
+    view = watch.robots["NAO"]
+    with socket.create_connection((served.browser.host, served.browser.port)) as lazy, Stream(served.browser) as keen:
+        lazy.sendall(b"GET /api/events HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        until(lambda: watch.lookers == 2)
+
+        def told() -> bool:
+            view.told({"padding": "x" * 1_000_000, "number": view.version})
+            return watch.lookers == 1
+
+        until(told)
+        before = len(keen.of("now"))
+        until(lambda: len(keen.of("now")) > before)

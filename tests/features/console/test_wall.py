@@ -1,0 +1,78 @@
+"""Three robots on one broker: a wall of them, where each has its Rest."""
+
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+
+from tests.features.console.conftest import Hosted
+from tests.features.console.languages import english_on
+from tests.features.console.pages import Served
+from tests.features.console.viewer import Viewer
+from tests.fetched import fetched
+from tests.rabbitmq import GivenBroker, RabbitMQ
+from tests.waiting import HANG, until
+
+pytestmark = [pytest.mark.slow]
+NAMES = ("NAO", "Ani", "Budi")
+SETTINGS = "name: Mine\nbehavior: mine\nlanguages: [en]\nrobot: {{name: {}, model: nao}}\nhall: hall.xml\n"
+MINE = "states:\n  hall: {do: {say: Good morning}, on: {stop: rests}}\n  rests: {on: {resume: hall}}\n"
+
+
+@pytest.fixture
+def robots(tmp_path: Path, broker: RabbitMQ | GivenBroker) -> Iterator[dict[str, Hosted]]:
+    with ExitStack() as stack:
+        found = {}
+        for name in NAMES:
+            root = tmp_path / name
+            (root / "behaviors").mkdir(parents=True)
+            (root / "behaviors" / "mine.yaml").write_text(MINE)
+            (root / "lumen.yaml").write_text(SETTINGS.format(name))
+            found[name] = Hosted(root, broker.url)
+            stack.callback(found[name].close)
+        yield found
+
+
+@pytest.fixture
+def wall(robots: dict[str, Hosted], broker: RabbitMQ | GivenBroker) -> Iterator[str]:
+    served = Served(robots["NAO"].root, bus=broker.url)
+    until(lambda: {one["robot"] for one in served.browser.robots if one["connected"]} == set(NAMES), HANG)
+    yield served.console.address
+    served.close()
+
+
+def resting(robots: dict[str, Hosted]) -> list[str]:
+    return sorted(name for name, one in robots.items() if one.exhibition.robot.server.hold.stopped)
+
+
+def test_each_tile_rests_its_robot_and_escape_twice_all(viewer: Viewer, wall: str, robots: dict[str, Hosted]) -> None:
+    viewer.open(wall, ready=".tile:nth-child(3)")
+    assert [one.text for one in viewer.all(".tile h2")] == sorted(NAMES)
+    assert viewer.text("rest-button[main] .whom") == "all robots"
+    viewer.run((fetched("console") / "axe-core/axe.min.js").read_text("utf-8"))
+    assert viewer.driver.execute_async_script("axe.run().then((found) => arguments[0](found.violations))") == []
+    viewer.click("rest-button[robot=Budi] .rest")
+    viewer.shows("Rests", "rest-button[robot=Budi] .rest-said")
+    viewer.shows("rests, stopped by", ".tile[aria-label=Budi]")
+    assert resting(robots) == ["Budi"]
+    assert [viewer.text(f".tile[aria-label={name}] > .badge") for name in ("Ani", "NAO")] == ["runs", "runs"]
+
+    viewer.click(".tile[aria-label=Ani] h2 a")
+    viewer.shows("Ani", ".who .name")
+    viewer.shows("hall", ".leaf")
+    assert not viewer.all(".stopped")
+    viewer.click("nav li:first-child a")
+    until(lambda: len(viewer.all(".tile")) == len(NAMES), HANG)
+
+    viewer.escape_twice()
+    viewer.shows("Rests", "rest-button[main] .rest-said")
+    assert resting(robots) == sorted(NAMES)
+
+
+@pytest.mark.parametrize("width", [1400, 360])
+def test_the_wall_in_indonesian_shows_no_english(viewer: Viewer, wall: str, width: int) -> None:
+    viewer.open(wall, ready=".tile:nth-child(3)", language="id", width=width)
+    viewer.click("rest-button[robot=Budi] .rest")
+    viewer.shows("istirahat, dihentikan oleh", ".tile[aria-label=Budi]")
+    assert english_on(viewer) == []

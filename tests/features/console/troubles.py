@@ -1,0 +1,110 @@
+"""What may happen to an exhibition while somebody presses Rest: begun at some moment, and mended again."""
+
+import signal
+from collections.abc import Callable, Sequence
+from random import Random
+from threading import Event, Thread
+from typing import NamedTuple
+
+from tests.features.console.house import CONSOLE, ROBOT, WHOLE, House
+
+SORRY = 'en: "I am sorry, I did not understand that."'
+PARDON = 'en: "Come again, please?"'
+LONGEST = 2.5
+"""How long a trouble lasts at most, besides what it takes to mend it [s]."""
+
+
+class Trouble(NamedTuple):
+    """Something that goes wrong, or just on: how it begins, how it is mended; `weight` says how often it is drawn.
+
+    `presses` windows press while it lasts.
+    """
+
+    name: str
+    weight: int
+    begin: Callable[[House], object] = lambda _house: None
+    mend: Callable[[House], object] = lambda _house: None
+    presses: int = 1
+
+
+def save(house: House) -> None:
+    """Another sentence, saved."""
+    tour = house.folder / "behaviors" / "tour.yaml"
+    text = tour.read_text("utf-8")
+    tour.write_text(text.replace(SORRY, PARDON) if SORRY in text else text.replace(PARDON, SORRY), "utf-8")
+
+
+def dance(house: House) -> None:
+    house.send("avatar.NAO.command", {"type": "motion", "method": "dance", "parameter": {}})
+
+
+def restart(name: str) -> Callable[[House], None]:
+    def begin(house: House) -> None:
+        house.begin(name)
+        house.await_robot()
+
+    return begin
+
+
+def start_broker(house: House) -> None:
+    assert house.broker
+    house.broker.start()
+    house.await_robot()
+
+
+def of_wire(verb: str) -> Callable[[House], object]:
+    return lambda house: getattr(house.wire, verb)()
+
+
+QUIET, LOADING, LEAVING = Trouble("nothing", 8), Trouble("a page that loads", 4), Trouble("a page that is left", 3)
+EVERYWHERE = (
+    QUIET,
+    LOADING,
+    LEAVING,
+    Trouble("a saved file", 4, save),
+    Trouble("a dance", 4, dance),
+    Trouble("network cut", 2, lambda house: house.network.cut(), lambda house: house.network.mend(), presses=3),
+    Trouble("console killed", 1, lambda house: house.kill(CONSOLE), restart(CONSOLE), presses=3),
+)
+WITH_BROKER = (
+    *EVERYWHERE,
+    Trouble("wire cut", 2, of_wire("cut"), of_wire("mend"), presses=3),
+    Trouble("wire lost", 2, of_wire("reset"), presses=2),
+    Trouble("broker refuses", 1, of_wire("refuse"), of_wire("mend"), presses=3),
+    Trouble("broker killed", 1, lambda house: house.broker and house.broker.kill(), start_broker, presses=3),
+    Trouble("robot killed", 1, lambda house: house.kill(ROBOT), restart(ROBOT), presses=3),
+    Trouble("robot hangs", 1, lambda h: h.signal(ROBOT, signal.SIGSTOP), lambda h: h.signal(ROBOT, signal.SIGCONT)),
+)
+WITHOUT_BROKER = (
+    *EVERYWHERE,
+    Trouble("exhibition killed", 1, lambda house: house.kill(WHOLE), restart(WHOLE), presses=3),
+)
+
+
+def drawn(troubles: Sequence[Trouble], draw: Random, presses: int) -> list[Trouble]:
+    """Troubles in an order by chance, each as often as its weight says, until so many presses are in them."""
+    found: list[Trouble] = []
+    while sum(one.presses for one in found) < presses:
+        round = [one for one in troubles for _ in range(one.weight)]
+        found += draw.sample(round, len(round))
+    while sum(one.presses for one in found[:-1]) >= presses:
+        found.pop()
+    return found
+
+
+class Happening:
+    """A trouble that begins `after` [s] from now, beside whoever presses meanwhile; `mend` ends it."""
+
+    def __init__(self, trouble: Trouble, house: House, after: float) -> None:
+        self._trouble, self._house, self._after = trouble, house, after
+        self._thread = Thread(target=self._begin)
+        self._thread.start()
+
+    def _begin(self) -> None:
+        Event().wait(self._after)
+        self._trouble.begin(self._house)
+
+    def mend(self, after: float) -> None:
+        self._thread.join()
+        Event().wait(after)
+        self._trouble.mend(self._house)

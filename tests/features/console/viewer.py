@@ -1,0 +1,120 @@
+"""Looks at the console's pages in Debian's Chromium, driven by selenium, without a window."""
+
+import json
+from contextlib import suppress
+from typing import Any
+
+from selenium.common.exceptions import WebDriverException
+from selenium.webdriver import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.remote.webelement import WebElement
+
+from tests.features.console.browser import DrivenBrowser
+from tests.servers import EVIL
+from tests.waiting import HANG, until
+
+PRESSES = "return document.querySelector('rest-button[main]').presses"
+
+
+class Viewer:
+    """A window of the browser; `open` begins a page as a first visitor sees it.
+
+    It keeps what pages complain of; an `overhearing` one what they ask for, too, which is dear. Before each page the
+    script `first` runs.
+    """
+
+    def __init__(self, *, overhearing: bool = False, first: str = "") -> None:
+        self._logs, self._first, self._address = ["browser", *["performance"] * overhearing], first, ""
+        self._browser = DrivenBrowser(*self._logs, size=(1400, 800))
+        self.driver = self._browser.driver
+        self.driver.set_script_timeout(HANG)
+        self._before = ""
+
+    def open(self, address: str, path: str = "", *, ready: str = "main h1", width: int = 1400, **kept: str) -> None:
+        """Open a page and wait until it shows `ready`; `kept` is what it remembers from before, as `theme="dark"`."""
+        self._address = address
+        # The last page may still send requests to its console. An empty page that it opens itself keeps its process.
+        self.run("location.replace('about:blank')")
+        self.size(width)
+        where = {"origin": address.rstrip("/"), "storageTypes": "local_storage,session_storage,cookies"}
+        self.command("Storage.clearDataForOrigin", where)
+        if self._before:
+            self.command("Page.removeScriptToEvaluateOnNewDocument", {"identifier": self._before})
+        # Chromium may begin the window with an empty page of its own, which has no storage.
+        memory = (
+            f"for (const [key, value] of {json.dumps([*kept.items()])}) localStorage.setItem(`lumen.${{key}}`, value);"
+        )
+        script = f"if (location.origin !== 'null') {{ {memory} {self._first} }}"
+        self._before = self.command("Page.addScriptToEvaluateOnNewDocument", {"source": script})["identifier"]
+        for kind in self._logs:
+            self.log(kind)
+        self.driver.get(address + path)
+        until(lambda: self.all(ready), HANG)
+
+    def size(self, width: int, height: int = 800) -> None:
+        """Make the page so large [px]."""
+        metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.command("Emulation.setDeviceMetricsOverride", metrics)
+
+    def command(self, name: str, fields: dict[str, Any]) -> Any:
+        """One of the protocol of its developer tools."""
+        return self.driver.execute("executeCdpCommand", {"cmd": name, "params": fields})["value"]
+
+    def run(self, script: str, *arguments: Any) -> Any:
+        return self.driver.execute_script(script, *arguments)
+
+    def all(self, selector: str) -> list[WebElement]:
+        return self.driver.find_elements(By.CSS_SELECTOR, selector)
+
+    def text(self, selector: str) -> str:
+        """What those of the elements that one sees say, while they are drawn anew."""
+        seen = "[...document.querySelectorAll(arguments[0])].filter(e => e.checkVisibility())"
+        return str(self.run(f"return {seen}.map(e => e.innerText).join('\\n')", selector))
+
+    def shows(self, text: str, selector: str = "body") -> None:
+        """Wait until it does."""
+        until(lambda: text in self.text(selector), HANG)
+
+    def click(self, selector: str) -> None:
+        """Click the first of them, wherever it has been drawn by now."""
+
+        def clicked() -> bool:
+            with suppress(WebDriverException, IndexError):
+                self.all(selector)[0].click()
+                return True
+            return False
+
+        until(clicked, HANG)
+
+    def type(self, *keys: str) -> None:
+        ActionChains(self.driver).send_keys(*keys).perform()
+
+    def escape_twice(self) -> None:
+        """Press Escape twice, again if a slow machine passed the second on too late for the first."""
+
+        def pressed() -> bool:
+            before = self.run(PRESSES)
+            self.type(Keys.ESCAPE, Keys.ESCAPE)
+            return bool(self.run(PRESSES) > before)
+
+        until(pressed, HANG)
+
+    def complaints(self) -> list[str]:
+        """What the page's own console said that is more than information."""
+        said = [entry["message"] for entry in self.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
+        others = ("http://127.0.0.1:", f"http://{EVIL}:")  # pages of other tests in this browser
+        return [one for one in said if one.startswith(self._address) or not one.startswith(others)]
+
+    def requests(self) -> list[str]:
+        """The addresses that the page has asked for since it was asked last."""
+        said = [json.loads(entry["message"]) for entry in self.log("performance")]
+        own = [one["message"] for one in said if one["webview"] == self.driver.current_window_handle]
+        return [str(m["params"]["request"]["url"]) for m in own if m["method"] == "Network.requestWillBeSent"]
+
+    def log(self, kind: str) -> list[dict[str, Any]]:
+        """Return the entries since the last call: the driver receives those of other contexts, too."""
+        return list(self.driver.execute("getLog", {"type": kind})["value"])
+
+    def close(self) -> None:
+        self._browser.close()

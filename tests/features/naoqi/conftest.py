@@ -1,0 +1,34 @@
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from lumen.language.events import Event
+from lumen.language.projects import Project
+from tests.features.naoqi.lockstep import Lockstep
+from tests.tour.conftest import project
+
+__all__ = ["project"]
+
+Live = Callable[[float], list[Event]]
+
+
+@pytest.fixture
+def robot(project: Project) -> Iterator[Lockstep]:
+    """The adapter on a fake of its own."""
+    one = Lockstep(project)
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def live(robot: Lockstep) -> Live:
+    """What the robot answers and notices in so many seconds."""
+
+    def lived(seconds: float) -> list[Event]:
+        events: list[Event] = []
+        for _ in range(round(seconds / 0.02)):
+            robot.advance(0.02)
+            events += robot.poll()
+        return events
+
+    return lived
