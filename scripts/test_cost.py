@@ -73,7 +73,8 @@ def folders(costs: dict[str, float]) -> dict[str, tuple[int, float]]:
     """Return the number of tests and their cost [s] by folder, the dearest first."""
     found: dict[str, list[float]] = defaultdict(list)
     for name, cost in costs.items():
-        found[name.split(".")[1].split("::")[0]].append(cost)
+        modules = name.partition("::")[0].split(".")
+        found["/".join(modules[1 : 3 if modules[1] == "features" else 2])].append(cost)
     return dict(sorted(((name, (len(each), sum(each))) for name, each in found.items()), key=lambda row: -row[1][1]))
 
 
