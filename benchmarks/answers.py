@@ -22,7 +22,12 @@ import yaml
 from lumen.features.answers.folder_vectors import FolderVectors
 from lumen.features.answers.meaning import Embed, by_meaning
 from lumen.features.answers.packaged_vectors import PackagedVectors
-from lumen.features.answers.retrieval.calibration import (
+from lumen.features.answers.vectors import KnownText, TextVector, VectorSource
+from lumen.language.knowledge import Passage, QuestionSet
+from lumen.language.projects import Project
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from lumen.retrieval.calibration import (
     Judged,
     Sample,
     calibrate,
@@ -32,16 +37,11 @@ from lumen.features.answers.retrieval.calibration import (
     left_out,
     outcome,
 )
-from lumen.features.answers.retrieval.features import Method, by_wordings, joined, words
-from lumen.features.answers.retrieval.ranking import AnswerRates
-from lumen.features.answers.retrieval.retriever import Retriever
-from lumen.features.answers.retrieval.scorers import bm25, ngrams
-from lumen.features.answers.retrieval.trials import samples_of
-from lumen.features.answers.vectors import KnownText, TextVector, VectorSource
-from lumen.language.knowledge import Passage, QuestionSet
-from lumen.language.projects import Project
-from lumen.lint import check_files
-from lumen.project.files import read_files
+from lumen.retrieval.features import Method, by_wordings, joined, words
+from lumen.retrieval.ranking import AnswerRates
+from lumen.retrieval.retriever import Retriever
+from lumen.retrieval.scorers import bm25, ngrams
+from lumen.retrieval.trials import samples_of
 
 METHODS: dict[str, Method] = {"ngrams": by_wordings(ngrams), "bm25": by_wordings(bm25), "words": words}
 """The methods that are compared; `words` is the one that is used."""

@@ -13,7 +13,6 @@ from lumen.cli.terminal import coloured
 from lumen.cli.verdicts import render, text, verdict_formats
 from lumen.cli.writing import write_file
 from lumen.errors import UsageError
-from lumen.features.answers.retrieval.ranking import QuestionTrial
 from lumen.insight.explaining.sayings import tried as tried_sayings
 from lumen.insight.exploration import MAX_CONFIGURATIONS
 from lumen.language.diagnostics import did_you_mean
@@ -22,6 +21,7 @@ from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
 from lumen.project.own_project import own_project
 from lumen.project.project_folders import MAIN_FILE
+from lumen.retrieval.ranking import QuestionTrial
 from lumen.run.chosen_stories import home_of, tests_of
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored, explored
@@ -136,8 +136,8 @@ def _judged(project: Project, sets: list[SayingSet]) -> tuple[JudgedSaying, ...]
 
 def _tried(project: Project) -> tuple[QuestionTrial, ...]:
     """What becomes of the exhibition's questions, by language."""
-    from lumen.features.answers.retrieval.retriever import Retriever  # with numpy
-    from lumen.features.answers.retrieval.trials import tried
+    from lumen.retrieval.retriever import Retriever  # with numpy
+    from lumen.retrieval.trials import tried
 
     retrievers = (Retriever(project.knowledge.values(), name, robot=project.robot) for name in project.languages)
     found = (tried(retriever, project.questions.values()) for retriever in retrievers)

@@ -7,8 +7,6 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 from unicodedata import normalize
 
-from lumen.features.answers.markdown import MARKDOWN_SUFFIX
-from lumen.features.answers.reading import build_passage, build_questions
 from lumen.features.fleet.reading import build_fleet
 from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
@@ -34,9 +32,11 @@ from lumen.project.files import (
     read_main_file,
 )
 from lumen.project.gestures import build_gestures
+from lumen.project.knowledge import build_passage, build_questions
 from lumen.project.lending import lend, shipped_models
 from lumen.project.life import build_life
 from lumen.project.linking import link, with_robots
+from lumen.project.markdown import MARKDOWN_SUFFIX
 from lumen.project.messages import SCHEMA_SUFFIX, build_message
 from lumen.project.motions import build_motions
 from lumen.project.passages import belongs_to

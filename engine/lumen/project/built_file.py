@@ -4,10 +4,10 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
-from lumen.features.answers.markdown import MARKDOWN_SUFFIX, parse_markdown
 from lumen.language.diagnostics import Diagnostic
 from lumen.project.document import TOO_LARGE
 from lumen.project.document_report import DocumentReport
+from lumen.project.markdown import MARKDOWN_SUFFIX, parse_markdown
 from lumen.project.memoization import memoize
 from lumen.project.schema import check_schema
 from lumen.project.yaml_reader import parse

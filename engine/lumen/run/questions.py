@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import BusError
 from lumen.expressions.json_schema import JsonSchema
-from lumen.features.answers.retrieval.ranking import Weights
 from lumen.insight.replay.visits import home_of
 from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.commands import Ask
@@ -18,10 +17,11 @@ from lumen.language.events import Event
 from lumen.language.modules import ANSWERS
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
+from lumen.retrieval.ranking import Weights
 from lumen.statechart import Step
 
 if TYPE_CHECKING:
-    from lumen.features.answers.retrieval.retriever import Retriever
+    from lumen.retrieval.retriever import Retriever
 
 ASK_ROUTE, ANSWER_ROUTE = "ask", "answer"
 STRICT = Weights((2.5, 15.0, 5.5), none=6.5, least=0.9)
@@ -177,8 +177,8 @@ class Questions:
         self._came.append((message, time()))
 
     def _passages(self, project: Project, language: str) -> "Retriever":
-        from lumen.features.answers.retrieval.retriever import Retriever  # with numpy: only who asks waits for it
-        from lumen.features.answers.retrieval.trials import weights_of
+        from lumen.retrieval.retriever import Retriever  # with numpy: only who asks waits for it
+        from lumen.retrieval.trials import weights_of
 
         today = self._today()
         known = (project.knowledge, project.questions, project.robot, language, today)

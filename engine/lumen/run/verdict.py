@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from lumen.features.answers.retrieval.ranking import QuestionTrial
 from lumen.insight.explaining.sayings import TriedSaying
 from lumen.language.diagnostics import Place
+from lumen.retrieval.ranking import QuestionTrial
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored
 from lumen.run.rehearsal import Rehearsal

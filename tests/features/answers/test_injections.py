@@ -14,10 +14,10 @@ import pytest
 import yaml
 
 from lumen.features.answers.module import Answers
-from lumen.features.answers.retrieval.ranking import Weights
-from lumen.features.answers.retrieval.retriever import Retriever
 from lumen.language.commands import Ask, Cancel, Say, Start
 from lumen.language.projects import Project
+from lumen.retrieval.ranking import Weights
+from lumen.retrieval.retriever import Retriever
 from tests.features.answers.conftest import Desk, with_model
 from tests.features.answers.fake_model import Handler, fake_model
 from tests.features.answers.test_questions import Visit

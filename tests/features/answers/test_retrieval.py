@@ -11,14 +11,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from lumen.features.answers.retrieval.calibration import Judged, least_probability, left_out, outcome
-from lumen.features.answers.retrieval.choice import RIDGE, fitted, probabilities, shares
-from lumen.features.answers.retrieval.features import coverage
-from lumen.features.answers.retrieval.ranking import NEVER, UNANSWERABLE, Weights
-from lumen.features.answers.retrieval.retriever import Retriever
-from lumen.features.answers.retrieval.trials import tried, weights_of
-from lumen.features.answers.retrieval.words import stems
 from lumen.language.knowledge import Passage, QuestionSet
+from lumen.retrieval.calibration import Judged, least_probability, left_out, outcome
+from lumen.retrieval.choice import RIDGE, fitted, probabilities, shares
+from lumen.retrieval.features import coverage
+from lumen.retrieval.ranking import NEVER, UNANSWERABLE, Weights
+from lumen.retrieval.retriever import Retriever
+from lumen.retrieval.trials import tried, weights_of
+from lumen.retrieval.words import stems
 from tests.tables import for_each
 
 PASSAGES = (

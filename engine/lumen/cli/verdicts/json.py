@@ -3,8 +3,8 @@
 import json
 from typing import Any
 
-from lumen.features.answers.retrieval.ranking import QuestionTrial
 from lumen.language.diagnostics import Place
+from lumen.retrieval.ranking import QuestionTrial
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored
 from lumen.run.rehearsal import Rehearsal

@@ -16,7 +16,7 @@ from lumen.features.answers.vectors import KnownText, TextVector, VectorSource
 from lumen.language.projects import Project
 
 if TYPE_CHECKING:
-    from lumen.features.answers.retrieval.retriever import FoundAnswer, Retriever
+    from lumen.retrieval.retriever import FoundAnswer, Retriever
 
 MAX_KEPT = 20_000
 """Texts whose vectors are kept."""
@@ -51,10 +51,10 @@ class Embeddings:
         self, project: Project, question: str, language: str, deadline: float, wanted: Callable[[], bool], most: int
     ) -> MeantPassages:
         """What is known of the question, by `deadline` (`time.monotonic`). Raises ModuleError where nobody says."""
-        from lumen.features.answers.retrieval.features import joined, words
-        from lumen.features.answers.retrieval.ranking import NEVER, Weights
-        from lumen.features.answers.retrieval.retriever import Retriever
-        from lumen.features.answers.retrieval.trials import weights_of
+        from lumen.retrieval.features import joined, words
+        from lumen.retrieval.ranking import NEVER, Weights
+        from lumen.retrieval.retriever import Retriever
+        from lumen.retrieval.trials import weights_of
 
         self._deadline, self._wanted = deadline, wanted
         known = (project.knowledge, project.questions, project.robot, language)

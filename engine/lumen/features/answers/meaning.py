@@ -7,15 +7,15 @@ from lumen.features.answers.vectors import KnownText, TextVector
 from lumen.language.knowledge import Passage
 
 if TYPE_CHECKING:
-    from lumen.features.answers.retrieval.features import FeatureExtractor, Method
-    from lumen.features.answers.retrieval.scorers import Scorer, Scores
+    from lumen.retrieval.features import FeatureExtractor, Method
+    from lumen.retrieval.scorers import Scorer, Scores
 
 Embed = Callable[[Sequence[KnownText]], list[TextVector]]
 
 
 def by_meaning(embed: Embed) -> "Method":
     """Three features: how alike the nearest wording is, the nearest three on average, and the answer itself."""
-    from lumen.features.answers.retrieval.features import by_wordings, joined
+    from lumen.retrieval.features import by_wordings, joined
 
     def wordings(known: Sequence[str], _: str) -> "Scorer":
         return _likeness(embed, [KnownText(text) for text in known])

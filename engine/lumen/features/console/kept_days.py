@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import JournalError
-from lumen.features.answers.retrieval.words import words
 from lumen.features.console.day import Day, day_of
 from lumen.insight.replay.entries import RecordedEntry, read_entry
 from lumen.journal.journal_file import each_entry
@@ -17,6 +16,7 @@ from lumen.lint import check_files
 from lumen.project.building import knowledge_parts, sayings_parts
 from lumen.project.files import read_files
 from lumen.project.home import home_of
+from lumen.retrieval.words import words
 from lumen.run.one_robot import one_robot
 from lumen.run.replaying.kept_bundles import KeptBundles
 

@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from lumen.features.answers.rules import words_of
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, Place, Related, did_you_mean
 from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER
 from lumen.language.knowledge import QuestionSet
+from lumen.lint.knowledge import words_of
 from lumen.lint.lookups import first
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft

@@ -6,9 +6,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.features.answers.retrieval.scorers import WordingMethod, combined
-from lumen.features.answers.retrieval.words import stems
 from lumen.language.knowledge import Passage
+from lumen.retrieval.scorers import WordingMethod, combined
+from lumen.retrieval.words import stems
 
 NEAREST = 3
 """Wordings of a passage whose mean counts besides the nearest: one may be alike by chance, three are not."""

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.features.answers.retrieval.choice import probabilities
-from lumen.features.answers.retrieval.features import Features, Method
-from lumen.features.answers.retrieval.features import words as by_words
-from lumen.features.answers.retrieval.ranking import Ranked, Weights
-from lumen.features.answers.retrieval.words import words
 from lumen.language.knowledge import Passage
+from lumen.retrieval.choice import probabilities
+from lumen.retrieval.features import Features, Method
+from lumen.retrieval.features import words as by_words
+from lumen.retrieval.ranking import Ranked, Weights
+from lumen.retrieval.words import words
 
 
 class FoundAnswer(NamedTuple):

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Mapping
 
-from lumen.features.answers.retrieval.calibration import Sample, calibrate, held_out, judged, left_out, outcome
-from lumen.features.answers.retrieval.ranking import QuestionTrial, Weights, WrongAnswer
-from lumen.features.answers.retrieval.retriever import Retriever
 from lumen.language.knowledge import QuestionSet
+from lumen.retrieval.calibration import Sample, calibrate, held_out, judged, left_out, outcome
+from lumen.retrieval.ranking import QuestionTrial, Weights, WrongAnswer
+from lumen.retrieval.retriever import Retriever
 
 
 def samples_of(retriever: Retriever, sets: Iterable[QuestionSet]) -> dict[str, Sample]:

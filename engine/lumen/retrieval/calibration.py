@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from math import floor
 from typing import NamedTuple
 
-from lumen.features.answers.retrieval.choice import fitted, probabilities, shares
-from lumen.features.answers.retrieval.features import Features
-from lumen.features.answers.retrieval.ranking import MAX_WRONG, NEVER, AnswerRates, Weights
+from lumen.retrieval.choice import fitted, probabilities, shares
+from lumen.retrieval.features import Features
+from lumen.retrieval.ranking import MAX_WRONG, NEVER, AnswerRates, Weights
 
 FOLDS = 10
 """Parts into which questions are dealt: each part is judged by what the others tell."""

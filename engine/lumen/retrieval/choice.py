@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.features.answers.retrieval.features import Features
-from lumen.features.answers.retrieval.ranking import UNANSWERABLE
+from lumen.retrieval.features import Features
+from lumen.retrieval.ranking import UNANSWERABLE
 
 RIDGE = 1.0
 """How much weights are held back, in units of what one question tells of features of variance 1."""

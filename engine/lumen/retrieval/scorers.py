@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.features.answers.retrieval.words import letter_runs, stems
+from lumen.retrieval.words import letter_runs, stems
 
 Scores = NDArray[np.float32]
 """Shape (known wordings,)."""

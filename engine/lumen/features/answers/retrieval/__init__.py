@@ -1,1 +1,0 @@
-"""Which of the things that are known answers a question."""
