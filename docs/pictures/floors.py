@@ -29,6 +29,7 @@ PURPOSES: Mapping[str, str] = {
     "statechart": "an event and a snapshot become a step",
     "fuzzy": "inference and controllers",
     "expressions": "guards, values and texts: a typed subset of CEL",
+    "retrieval": "which passage answers a question",
     "talk": "phrases of visitors, and the rows of `hears`",
     "ports": "Robot, Bus, Clock: what the runtime asks of the world",
     "extras": "which package is missing, and how it comes",

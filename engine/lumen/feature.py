@@ -304,7 +304,9 @@ class Phase(IntEnum):
     """Parts that keep or show what the behaviour did."""
 
 
-PART_CONDITIONS = {"whole": False, "brain": False, "follows": False, "role": True, "option": True}
+PART_CONDITIONS = dict.fromkeys(("whole", "brain", "follows"), False) | dict.fromkeys(
+    ("role", "option", "section", "file"), True
+)
 """The conditions of a part, and whether a name follows each."""
 
 
@@ -313,7 +315,8 @@ class PartRow(NamedTuple):
 
     It returns a part, several, or none. Rows of one phase come by name, or `after` another one. The conditions in
     `when` have to hold: `whole` (one process has everything), `brain` (the behaviour runs in this process), `follows`
-    (it does not), `role:NAME` (this is that process of several), `option:NAME` (the plan has that option). A `claimed`
+    (it does not), `role:NAME` (this is that process of several), `option:NAME` (the plan has that option),
+    `section:NAME` (lumen.yaml has that section), `file:NAME` (the project has that file beside lumen.yaml). A `claimed`
     part is made after the process has claimed the robot on the bus: it opens what another process may have open.
     """
 
@@ -375,6 +378,13 @@ class Feature(NamedTuple):
     senses: Mapping[str, SenseRow] = {}
     voices: Mapping[str, str] = {}
     """For `lumen run --voice NAME`, the class: a `lumen.features.voice.speaker.RobotVoice`, made as `Speaker` there."""
+    before_start: tuple[str, ...] = ()
+    """Functions that get the folder of a project before a run reads its files: they finish what was interrupted."""
+    failures: tuple[str, ...] = ()
+    """Functions that tell people of a `RunFailure` (`lumen.run.run_start`), an error that ends a run.
+
+    They return a function that waits until people have it, or None.
+    """
     forgets: tuple[str, ...] = ()
     """Functions and classes that forget a person (`lumen memory forget NAME`), while an exhibition runs.
 

@@ -1,25 +1,11 @@
-"""What the options of `lumen run` choose: its story, its language, how long it lasts, and who is told of trouble."""
-
-from collections.abc import Sequence
-from pathlib import Path
+"""What the options of `lumen run` choose: its story, its language, and how long it lasts."""
 
 from lumen.errors import UsageError
-from lumen.features.alerts.alert import Origin
-from lumen.features.alerts.desk import AlertDesk
-from lumen.features.alerts.settings import Alerts
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.project.units import seconds
 from lumen.run.chosen_stories import stories_of
-from lumen.run.narrator import Narrator
-
-
-def alert_desk(project: Project, parts: Sequence[str], narrator: Narrator) -> AlertDesk:
-    """Return the desk that sends alerts about these parts."""
-    origin = Origin(project.name, project.robot, tuple(parts))
-    alerts = project.section(Alerts)
-    return AlertDesk(alerts, origin, Path(project.root), lambda line: narrator.line("alerts", line))
 
 
 def chosen_story(project: Project, name: str | None) -> Story | None:

@@ -6,9 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from lumen.cli.run_choices import alert_desk, language_of
+from lumen.cli.run_choices import language_of
 from lumen.errors import BusUnreachableError
-from lumen.features.console.settings import ConsoleSettings
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
@@ -18,7 +17,6 @@ from lumen.run.making.modules import ModulesPlan
 from lumen.run.narrator import Narrator
 from lumen.run.plan import Plan
 from lumen.run.recovery.run_directory import RunDirectory
-from lumen.run.run_start import WHOLE
 from lumen.run.services import Services
 from lumen.run.setup import Setup
 
@@ -90,9 +88,9 @@ def plan_of(
         "operated": True,
         "reload": options.reload,
         "fresh": options.fresh or (played and not parts),
-        "alerts": None if played else alert_desk(project, parts or WHOLE, narrator),
+        "alerts": not played,
         "modules": ModulesPlan(folder, awaited=options.speed == "max"),
-        "console": one.first and project.section(ConsoleSettings).wanted and options.speed != "max",
+        "console": one.first and options.speed != "max",
     }
     return Plan(
         project,

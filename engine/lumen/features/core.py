@@ -9,7 +9,6 @@ FEATURE = Feature(
     name="core",
     roles=("robot", "brain", "motion", "visitor"),
     parts=(
-        PartRow("recording", Phase.RECORD, f"{MAKING}.watching:recording", "option:directory"),
         PartRow("bundles", Phase.RECORD, f"{MAKING}.processes:follower", "follows", after="recording"),
         PartRow("behaviour", Phase.BEHAVIOR, f"{MAKING}.whole:behavior", "whole"),
         PartRow("remote behaviour", Phase.BEHAVIOR, f"{MAKING}.processes:behavior", "role:brain"),
@@ -22,14 +21,8 @@ FEATURE = Feature(
         PartRow("journal", Phase.SERVE, f"{MAKING}.serving:journal", "brain option:operated"),
         PartRow("forgetting", Phase.SERVE, f"{MAKING}.serving:forgetting", "option:operated", after="journal"),
         PartRow("reload", Phase.SERVE, f"{MAKING}.serving:reload", "brain option:reload", after="forgetting"),
-        PartRow("fleet", Phase.SERVE, f"{MAKING}.serving:fleet", "brain option:reload", after="reload"),
         PartRow("operator", Phase.SERVE, f"{MAKING}.serving:operator", "brain option:operated", after="fleet"),
-        PartRow("alerts", Phase.ALERT, f"{MAKING}.watching:alerts", "option:alerts"),
-        PartRow(
-            "refusals", Phase.ALERT, f"{MAKING}.watching:refusals", "brain option:alerts option:reload", after="alerts"
-        ),
         PartRow("film", Phase.SHOW, f"{MAKING}.showing:film", "option:film"),
-        PartRow("console", Phase.SHOW, f"{MAKING}.showing:console", "brain option:console", after="film"),
         PartRow("typed visitor", Phase.VISIT, TYPED, "whole option:greeting"),
         PartRow("modules", Phase.MODULES, f"{MAKING}.modules:modules", "option:modules", claimed=True),
         PartRow(

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from lumen.bus.addresses import within_process
@@ -76,6 +77,10 @@ class Plan:
                 return not self.brain
             case "role":
                 return name in self.roles
+            case "section":
+                return name in self.project.sections
+            case "file":
+                return (Path(self.project.root) / name).exists()
             case "option":
                 return bool(self.options.get(name))
         raise ValueError(f"there is no condition `{condition}`")

@@ -6,13 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from lumen.errors import BusError, LumenError, ModuleError, ProjectError, RobotError, UsageError
-from lumen.features.alerts.alert import Origin
-from lumen.features.alerts.desk import AlertDesk
-from lumen.features.alerts.settings import Alerts
-from lumen.features.fleet.installing import finish as finish_installing
+from lumen.feature import rows
 from lumen.language.diagnostics import Severity
 from lumen.language.projects import Project
-from lumen.project.broken_features import package_at_fault
+from lumen.project.broken_features import called, package_at_fault
 from lumen.project.building import main_settings
 from lumen.project.settings import Settings
 from lumen.run.presence import BRAIN, ROBOT_PART
@@ -25,8 +22,28 @@ OUTSIDE = (BusError, RobotError, ModuleError)
 """Errors of the world: the files are not to blame, so the next start does not count them as a crash."""
 
 
+@dataclass(frozen=True, slots=True)
+class RunFailure:
+    """An error that ended a run, or one robot of it, before or while it ran.
+
+    `kind` is `start` for a fault of files or of the world, `crashed` for one of code. `text` says no more of the files
+    than a place and a code. `settings` are those that could be read, None if there are none, and `last_good` returns
+    the project that was used last. `tell` prints what nobody could be told, and why.
+    """
+
+    kind: str
+    text: str
+    root: Path
+    name: str
+    robot: str
+    parts: tuple[str, ...]
+    settings: Settings | None
+    last_good: Callable[[], Project | None]
+    tell: Callable[[str], None]
+
+
 class Failures:
-    """Reports errors that end a run, or one robot of it, to the people in `alerts`; `close` waits until they have it.
+    """Reports errors that end a run, or one robot of it, to people; `close` waits until they have it.
 
     A UsageError is for the person who typed it. `tell` is called with what could not be sent, and why. Without
     `wanted` nobody is told: what a story plays is no trouble.
@@ -43,36 +60,36 @@ class Failures:
     ) -> None:
         self._root, self._directories, self._parts, self._tell = root, directories, parts, tell
         self._wanted = wanted
-        self._desks: list[AlertDesk] = []
+        self._waiting: list[Callable[[], None]] = []
 
     def report(self, error: Exception, robots: Sequence[str]) -> None:
         """Report an error that ended these robots, and let their next start go on after an error of the world."""
         if self._wanted and not isinstance(error, UsageError | BrokenPipeError):  # the latter: nobody reads the output
-            try:
-                self._report(error, robots)
-            except Exception as other:
-                self._tell(f"no alert could be sent: {other!r}")
+            for feature, where in rows("failures"):
+                try:
+                    if wait := called(feature, where, self._failure(error, robots)):
+                        self._waiting.append(wait)
+                except Exception as other:
+                    self._tell(f"no alert could be sent: {other!r}")
         if isinstance(error, OUTSIDE):
             for robot in robots:
                 self._directories[robot].records.annul()
 
     def close(self) -> None:
-        for desk in self._desks:
-            desk.close()
+        for wait in self._waiting:
+            wait()
 
-    def _report(self, error: Exception, robots: Sequence[str]) -> None:
+    def _failure(self, error: Exception, robots: Sequence[str]) -> RunFailure:
         directory = self._directories[robots[0]]
         settings = main_settings(self._root, directory.robot)
         name = (settings and settings.name) or self._root.name
         robot = ", ".join(filter(None, robots)) or (settings.robot if settings else "NAO")
-        origin = Origin(name, robot, tuple(self._parts))
-        desk = AlertDesk(_alerts(settings, directory), origin, self._root, self._tell)
-        self._desks.append(desk)
-        if isinstance(error, LumenError):
-            desk("start", f"it could not start or continue: {_why(error)}")
-        else:  # the message of a fault of ours may contain anything
+        kind, text = "start", f"it could not start or continue: {_why(error)}" if isinstance(error, LumenError) else ""
+        if not isinstance(error, LumenError):  # the message of a fault of ours may contain anything
             where = f"the package {package}" if (package := package_at_fault(error)) else "Lumen"
-            desk("crashed", f"it ended because of a fault in {where} ({type(error).__name__})")
+            kind, text = "crashed", f"it ended because of a fault in {where} ({type(error).__name__})"
+        parts, last_good = tuple(self._parts), directory.last_good
+        return RunFailure(kind, text, self._root, name, robot, parts, settings, last_good, self._tell)
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +127,8 @@ def started(
         failures = Failures(root, directories, parts or WHOLE, tell, wanted=alerted)
         stack.callback(failures.close)
         try:
-            finish_installing(root)
+            for feature, where in rows("before_start"):
+                called(feature, where, root)
             projects = {
                 name: startup_project(root, directory, last_good=last_good, warn=tell)
                 for name, directory in directories.items()
@@ -131,11 +149,3 @@ def _why(error: LumenError) -> str:
         if found
         else "the project's files have errors"
     )
-
-
-def _alerts(settings: Settings | None, directory: RunDirectory) -> Alerts:
-    """Return whom to tell: as the files say, else the last good ones."""
-    if settings and (alerts := settings.section(Alerts)).to:
-        return alerts
-    good = directory.last_good()
-    return good.section(Alerts) if good else Alerts()

@@ -8,11 +8,7 @@ import lumen
 from lumen.bus.memory import MemoryBus
 from lumen.clock.real import RealClock
 from lumen.clock.simulated import SimulatedClock
-from lumen.features.alerts.alert import Origin
-from lumen.features.alerts.desk import AlertDesk
-from lumen.features.alerts.settings import Alerts
 from lumen.language.events import Event
-from lumen.language.projects import Project
 from lumen.ports import Clock
 from lumen.project.files import read_files
 from lumen.robot.recording import RecordingRobot
@@ -87,7 +83,7 @@ class Hall:
                 project,
                 setup,
                 self.bus,
-                options={"directory": directory, "reload": "auto", "fresh": False, "alerts": self._desk(project)},
+                options={"directory": directory, "reload": "auto", "fresh": False, "alerts": True},
             )
         )
         exhibition.start()
@@ -105,7 +101,7 @@ class Hall:
             self.robot = RecordingRobot(project.body)
             setup = Setup(self.robot, SimulatedClock(self.robot.advance, 1.0), None)
         narrator = Printed(clock.now, lambda: node.project.machine)
-        options = {"directory": directory, "operated": True, "reload": "manual", "alerts": self._desk(project, *names)}
+        options = {"directory": directory, "operated": True, "reload": "manual", "alerts": True}
         clock = setup.clock if setup else clock
         node = compose(
             Plan(project, setup, self.bus, narrator=narrator, roles=names, clock=clock, options=options)
@@ -113,9 +109,6 @@ class Hall:
         self.nodes.append(node)
         self.closing += [node.close, lambda: directory.close(forget=False)]
         return node
-
-    def _desk(self, project: Project, *parts: str) -> AlertDesk:
-        return AlertDesk(project.section(Alerts), Origin(project.name, project.robot, parts), self.folder, print)
 
     def happen(self, name: str, **data: Any) -> None:
         """The robot notices something."""

@@ -1,9 +1,20 @@
 """Messages to people about trouble of an exhibition."""
 
-from lumen.feature import Feature, Section, Subcommand
+from lumen.feature import Feature, PartRow, Phase, Section, Subcommand
 
 FEATURE = Feature(
     name="alerts",
+    parts=(
+        PartRow("alerts", Phase.ALERT, "lumen.features.alerts.part:make", "option:alerts"),
+        PartRow(
+            "refusals",
+            Phase.ALERT,
+            "lumen.features.alerts.reloads:make",
+            "brain option:alerts option:reload",
+            after="alerts",
+        ),
+    ),
+    failures=("lumen.features.alerts.part:tell_of_failure",),
     pages=("lumen.features.alerts.pages",),
     rules=("lumen.features.alerts.rules:check",),
     subcommands={

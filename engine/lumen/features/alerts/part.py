@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from lumen.bus.validated import ValidatedBus
+from lumen.features.alerts.alert import Origin
 from lumen.features.alerts.desk import AlertDesk
 from lumen.features.alerts.disk import DiskWatch
 from lumen.features.alerts.falls import FallWatch
@@ -13,11 +14,17 @@ from lumen.language.commands import Command
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import BlockableBus, UsesBroker
+from lumen.project.home import home_of
 from lumen.run.loop import Observer
+from lumen.run.making.serving import directory_of
 from lumen.run.parts.brain import ENGINE, RUN_BEFORE
+from lumen.run.parts.hosted_robot import HostedRobotPart
 from lumen.run.parts.part import Part
 from lumen.run.presence import BRAIN, ROBOT_PART, Presence, unique_parts
+from lumen.run.reload.records import RunRecords
 from lumen.run.resuming import FreshStart, Resumption
+from lumen.run.run_start import RunFailure
+from lumen.run.services import Services
 from lumen.statechart import Step
 
 BROKER_PATIENCE = 5.0
@@ -60,14 +67,12 @@ class AlertPart(Part, Observer):
         self._troubles: dict[str, str] = {}
         self._stopped: bool | None = None
 
-    def recovered(self, found: Resumption | FreshStart) -> Resumption | FreshStart:
-        """How this run begins, which tells how the last one ended; the same again."""
+    def recovered(self, found: Resumption | FreshStart) -> None:
         if isinstance(found, Resumption):
             if not found.told:
                 self._desk("crashed", f"it ended unexpectedly, and continues after {found.away:.0f} s")
         elif found.crashed:
             self._desk("crashed", "it ended unexpectedly, and starts from the beginning")
-        return found
 
     def stepped(self, step: Step) -> None:
         if step.event and step.event.name == "stop" and _by_person(step.event):
@@ -161,6 +166,37 @@ class AlertPart(Part, Observer):
         if trouble and not self._troubles.get(about):
             self._desk("disk", trouble, about)
         self._troubles[about] = trouble
+
+
+def make(services: Services) -> AlertPart:
+    """Make the part that sends alerts about trouble, and provide its desk."""
+    plan, directory, root = services.plan, directory_of(services), Path(services.project.root)
+    parts = plan.roles or (ROBOT_PART, BRAIN)
+    origin = Origin(plan.project.name, plan.project.robot, parts)
+    desk = AlertDesk(plan.project.section(Alerts), origin, root, services.tell("alerts"))
+    services.provide(desk)
+    records = directory.records if directory else RunRecords(None)
+
+    def kept() -> str:
+        return next(filter(None, (records.trouble, *(part.trouble for part in services.node.parts))), "")
+
+    def stopped() -> bool:
+        robot = services.get(HostedRobotPart)
+        return not plan.brain and robot is not None and robot.stopped()
+
+    folder = home_of(root, plan.project.one_of_several)
+    return AlertPart(desk, services.bus, folder, parts, services.presence, kept, stopped=stopped)
+
+
+def tell_of_failure(failure: RunFailure) -> Callable[[], None]:
+    """Tell people that a run failed, as the files say, else as the last good ones do; return what waits for that."""
+    alerts = failure.settings.section(Alerts) if failure.settings else Alerts()
+    if not alerts.to and (good := failure.last_good()):
+        alerts = good.section(Alerts)
+    origin = Origin(failure.name, failure.robot, failure.parts)
+    desk = AlertDesk(alerts, origin, failure.root, failure.tell)
+    desk(failure.kind, failure.text)
+    return desk.close
 
 
 def told_of(event: Event) -> tuple[str, str, str] | None:

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Sequence
 
+from lumen.features.alerts.desk import AlertDesk
 from lumen.language.diagnostics import Severity
 from lumen.language.events import Event
 from lumen.run.parts.part import Part
 from lumen.run.reload.reloader import Reloader
 from lumen.run.reload.report import START, ReloadReport
+from lumen.run.services import Services
 
 
 class RefusalPart(Part):
@@ -27,6 +29,11 @@ class RefusalPart(Part):
             self._last = report
             if text := refusal(report):
                 self._tell("refused", text)
+
+
+def make(services: Services) -> RefusalPart:
+    """Make the part that sends alerts about refused files."""
+    return RefusalPart(services[Reloader], services[AlertDesk])
 
 
 def refusal(report: ReloadReport) -> str:

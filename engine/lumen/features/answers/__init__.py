@@ -1,4 +1,4 @@
-"""Answers to questions that no phrase matches, from passages and language models."""
+"""Answers of language models to questions that no passage answers."""
 
 from lumen.feature import Feature, ModuleRow
 

@@ -1,9 +1,18 @@
 """The pages in a browser that show an exhibition and control it."""
 
-from lumen.feature import Feature, Section, Subcommand
+from lumen.feature import Feature, PartRow, Phase, Section, Subcommand
 
 FEATURE = Feature(
     name="console",
+    parts=(
+        PartRow(
+            "console",
+            Phase.SHOW,
+            "lumen.features.console.part:make",
+            "brain section:console option:console",
+            after="film",
+        ),
+    ),
     pages=("lumen.features.console.explained",),
     rules=("lumen.features.console.rules:check",),
     subcommands={

@@ -11,7 +11,9 @@ from pathlib import Path
 
 from lumen.bus.addresses import within_process
 from lumen.language.events import Event
+from lumen.run.making.serving import directory_of
 from lumen.run.parts.part import Part
+from lumen.run.services import Services
 from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 
@@ -100,3 +102,10 @@ class ConsolePart(Part):
         with suppress(OSError, ValueError):
             for line in process.stdout or ():
                 self._lines.append(line.strip()[:300])
+
+
+def make(services: Services) -> ConsolePart:
+    """Make the part that serves the console's pages in a process of its own."""
+    directory = directory_of(services)
+    root = directory.root if directory else Path(services.project.root)
+    return ConsolePart(root, services.plan.url, services.tell("console"))

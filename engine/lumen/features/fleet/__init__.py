@@ -1,9 +1,19 @@
 """Updates of the robots of many houses."""
 
-from lumen.feature import Feature, Subcommand
+from lumen.feature import Feature, PartRow, Phase, Subcommand
 
 FEATURE = Feature(
     name="fleet",
+    parts=(
+        PartRow(
+            "fleet",
+            Phase.SERVE,
+            "lumen.features.fleet.part:make",
+            "brain option:reload file:fleet.yaml",
+            after="reload",
+        ),
+    ),
+    before_start=("lumen.features.fleet.installing:finish",),
     pages=("lumen.features.fleet.pages",),
     rules=("lumen.features.fleet.rules:check",),
     codes=("lumen.features.fleet.reading",),

@@ -23,8 +23,10 @@ from lumen.ports import Message
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import Home
 from lumen.run.live_behavior import LiveBehavior
+from lumen.run.making.serving import directory_of
 from lumen.run.parts.part import Part
 from lumen.run.reload.reloader import Reloader
+from lumen.run.services import Services
 from lumen.run.snapshot_store import SnapshotStore
 
 HOUSE_VARIABLE = "LUMEN_HOUSE"
@@ -154,24 +156,19 @@ class FleetPart(Part):
             self._bus.publish(incident_key(self._house, self._robot), body)
 
 
-def fleet_part(
-    root: Path,
-    bus: ValidatedBus,
-    behavior: LiveBehavior,
-    reloader: Reloader,
-    home: Home | None,
-    tell: Callable[[str], None],
-    needs: Sequence[str] = (),
-) -> FleetPart | None:
-    """The agent of the robot whose behaviour that is; None where it belongs to no fleet, or files are left alone."""
-    project = behavior.project
-    found = fleet_of(root, project.house, project.robot)
-    if found is None or home is None:
+def make(services: Services) -> FleetPart | None:
+    """Make the agent of a robot that belongs to a fleet, unless `--reload off` leaves files alone."""
+    directory, project = directory_of(services), services.plan.project
+    if directory is None or directory.home is None or services.plan.story:
         return None
+    if (found := fleet_of(directory.root, project.house, project.robot)) is None:
+        return None
+    reloader, tell = services[Reloader], services.tell("fleet")
     if reloader.mode == "off":
         tell("bundles of the fleet are ignored because of --reload off")
         return None
-    return FleetPart(*found, bus, behavior, reloader, home, root, tell, needs)
+    bus, behavior, home = services.bus, services.behavior, directory.home
+    return FleetPart(*found, bus, behavior, reloader, home, directory.root, tell, services.needs)
 
 
 def fleet_of(root: Path, house: str, robot: str) -> tuple[Fleet, str] | None:

@@ -1,9 +1,10 @@
 """Recordings of the messages of an exhibition."""
 
-from lumen.feature import Feature, Section, Subcommand
+from lumen.feature import Feature, PartRow, Phase, Section, Subcommand
 
 FEATURE = Feature(
     name="recording",
+    parts=(PartRow("recording", Phase.RECORD, "lumen.features.mcap.part:make", "option:directory"),),
     subcommands={
         "record": Subcommand(
             "record the messages of a running exhibition, for Foxglove and Lichtblick",

@@ -23,6 +23,7 @@ from lumen.language.projects import Project
 from lumen.language.retention import RecordingSettings
 from lumen.project.home import home_of
 from lumen.run.parts.part import Part
+from lumen.run.services import Services
 
 Telling = Callable[[str], None]
 
@@ -65,11 +66,9 @@ class RecordingPart(Part):
 
     @property
     def trouble(self) -> str:
-        """Why something can't be recorded; empty if everything can."""
         return self._recorder.trouble if self._recorder else ""
 
     def marking(self) -> str:
-        """What becomes of a mark; empty where nothing is recorded."""
         if self._ring:
             minutes = self._said.ring / 60
             return f"the last {minutes:g} min and the next minute are kept in {self._folder.path}"
@@ -145,3 +144,11 @@ class RecordingPart(Part):
                 )
                 hashes += [dict(found.words).get("bundle", "") for found in notes]
         return bundle_files(self._root, hashes, self._robot)
+
+
+def make(services: Services) -> RecordingPart:
+    """Make the recorder of the bus, which also recovers what the run before left half written."""
+    plan = services.plan
+    file, patient = plan.options.get("record"), plan.story is not None and not plan.roles
+    tell = services.tell("recording")
+    return RecordingPart(plan.project, services.bus, tell, file, ring=services.lasts, patient=patient)

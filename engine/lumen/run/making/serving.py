@@ -1,16 +1,12 @@
 """The parts that serve the behaviour: its journal, people to forget, saved files, and operators."""
 
-from lumen.features.alerts.part import AlertPart
-from lumen.features.mcap.part import RecordingPart
 from lumen.journal.journal_writer import JournalWriter
 from lumen.motion.bounds import analyse
-from lumen.project.project_folders import FLEET_FILE
 from lumen.robot.person_hold import StoppedBy
 from lumen.run.forgetting.added import FeatureForgetter
 from lumen.run.parts.forgetting import ForgettingPart
 from lumen.run.parts.hosted_robot import HostedRobotPart, stopped_there
 from lumen.run.parts.operating import OperatorPart, RunState
-from lumen.run.parts.part import Part
 from lumen.run.parts.robot import RobotPart
 from lumen.run.recovery.recording import record_inputs
 from lumen.run.recovery.run_directory import RunDirectory
@@ -51,27 +47,19 @@ def reload(services: Services) -> ReloadPart:
     return ReloadPart(reloader, services.needs)
 
 
-def fleet(services: Services) -> Part | None:
-    """Make the agent of a robot that belongs to a fleet."""
-    directory = directory_of(services)
-    if directory is None or services.plan.story or not (directory.root / FLEET_FILE).exists():
-        return None
-    from lumen.features.fleet.part import fleet_part  # few exhibitions are of a fleet
-
-    reloader, tell = services[Reloader], services.tell("fleet")
-    return fleet_part(directory.root, services.bus, services.behavior, reloader, directory.home, tell, services.needs)
-
-
 def operator(services: Services) -> OperatorPart:
     """Make the part that answers operators."""
     directory = directory_of(services)
-    recording, reloader = services.get(RecordingPart), services.get(Reloader)
+    reloader = services.get(Reloader)
 
     def stopped() -> StoppedBy | None:
         robot = services.get(RobotPart)
         if robot:
             return robot.server.hold.stopped
         return stopped_there(services.presence) if services.presence else None
+
+    def marking() -> str:
+        return next(filter(None, (part.marking() for part in services.node.parts)), "")
 
     def reloaded() -> LastReload | None:
         return reloader.last_reload if reloader else None
@@ -82,7 +70,7 @@ def operator(services: Services) -> OperatorPart:
         services[JournalWriter],
         services[RunRecords],
         RunState(stopped, lambda: services.node.pace.realtime, reloaded),
-        marking=recording.marking if recording else str,
+        marking=marking,
         kept=directory.home.folder if directory and directory.home and services.lasts else None,
         needs=services.needs,
     )
@@ -99,15 +87,16 @@ def records(services: Services) -> RecordsPart:
 
 
 def recovered(services: Services) -> Resumption | FreshStart:
-    """Go on with the run before, or begin; the operator's decisions and the alerts with it."""
+    """Go on with the run before, or begin; the operator's decisions with it. All parts hear which it is."""
     directory, options = directory_of(services), services.plan.options
     if directory is None:
         return FreshStart()
     fresh = options.get("fresh", True) or (services.plan.story is not None and not services.plan.roles)
     found = directory.begin_run(services.behavior, services.plan.url, services.get(Reloader), fresh=fresh)
     services[OperatorPart].recover(directory.records.decisions(), resumed=isinstance(found, Resumption))
-    watch = services.get(AlertPart)
-    return watch.recovered(found) if watch else found
+    for part in services.node.parts:
+        part.recovered(found)
+    return found
 
 
 def directory_of(services: Services) -> RunDirectory | None:

@@ -1,13 +1,11 @@
-"""The film of a run, and the console's pages."""
+"""The film of a run."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumen.features.console.part import ConsolePart
 from lumen.features.film.part import FilmPart
 from lumen.features.film.progress import FilmProgress
 from lumen.run.audio_track import AudioTrack
-from lumen.run.making.serving import directory_of
 from lumen.run.services import Services
 
 
@@ -30,10 +28,3 @@ def film(services: Services) -> FilmPart:
     return FilmPart(
         wanted.path, robot, services.narrator, wanted.track, size=wanted.size, title=title, progress=wanted.progress
     )
-
-
-def console(services: Services) -> ConsolePart:
-    """Make the part that serves the console's pages in a process of its own."""
-    directory = directory_of(services)
-    root = directory.root if directory else Path(services.project.root)
-    return ConsolePart(root, services.plan.url, services.tell("console"))

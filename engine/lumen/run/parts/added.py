@@ -11,6 +11,7 @@ from lumen.language.projects import Project
 from lumen.project.broken_features import faulty, shown
 from lumen.run.loop import Observer
 from lumen.run.parts.part import Part
+from lumen.run.resuming import FreshStart, Resumption
 from lumen.run.troubles import RunTrouble
 from lumen.statechart import Step
 
@@ -46,8 +47,15 @@ class AddedPart(Part, Observer):
     def failed(self) -> bool:
         return self._call(lambda: bool(self.own.failed), False)
 
+    @property
+    def trouble(self) -> str:
+        return self._call(lambda: _line(self.own.trouble), "")
+
     def begin(self, now: float) -> None:
         self._call(lambda: self.own.begin(now), None)
+
+    def recovered(self, found: Resumption | FreshStart) -> None:
+        self._call(lambda: self.own.recovered(found), None)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         self._call(lambda: self.own.tick(now, changes), None)
@@ -72,6 +80,9 @@ class AddedPart(Part, Observer):
 
     def part_stopped(self, part: str) -> None:
         self._call(lambda: self.own.part_stopped(part), None)
+
+    def marking(self) -> str:
+        return self._call(lambda: _line(self.own.marking()), "")
 
     def summary(self) -> Iterator[str]:
         nothing: tuple[str, ...] = ()
@@ -131,4 +142,4 @@ def _time(value: Any) -> float:
 def _line(value: Any) -> str:
     if isinstance(value, str):
         return value
-    raise TypeError(f"`summary` has {shown(value)}, which is no text")
+    raise TypeError(f"it returned {shown(value)}, which is no text")

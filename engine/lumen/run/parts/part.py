@@ -5,6 +5,7 @@ from math import inf
 
 from lumen.language.events import Event
 from lumen.language.projects import Project
+from lumen.run.resuming import FreshStart, Resumption
 
 
 class Part:
@@ -29,8 +30,16 @@ class Part:
         """Whether a story has failed, or was not played to its end."""
         return False
 
+    @property
+    def trouble(self) -> str:
+        """Why what the part should keep can't be written; empty if nothing is lost."""
+        return ""
+
     def begin(self, now: float) -> None:
         """What it needs is there, at `now` [s]."""
+
+    def recovered(self, found: Resumption | FreshStart) -> None:
+        """Hear how the behaviour begins, which tells how the last run ended."""
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Live until `now` [s]; `changes` tell who of the other processes was lost or came back."""
@@ -57,6 +66,10 @@ class Part:
 
     def part_stopped(self, part: str) -> None:
         """Another part, which a package added, failed and was stopped; `part` is its name and its package."""
+
+    def marking(self) -> str:
+        """Return what the part keeps of the minutes around a mark that an operator set now; empty for nothing."""
+        return ""
 
     def summary(self) -> Iterator[str]:
         """What is said of it at the end, a line each."""
