@@ -16,12 +16,12 @@ from lumen.features.fleet.centre import Centre
 from lumen.features.fleet.centre_journal import CentreJournal
 from lumen.features.fleet.fleet_log import FleetLog
 from lumen.features.fleet.kept_bundles import BundleFolder
-from lumen.features.fleet.keys import desired_key, presence_key
 from lumen.features.fleet.rollouts.presence import RobotPresence
 from lumen.features.fleet.rollouts.rollout import begin
 from lumen.features.fleet.rollouts.state import CentreState
 from lumen.features.fleet.settings import Fleet, FleetHouse, FleetMeasure, RolloutPlan, StepTarget
 from lumen.features.fleet.signing import Signer, generate
+from lumen.language.fleet_keys import desired_key, presence_key
 from lumen.project.home import Home
 
 HOUSE = 10

@@ -23,8 +23,8 @@ from tests.workers.clusters import dask_cluster
 import lumen
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.trials.cases import cases
+from lumen.features.simulation.trials.playing import play_case
 from lumen.project.files import read_files
-from lumen.run.linting.physics import play_case
 from lumen.run.workers.work_kit import WorkKit, models_in
 from lumen.run.workers.workers import Workers, cores, workers_of
 

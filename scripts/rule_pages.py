@@ -12,13 +12,13 @@ from tempfile import TemporaryDirectory
 
 from written_distribution import on_path, write_distribution
 
+from lumen.features.simulation.trials.playing import played
 from lumen.language.diagnostics import Diagnostic
 from lumen.lint import check_files
 from lumen.lint.codes import codes, families
 from lumen.lint.pages import Example, Page, page
 from lumen.project.files import Unreadable, read_files
 from lumen.run.linting.findings import Findings
-from lumen.run.linting.physics import played
 from lumen.run.reload.against import against
 
 ROOT = Path(__file__).parents[1]

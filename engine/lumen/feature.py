@@ -260,7 +260,7 @@ class Importer(NamedTuple):
     """A kind of file of another tool that `lumen import` converts to one of ours.
 
     `kind` is `behavior`, `controller` or `motion`. `read` names a `FileReader` of `lumen.project.formats.importers`,
-    for a motion a `MotionReader` of `lumen.features.formats_motion.offers`.
+    for a motion a `MotionReader` of `lumen.project.formats.imported_motions`.
     """
 
     kind: str

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.cli.importing import result_faults
-from lumen.cli.importing_robot import robot_body
+from lumen.features.formats_robots.importing import robot_body
 from lumen.features.formats_robots.mjcf import mjcf_model
 from lumen.features.formats_robots.offers import begins_robot, read_robot
 from lumen.project.formats.conversion_findings import ConversionFindings, ForeignFileError

@@ -57,4 +57,4 @@ def test_every_thread_is_watched() -> None:
         for file in matching(ROOT / PACKAGE, "**/*.py")
         if re.search(r"threading\.Thread\(|ThreadPoolExecutor\(", file.read_text("utf-8"))
     }
-    assert made == {"upkeep/threads.py", "run/reload/records.py", "features/simulation/film.py"}
+    assert made == {"upkeep/threads.py", "run/reload/records.py", "features/simulation/filming/film.py"}

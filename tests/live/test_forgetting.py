@@ -180,7 +180,7 @@ def test_who_stands_there_is_forgotten_by_an_exhibition_that_runs(
         hear(bus, "my name is İpek")
         until(lambda: {"snapshot.json", "posts.jsonl"} <= set(found(copy, "İpek")))
         with monkeypatch.context() as patient:
-            patient.setattr("lumen.cli.memory.ANSWER_TIMEOUT", HANG)
+            patient.setattr("lumen.features.visitors.command.ANSWER_TIMEOUT", HANG)
             patient.setattr("lumen.run.forgetting.files.PATIENCE", HANG)
             assert main(["memory", "forget", "ipek", "--project", str(copy)]) == 0
         told = capsys.readouterr().out

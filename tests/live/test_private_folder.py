@@ -21,7 +21,7 @@ MAKERS = {
     "features/fleet/installing.py": "a folder of the project, which is to be committed",
     "run/new_passage.py": "knowledge/ of the project, which is to be committed",
     "run/new_saying.py": "behaviors/sayings/ of the project, which is to be committed",
-    "run/linting/outcome_cache.py": "a folder within a private one",
+    "features/simulation/trials/outcome_cache.py": "a folder within a private one",
     "upkeep/cache_folder.py": "in the user's own cache, not in a project",
     "run/workers/work_kit.py": "a temporary folder",
     "run/starting.py": "a project, which is to be committed",

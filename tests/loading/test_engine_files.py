@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from lumen.features.simulation.trials import outcome_cache
 from lumen.project import engine_files
-from lumen.run.linting import outcome_cache
 
 DECIDE = ("lumen.motion.gait", "lumen.motion.life", "lumen.robot.executor", "lumen.features.simulation.trials.trial")
 """Modules that decide whether a motion falls, at different depths."""

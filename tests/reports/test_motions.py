@@ -11,7 +11,6 @@ import yaml
 
 import lumen
 from lumen.cli.main import main
-from lumen.features.formats_motion.offers import read_gesture
 from lumen.features.formats_robots.offers import read_robot
 from lumen.language.commands import Look, Wake
 from lumen.language.diagnostics import Diagnostic
@@ -29,6 +28,7 @@ from lumen.ports import Aim, Perform, RobotCommand, Sense
 from lumen.project.bodies import build_body
 from lumen.project.document_report import DocumentReport
 from lumen.project.formats.conversion_findings import LOST, ForeignFileError
+from lumen.project.formats.imported_motions import read_gesture
 from lumen.project.motions import build_motion
 from lumen.project.packaged import shipped_root
 from lumen.project.schema import check_schema

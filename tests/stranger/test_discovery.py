@@ -12,11 +12,11 @@ from written_distribution import on_path, write_distribution
 from lumen import distributions, feature
 from lumen.cli.main import main
 from lumen.feature import BUILT_IN, Feature, features, resolve, wrong_rows
+from lumen.features.simulation.trials import outcome_cache
 from lumen.lint import check_files
 from lumen.project import engine_files
 from lumen.project.files import read_files
 from lumen.project.packaged import PACKAGE
-from lumen.run.linting import outcome_cache
 from lumen.run.workers import tasks
 from tests import ROOT
 from tests.copying import copied_project

@@ -303,7 +303,7 @@ def test_an_alert_about_the_end_of_a_run_names_the_package(installed: Installed,
 
 MODULE = "from lumen.run.module import Module\n\n\nclass Mood(Module):\n    "
 CURVES = """
-from lumen.features.formats_motion.joint_curves import CurvePoint
+from lumen.project.formats.joint_curves import CurvePoint
 from lumen.language.diagnostics import Place
 """
 ROW = "modules={'mood': ModuleRow('faulty_code:Mood')}"

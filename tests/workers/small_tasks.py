@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.trials import Outcome
-from lumen.run.linting.physics import play_case
+from lumen.features.simulation.trials.playing import play_case
 from lumen.run.workers.work_kit import UnpackedKit
 
 

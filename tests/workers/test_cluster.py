@@ -12,8 +12,8 @@ from lumen.errors import WorkersError
 from lumen.extras import MissingExtraError
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.trials.cases import cases
+from lumen.features.simulation.trials.playing import play_case
 from lumen.project.files import read_files
-from lumen.run.linting.physics import play_case
 from lumen.run.workers.work_kit import WorkKit, models_in
 from lumen.run.workers.workers import Workers, workers_of
 from tests import ROOT

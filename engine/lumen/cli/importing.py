@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from lumen.cli.foreign import foreign_content, one_line
-from lumen.cli.importing_robot import robot_body, write_beside
 from lumen.cli.progress import progress
 from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
 from lumen.feature import distribution_of, rows
-from lumen.features.formats_motion.offers import choregraphe_list, read_gesture
+from lumen.features.formats_robots.importing import robot_body, write_beside
 from lumen.features.formats_robots.offers import begins_robot
 from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.robots import Body
@@ -30,6 +29,7 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import body_of
 from lumen.project.files import read_files
 from lumen.project.formats.conversion_findings import ForeignFileError
+from lumen.project.formats.imported_motions import choregraphe_list, read_gesture
 from lumen.project.formats.importers import FileReader, endings, importer, reader
 from lumen.project.formats.yaml_document import document_yaml
 from lumen.project.motions import build_motion

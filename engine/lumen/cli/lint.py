@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
 def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
     """The findings with those of the motions in simulation; how they went is told beside what is for people."""
     from lumen.cli.progress import progress
-    from lumen.run.linting.physics import ROBOTS, number_of_robots, played, summary
+    from lumen.features.simulation.trials.playing import ROBOTS, number_of_robots, played, summary
     from lumen.run.workers.workers import workers_of
 
     robots = ROBOTS if options.robots is None else number_of_robots(options.robots)

@@ -20,7 +20,8 @@ from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
 from lumen.errors import UsageError
 from lumen.feature import table
-from lumen.features.film.options import configure_size, film_path, film_progress, film_size
+from lumen.features.simulation.filming.making import FilmPlan
+from lumen.features.simulation.filming.options import configure_size, film_path, film_progress, film_size
 from lumen.features.simulation.options import configure_imperfections, set_up_robot
 from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.language.stories import Story
@@ -33,7 +34,6 @@ from lumen.run.audio_track import AudioTrack
 from lumen.run.chosen_stories import home_of
 from lumen.run.compose import begin, claim
 from lumen.run.loudspeaker import Loudspeaker, Sounds
-from lumen.run.making.showing import FilmPlan
 from lumen.run.node import Node
 from lumen.run.one_robot import robots_of
 from lumen.run.plan import Plan

@@ -191,9 +191,9 @@ FEATURE = Feature(
         "upgrade": Subcommand("rewrite a project's files for the current vocabulary", "lumen.cli.upgrade"),
         "test": Subcommand("play the stories, try the sayings, and list those that fail", "lumen.cli.test"),
         "hear": Subcommand("explain how a state reacts to a sentence, row by row", "lumen.cli.hear"),
-        "play": Subcommand("play a motion on the simulated robot", "lumen.cli.play"),
-        "memory": Subcommand("list what the robot remembers, or forget a visitor", "lumen.cli.memory"),
-        "graph": Subcommand("draw a behaviour as a diagram", "lumen.cli.graph"),
+        "play": Subcommand("play a motion on the simulated robot", "lumen.features.simulation.command"),
+        "memory": Subcommand("list what the robot remembers, or forget a visitor", "lumen.features.visitors.command"),
+        "graph": Subcommand("draw a behaviour as a diagram", "lumen.features.formats_charts.command"),
         "plot": Subcommand("draw a controller, its outputs for given inputs, or a motion", "lumen.cli.plot"),
         "import": Subcommand(
             "convert another tool's statechart, motion, controller or robot",

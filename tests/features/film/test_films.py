@@ -10,11 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.features.film.progress import FilmProgress
-from lumen.features.simulation.film import Film
-from lumen.features.simulation.lettering import MAX_LINES, ROBOT_COLOUR, subtitle, subtitle_pages
-from lumen.features.simulation.offers import SimulatedRobot
-from lumen.features.simulation.shots import (
+from lumen.features.simulation.filming.film import Film
+from lumen.features.simulation.filming.progress import FilmProgress
+from lumen.features.simulation.filming.shots import (
     FIELD_OF_VIEW,
     LONGEST_SHOT,
     SHORTEST_SHOT,
@@ -27,6 +25,8 @@ from lumen.features.simulation.shots import (
     camera_place,
     free_camera,
 )
+from lumen.features.simulation.lettering import MAX_LINES, ROBOT_COLOUR, subtitle, subtitle_pages
+from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.stories import Visitor
 
 HEAD: HallPoint = (0.0, 0.0, 1.0)

@@ -9,10 +9,10 @@ from lumen.bus import connect
 from lumen.features.fleet.agent import FleetAgent
 from lumen.features.fleet.bundle import messages_of
 from lumen.features.fleet.kept_bundles import BundleFolder
-from lumen.features.fleet.keys import bundle_key, desired_key, presence_key
 from lumen.features.fleet.memory import AgentMemory
 from lumen.features.fleet.serving import ServedCentre
 from lumen.features.fleet.signing import Signer, generate
+from lumen.language.fleet_keys import bundle_key, desired_key, presence_key
 from lumen.project.files import read_files
 from tests.features.fleet.brokers import CENTRE, HOUSES, FleetBrokers
 from tests.features.fleet.houses import Taker, project

@@ -13,8 +13,8 @@ from pika.exceptions import ChannelClosedByBroker
 
 from lumen.bus import connect
 from lumen.cli.main import main
-from lumen.features.fleet.keys import incident_key
 from lumen.features.fleet.serving import ServedCentre
+from lumen.language.fleet_keys import incident_key
 from tests.features.fleet.brokers import CENTRE, DOWN, HOUSES, UP, FleetBrokers, blocks
 from tests.features.fleet.houses import changed
 from tests.features.fleet.museums import Museums

@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 import lumen
 from lumen.cli.main import main
-from lumen.features.formats_motion.offers import read_gesture
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.motions import MotionDefinition
 from lumen.motion.trajectories import Trajectory
 from lumen.project.document_report import DocumentReport
 from lumen.project.formats.conversion_findings import ForeignFileError
+from lumen.project.formats.imported_motions import read_gesture
 from lumen.project.formats.yaml_document import document_yaml
 from lumen.project.motions import build_motion
 from lumen.project.packaged import shipped_root

@@ -12,10 +12,10 @@ from lumen.bus.memory import MemoryBus
 from lumen.features.mcap import recorder as recording
 from lumen.features.mcap.files.recorded import Recorded
 from lumen.features.mcap.files.recording_file import RecordingFile
-from lumen.features.mcap.happenings import happening
 from lumen.features.mcap.recorder import Recorder
 from lumen.features.mcap.recordings_folder import RecordingsFolder
 from lumen.features.mcap.tape_file import FileTape
+from lumen.journal.happenings import happening
 from lumen.language.causes import MessageOrigin
 from lumen.language.people import PersonName
 from lumen.language.projects import Project

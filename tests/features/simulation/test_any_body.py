@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lumen.features.simulation.film import Film
+from lumen.features.simulation.filming.film import Film
 from lumen.features.simulation.link_frames import LinkFrames
 from lumen.features.simulation.subject import subject
 from lumen.language.commands import Leds, Posture

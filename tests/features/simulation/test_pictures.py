@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from lumen.errors import RobotError
 from lumen.features.simulation.culling import FrustumCulling
-from lumen.features.simulation.film import FILM_RATE, Film
+from lumen.features.simulation.filming.film import FILM_RATE, Film
 from lumen.features.simulation.offers import SimulatedRobot
 from lumen.features.simulation.shells import write
 from lumen.language.commands import Look

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 from lumen.features.console.entry_words import ENDS, ENGLISH, MARK, OFTEN
 from lumen.features.console.heard_sentences import HeardSentence, heard_sentence
-from lumen.features.mcap.happenings import FALLEN
 from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry
 from lumen.insight.replay.journal_clock import JournalClock
 from lumen.insight.replay.replaying import MachineSource, ReplayedStep, Replayer
 from lumen.insight.replay.visits import VisitWatch
+from lumen.journal.happenings import FALLEN
 from lumen.language.command_data import started
 from lumen.language.iso_time import iso_time
 from lumen.language.modules import VISITOR_KEY

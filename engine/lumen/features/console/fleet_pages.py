@@ -9,7 +9,7 @@ from starlette.routing import Route
 from lumen.errors import BusError
 from lumen.features.console.people import Role
 from lumen.features.console.requests import DeniedError, Reception, as_json
-from lumen.features.fleet.keys import ORDER
+from lumen.language.fleet_keys import ORDER
 
 ANSWER_TIMEOUT = 5.0
 """How long a centre may take [s]."""

@@ -12,7 +12,6 @@ from lumen.features.fleet.bundle import messages_of
 from lumen.features.fleet.centre_journal import CentreJournal
 from lumen.features.fleet.fleet_log import FleetLog
 from lumen.features.fleet.kept_bundles import BundleFolder
-from lumen.features.fleet.keys import KEPT, PRESENCE, bundle_key, desired_key, robot_of
 from lumen.features.fleet.overview import overview
 from lumen.features.fleet.rollouts.orders import DesiredState
 from lumen.features.fleet.rollouts.presence import presence_from
@@ -22,6 +21,7 @@ from lumen.features.fleet.settings import Fleet
 from lumen.features.fleet.signing import ORDER, Signer
 from lumen.features.rabbitmq.stream_reader import StreamEntry, StreamReader
 from lumen.language.counts import counted
+from lumen.language.fleet_keys import KEPT, PRESENCE, bundle_key, desired_key, robot_of
 from lumen.ports import Bus, Message
 
 TELL_PERIOD = 10.0

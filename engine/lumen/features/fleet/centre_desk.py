@@ -9,13 +9,13 @@ from typing import Any
 from lumen.errors import BusError, UsageError
 from lumen.features.fleet.bundle import BundleParts
 from lumen.features.fleet.centre import Centre
-from lumen.features.fleet.keys import ORDER
 from lumen.features.fleet.rollouts.conditions import condition_faults
 from lumen.features.fleet.rollouts.rollout import abort, begin, decide, take_over
 from lumen.features.fleet.rollouts.state import GOING, PAUSED
 from lumen.features.fleet.settings import RolloutPlan, step_target
 from lumen.language.causes import UNNAMED_PROGRAM
 from lumen.language.diagnostics import did_you_mean
+from lumen.language.fleet_keys import ORDER
 from lumen.ports import Bus, Message
 
 MAX_STEPS = 20

@@ -13,12 +13,12 @@ from lumen.bus import Bus, connect
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import BusUnreachableError, ProjectError, UsageError
 from lumen.features.fleet.bundle import messages_of
-from lumen.features.fleet.keys import ORDER
 from lumen.features.fleet.serving import ServedCentre, fleet_in
 from lumen.features.fleet.signing import Signer, generate
 from lumen.features.fleet.text import fleet_lines, log_lines
 from lumen.insight.changes import changes, risk, summary
 from lumen.language.counts import counted
+from lumen.language.fleet_keys import ORDER
 from lumen.lint import check_files
 from lumen.project.project_folders import FLEET_FILE
 from lumen.project.units import seconds

@@ -13,12 +13,12 @@ from lumen.errors import BusError
 from lumen.features.fleet.agent import FleetAgent
 from lumen.features.fleet.counter import MeasureCounter
 from lumen.features.fleet.installing import all_have, bundle_folder, install, written
-from lumen.features.fleet.keys import bundle_key, desired_key, incident_key, numbers_key, presence_key
 from lumen.features.fleet.memory import keep, remember
 from lumen.features.fleet.reading import read_fleet
 from lumen.features.fleet.settings import Fleet
 from lumen.language.diagnostics import has_errors
 from lumen.language.events import Event
+from lumen.language.fleet_keys import bundle_key, desired_key, incident_key, numbers_key, presence_key
 from lumen.ports import Message
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import Home

@@ -13,13 +13,13 @@ from lumen.features.fleet.centre_desk import CentreDesk
 from lumen.features.fleet.centre_journal import CentreJournal
 from lumen.features.fleet.fleet_log import FleetLog
 from lumen.features.fleet.kept_bundles import BundleFolder
-from lumen.features.fleet.keys import STREAM
 from lumen.features.fleet.reading import read_fleet
 from lumen.features.fleet.rollouts.state import CentreState
 from lumen.features.fleet.settings import Fleet
 from lumen.features.fleet.signing import Signer
 from lumen.features.rabbitmq.stream_reader import StreamReader, has_stream
 from lumen.language.diagnostics import has_errors
+from lumen.language.fleet_keys import STREAM
 from lumen.ports import Bus
 from lumen.project.home import Home, home_of
 from lumen.upkeep.private_folder import private_folder

@@ -10,9 +10,9 @@ from collections.abc import Collection, Iterator
 from math import inf, radians
 from typing import NamedTuple
 
-from lumen.features.formats_motion.joint_curves import BezierHandle, CurvePoint, JointCurves, MotionFile, number
 from lumen.language.diagnostics import did_you_mean
 from lumen.project.formats.conversion_findings import ConversionFindings, ForeignFileError, broken
+from lumen.project.formats.joint_curves import BezierHandle, CurvePoint, JointCurves, MotionFile, number
 from lumen.project.formats.known import FormatTable, Known
 from lumen.project.formats.known_elements import local, tell_losses
 from lumen.project.formats.xml_elements import XmlElement, parse_xml

@@ -6,10 +6,10 @@ files hold.
 """
 
 from lumen.features.formats_motion.cells import Cell, cells_of
-from lumen.features.formats_motion.joint_curves import CurvePoint, JointCurves, number
 from lumen.language.counts import counted
 from lumen.language.diagnostics import Place
 from lumen.project.formats.conversion_findings import ConversionFindings, broken
+from lumen.project.formats.joint_curves import CurvePoint, JointCurves, number
 
 SOCCER_VERSION = "V1.1"
 POSE = "play"

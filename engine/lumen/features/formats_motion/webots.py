@@ -7,11 +7,11 @@ leaves a joint alone. Teams of RoboCup's 3D league write V1.1 (`soccer.py`), whi
 import re
 
 from lumen.features.formats_motion.cells import Cell, cells_of
-from lumen.features.formats_motion.joint_curves import CurvePoint, JointCurves, MotionFile, number
 from lumen.features.formats_motion.soccer import SOCCER_VERSION, read_soccer
 from lumen.language.counts import counted
 from lumen.language.diagnostics import Place
 from lumen.project.formats.conversion_findings import ConversionFindings, broken, decoded
+from lumen.project.formats.joint_curves import CurvePoint, JointCurves, MotionFile, number
 from lumen.project.formats.known import FormatTable, Known
 
 FIRST_CELL = "#WEBOTS_MOTION"

@@ -10,8 +10,8 @@ from typing import NamedTuple, Protocol
 from lumen.bus.aliases import COPY
 from lumen.features.mcap.files.encoding import MessageEncoder
 from lumen.features.mcap.files.recorded import Recorded
-from lumen.features.mcap.happenings import happening
 from lumen.features.mcap.notes import notes_of
+from lumen.journal.happenings import happening
 from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
 from lumen.language.routing_keys import DEFAULT_KEYS, INTERNAL_KEYS, key_of_robot

@@ -48,8 +48,8 @@ def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[di
     """The MJCF of a URDF and its meshes, and what was lost on the way."""
     here = Place(str(path), 1, 1)
     try:
+        from lumen.features.formats_robots.urdf_conversion import urdf_as_mjcf
         from lumen.features.simulation import installed  # noqa: F401
-        from lumen.features.simulation.urdf_conversion import urdf_as_mjcf
     except MissingExtraError as error:
         return {}, [Diagnostic(LOST, f"{title}.xml was not written: {error}", here, "then import the robot again")]
     try:
@@ -68,8 +68,8 @@ def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[di
 def _refused(path: Path) -> list[Diagnostic]:
     """Return MuJoCo's error for an MJCF, which is not changed; nothing if MuJoCo is not installed."""
     try:
+        from lumen.features.formats_robots.urdf_conversion import mjcf_fault
         from lumen.features.simulation import installed  # noqa: F401
-        from lumen.features.simulation.urdf_conversion import mjcf_fault
     except MissingExtraError:
         return []
     fault = mjcf_fault(path)

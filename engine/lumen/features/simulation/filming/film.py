@@ -13,12 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.errors import RobotModelError
-from lumen.features.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, subtitle_pages, title
-from lumen.features.simulation.model_terms import ROBOT_PREFIX
-from lumen.features.simulation.physics import mujoco
-from lumen.features.simulation.rendering import FILM_QUALITY, PixelArray, RenderState, SceneRenderer, available
-from lumen.features.simulation.robot import SimulatedRobot
-from lumen.features.simulation.shots import (
+from lumen.features.simulation.filming.shots import (
     FIELD_OF_VIEW,
     CameraPlace,
     FilmMoment,
@@ -29,6 +24,11 @@ from lumen.features.simulation.shots import (
     camera_place,
     free_camera,
 )
+from lumen.features.simulation.lettering import ROBOT_COLOUR, VISITOR_COLOUR, subtitle, subtitle_pages, title
+from lumen.features.simulation.model_terms import ROBOT_PREFIX
+from lumen.features.simulation.physics import mujoco
+from lumen.features.simulation.rendering import FILM_QUALITY, PixelArray, RenderState, SceneRenderer, available
+from lumen.features.simulation.robot import SimulatedRobot
 from lumen.robot.command_table import speech_duration
 
 FILM_RATE = 25

@@ -11,13 +11,13 @@ from lumen.extras import demand
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.trials import CaseResult, Outcome, attempt
 from lumen.features.simulation.trials.cases import cases
+from lumen.features.simulation.trials.outcome_cache import OutcomeCache
 from lumen.features.simulation.trials.verdict import findings
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.lending import model_files
 from lumen.run.linting.findings import Findings
-from lumen.run.linting.outcome_cache import OutcomeCache
 from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in
 from lumen.run.workers.workers import Workers
 

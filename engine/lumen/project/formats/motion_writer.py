@@ -6,10 +6,10 @@ from itertools import pairwise
 from math import degrees
 from typing import Any
 
-from lumen.features.formats_motion.fitting import slowed, too_fast, within_limits
-from lumen.features.formats_motion.joint_curves import CurvePoint, JointCurves
 from lumen.language.robots import Body
 from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.fitting import slowed, too_fast, within_limits
+from lumen.project.formats.joint_curves import CurvePoint, JointCurves
 
 TIME_TO_FIRST_POSE = 1.0
 """How long the robot takes to come to a pose that stands at 0 s [s]."""

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from lumen.features.film.part import FilmPart
-from lumen.features.film.progress import FilmProgress
+from lumen.features.simulation.filming.part import FilmPart
+from lumen.features.simulation.filming.progress import FilmProgress
 from lumen.run.audio_track import AudioTrack
 from lumen.run.services import Services
 

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from lumen.errors import UsageError
-from lumen.features.film.progress import FilmProgress
-from lumen.features.film.sound import add_sound
+from lumen.features.simulation.filming.progress import FilmProgress
+from lumen.features.simulation.filming.sound import add_sound
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
 from lumen.language.stories import Arrive, Leave, Speak, VisitorAction
@@ -36,9 +36,9 @@ class FilmPart(Part, Observer):
         title: str = "",
         progress: FilmProgress | None = None,
     ) -> None:
-        from lumen.features.simulation.film import FILM_SIZE, Film
+        from lumen.features.simulation.filming.film import FILM_SIZE, Film
+        from lumen.features.simulation.filming.shots import FilmMoment
         from lumen.features.simulation.offers import SimulatedRobot
-        from lumen.features.simulation.shots import FilmMoment
 
         if not isinstance(robot, SimulatedRobot):
             raise UsageError("only the simulated robot can be recorded on video")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from lumen.cli.streams import complain
 from lumen.errors import UsageError
-from lumen.features.film.progress import FilmProgress
+from lumen.features.simulation.filming.progress import FilmProgress
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.run.rehearsal import rehearse

@@ -4,12 +4,12 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from math import degrees, inf
 
-from lumen.features.formats_motion.joint_curves import CurvePoint, JointCurves
 from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 from lumen.language.robots import Body
 from lumen.motion import bounds
 from lumen.motion.limits import Excess, beyond_limits, overspeed
 from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.joint_curves import CurvePoint, JointCurves
 
 MAX_FITS = 50
 """How often a change may make another one necessary; each comes nearer to what the body can do."""

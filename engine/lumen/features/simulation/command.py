@@ -11,8 +11,7 @@ from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.progress import ProgressListener, progress
 from lumen.cli.projects import shown_project
 from lumen.errors import ProjectError, UsageError
-from lumen.features.film.options import configure_size, film_path, film_size
-from lumen.features.formats_motion.offers import read_gesture
+from lumen.features.simulation.filming.options import configure_size, film_path, film_size
 from lumen.features.simulation.options import configure_imperfections, imperfections_of
 from lumen.language.commands import Posture
 from lumen.language.diagnostics import did_you_mean, has_errors
@@ -27,6 +26,7 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft, body_of
 from lumen.project.files import read_files
 from lumen.project.formats.conversion_findings import ForeignFileError
+from lumen.project.formats.imported_motions import read_gesture
 from lumen.project.formats.importers import endings
 from lumen.project.motions import build_motion
 from lumen.project.schema import check_schema
@@ -119,7 +119,7 @@ class _Player:
     """The simulated robot with nobody in charge of it: one command after another, each to its end."""
 
     def __init__(self, project: Project, speed: str, video: Path | None, size: tuple[int, int]) -> None:
-        from lumen.features.simulation.film import Film
+        from lumen.features.simulation.filming.film import Film
         from lumen.features.simulation.offers import SimulatedRobot
 
         chosen = set_up("simulation", project, speed)
