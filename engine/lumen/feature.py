@@ -53,20 +53,25 @@ VALUE_KINDS = ("null", "boolean", "number", "text", "list", "map", "any")
 
 
 class RobotOption(NamedTuple):
-    """An option of `lumen run` that only some robots take: `--robot-NAME`, whose value is a text."""
+    """An option of `lumen run` that only some robots take, whose value is a text: `--robot-NAME`, `short` for `--NAME`.
+
+    One of `several` robots in one process applies to all of them; the others work with one robot alone.
+    """
 
     name: str
     metavar: str
     help: str
+    short: bool = False
+    several: bool = False
 
     @property
     def flag(self) -> str:
-        return f"--robot-{self.name.replace('_', '-')}"
+        return f"--{self.destination.replace('_', '-')}"
 
     @property
     def destination(self) -> str:
         """The name of the value among those of a command line."""
-        return f"robot_{self.name}"
+        return self.name if self.short else f"robot_{self.name}"
 
 
 class RobotRow(NamedTuple):
@@ -123,15 +128,21 @@ class BusRow(NamedTuple):
     """A kind of bus, by the scheme of its addresses.
 
     `open` is the import string of a function from an address and the name of a sender to a `lumen.ports.Bus`. `forms`
-    are shown if an address is wrong, `example` in `--help`. A bus `within_process` has no other
-    processes on it; a `rabbitmq` one has a RabbitMQ broker, which `lumen doctor` examines.
+    are shown if an address is wrong, `example` in `--help`. A bus `within_process` has no other processes on it.
+
+    If the bus has a broker, `probe` is the import string of a function from an address to a `Probe`, by which
+    `lumen doctor` examines it, and `stream` of one from an address, a name and an offset to a `Stream`, or to None if
+    there is no such stream (both in `lumen.bus.brokers`). `side_queues` names the queues of messages that nobody could
+    use.
     """
 
     open: str
     forms: tuple[str, ...]
     example: str = ""
     within_process: bool = False
-    rabbitmq: bool = False
+    probe: str = ""
+    stream: str = ""
+    side_queues: str = ""
 
 
 class ModuleRow(NamedTuple):
@@ -252,19 +263,22 @@ class EditorRow(NamedTuple):
     options: str = ""
 
 
-IMPORTED_KINDS = ("behavior", "controller", "motion")
+IMPORTED_KINDS = ("behavior", "controller", "motion", "robot", "hint")
 EXPORTED_KINDS = ("behavior", "controller", "diagram", "project")
 
 
 class Importer(NamedTuple):
     """A kind of file of another tool that `lumen import` converts to one of ours.
 
-    `kind` is `behavior`, `controller` or `motion`. `read` names a `FileReader` of `lumen.project.formats.importers`,
-    for a motion a `MotionReader` of `lumen.project.formats.imported_motions`.
+    `kind` is `behavior`, `controller`, `motion` or `robot`. `read` names a `FileReader` of
+    `lumen.project.formats.importers`, for a motion a `MotionReader` of `lumen.project.formats.imported_motions`, for a
+    robot a `RobotReader`. A `hint` is a file that holds nothing to convert: `read` gets its content and returns what to
+    do instead. `begins` is the import string of a function that recognises a file by its content, whatever its name.
     """
 
     kind: str
     read: str
+    begins: str = ""
 
 
 class Exporter(NamedTuple):
@@ -352,6 +366,10 @@ class Feature(NamedTuple):
     fixes: Mapping[str, str] = {}
     """For a code, the function that proposes how to repair a finding, as `lumen.lint.fixes` describes."""
     subcommands: Mapping[str, Subcommand] = {}
+    run_options: tuple[str, ...] = ()
+    """Classes of options of `lumen run`: each a `RunExtra` of `lumen.cli.extras`."""
+    lint_options: tuple[str, ...] = ()
+    """Classes of options of `lumen lint`: each a `LintExtra` of `lumen.cli.extras`."""
     finding_formats: Mapping[str, str] = {}
     """For `--format NAME` of findings, the `Renderer` of `lumen.cli.render`."""
     verdict_formats: Mapping[str, str] = {}
@@ -368,22 +386,39 @@ class Feature(NamedTuple):
     """For a format that is imported, its `FormatTable` of names that are read, lost or without meaning."""
     sections: Mapping[str, Section] = {}
     """Sections of lumen.yaml by their keys; `modules.show` is the key `show` under `modules`."""
+    files: Mapping[str, str] = {}
+    """For a YAML file beside lumen.yaml, the function that builds its settings from its data, as `fleet.yaml`.
+
+    The function gets the data, a report, and the file's `name` without its ending; schemas/NAME.schema.json describes
+    the data. `ProjectDraft.beside` has what it returned, by the name of the file.
+    """
     verbs: Mapping[str, VerbRow] = {}
     """Verbs of the YAML that the robot performs, by their names."""
     modules: Mapping[str, ModuleRow] = {}
     robots: Mapping[str, RobotRow] = {}
     functions: Mapping[str, FunctionRow] = {}
     bases: Mapping[str, BaseRow] = {}
+    links: tuple[str, ...] = ()
+    """Functions from a `Body` and the folder of its models to `BodyLinks` (`lumen.robot.links`); the first is used."""
     buses: Mapping[str, BusRow] = {}
     senses: Mapping[str, SenseRow] = {}
     voices: Mapping[str, str] = {}
-    """For `lumen run --voice NAME`, the class: a `lumen.features.voice.speaker.RobotVoice`, made as `Speaker` there."""
+    """For `lumen run --voice NAME`, the class of a `lumen.run.voices.RobotVoice`.
+
+    It is made with a language, the WAV file to write or None, and the `AudioTrack` of a film or None.
+    """
     before_start: tuple[str, ...] = ()
     """Functions that get the folder of a project before a run reads its files: they finish what was interrupted."""
     failures: tuple[str, ...] = ()
     """Functions that tell people of a `RunFailure` (`lumen.run.run_start`), an error that ends a run.
 
     They return a function that waits until people have it, or None.
+    """
+    file_forgetters: tuple[str, ...] = ()
+    """Functions that forget a person in files, as `lumen memory forget NAME` does, in the order of the features.
+
+    One gets the folder of an exhibition's home, the name, and a `Forgetting` (`lumen.run.forgetting.report`), to which
+    it adds what it deleted and what is left.
     """
     forgets: tuple[str, ...] = ()
     """Functions and classes that forget a person (`lumen memory forget NAME`), while an exhibition runs.

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from lumen.cli.importing import result_faults
 from lumen.features.formats_robots.importing import robot_body
 from lumen.features.formats_robots.mjcf import mjcf_model
-from lumen.features.formats_robots.offers import begins_robot, read_robot
+from lumen.features.formats_robots.reading import begins_robot, read_robot
 from lumen.project.formats.conversion_findings import ConversionFindings, ForeignFileError
 from lumen.project.formats.xml_elements import parse_xml
 from tests import ROOT

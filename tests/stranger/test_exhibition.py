@@ -15,7 +15,6 @@ from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.completion import complete
 from lumen.features.editor.hover import hover
 from lumen.features.editor.signatures import signature
-from lumen.features.voice.speaker import speaker
 from lumen.language.events import robot_events
 from lumen.language.routes import route_meanings
 from lumen.language.stories import Visitor
@@ -30,6 +29,7 @@ from lumen.run.parts.module_factory import make_module
 from lumen.run.plan import Plan
 from lumen.run.presence import all_parts, unique_parts
 from lumen.run.setup import set_up, set_up_house
+from lumen.run.voices import speaker
 from tests import ROOT
 from tests.features.editor.test_services import place
 from tests.stranger.installing import Installed, Lumen

@@ -14,7 +14,6 @@ from lumen.clock.checked import ability
 from lumen.errors import ExpressionError, LumenError, Refused
 from lumen.expressions import Scope, compile_expression
 from lumen.feature import features, owner, resolve, table
-from lumen.features.voice.speaker import AddedVoice
 from lumen.language.people import PersonName
 from lumen.lint import check_files
 from lumen.lint.fixes import fixes
@@ -25,6 +24,7 @@ from lumen.robot.remote import RemoteRobot
 from lumen.robot.sense_codec import decode_reading, encode_reading
 from lumen.run.forgetting.added import FeatureForgetter
 from lumen.run.setup import set_up
+from lumen.run.voices import AddedVoice
 from tests import ROOT
 from tests.stranger.installing import Installed
 

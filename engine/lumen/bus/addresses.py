@@ -41,11 +41,6 @@ def within_process(url: str) -> bool:
     return (row := row_of(url)) is not None and row.within_process
 
 
-def is_rabbitmq(url: str) -> bool:
-    """Return whether the address is that of a RabbitMQ broker."""
-    return (row := row_of(url)) is not None and row.rabbitmq
-
-
 def examples() -> str:
     """Return addresses of each kind, for `--help`."""
     return _either([row.example for row in table("buses").values() if row.example])

@@ -11,13 +11,12 @@ from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
 from lumen.bus import connect
-from lumen.bus.addresses import is_rabbitmq, within_process
+from lumen.bus.addresses import within_process
+from lumen.bus.brokers import Probe, probe_of, side_queues
 from lumen.bus.validated import by_key
 from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
-from lumen.features.rabbitmq.probe import BrokerProbe
-from lumen.features.rabbitmq.queues import SIDE_QUEUES
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
 from lumen.lint import check_files
@@ -61,7 +60,8 @@ def run(options: argparse.Namespace) -> int:
     root = own_project(options.project)
     project = check_files(root, read_files(root))[0]
     url = options.bus or os.environ.get("LUMEN_BUS") or (project.bus if project else "memory://")
-    findings = list(_broker(url, project) if is_rabbitmq(url) else _other(options, url, project))
+    probe = probe_of(url)
+    findings = list(_broker(probe, url, project) if probe else _other(options, url, project))
     bad = any(finding.severity in ("warning", "error") for finding in findings)
     if options.format == "json":
         print(json.dumps({"ok": not bad, "findings": [finding._asdict() for finding in findings]}))
@@ -72,10 +72,10 @@ def run(options: argparse.Namespace) -> int:
     return int(bad)
 
 
-def _broker(url: str, project: Project | None) -> Iterator[Finding]:
-    with closing(BrokerProbe(url)) as probe:
-        yield Finding("broker", "ok", f"{probe.product} {probe.version} at {probe.address}, as `{probe.address.user}`")
-        if not url.startswith("amqps:") and not probe.address.place.startswith(("127.", "localhost", "[::1]")):
+def _broker(opened: Probe, url: str, project: Project | None) -> Iterator[Finding]:
+    with closing(opened) as probe:
+        yield Finding("broker", "ok", f"{probe.product} {probe.version} at {probe.address}, as `{probe.user}`")
+        if not url.startswith("amqps:") and not probe.place.startswith(("127.", "localhost", "[::1]")):
             yield Finding("broker", "warning", "the connection is not encrypted: use amqps://")
         if blocked := probe.taking():
             yield Finding("broker", "error", blocked)
@@ -92,7 +92,7 @@ def _broker(url: str, project: Project | None) -> Iterator[Finding]:
         faults = list(probe.misdeclared())
         yield from (Finding("dead letters", "error", fault) for fault in faults)
         if not faults:
-            yield Finding("dead letters", "ok", f"unusable and undeliverable messages are kept in {SIDE_QUEUES}")
+            yield Finding("dead letters", "ok", f"unusable and undeliverable messages are kept in {side_queues(url)}")
 
 
 def _other(options: argparse.Namespace, url: str, project: Project | None) -> Iterator[Finding]:
@@ -108,7 +108,7 @@ def _other(options: argparse.Namespace, url: str, project: Project | None) -> It
             yield from _life(bus, project)
 
 
-def _permissions(probe: BrokerProbe, project: Project) -> Iterator[Finding]:
+def _permissions(probe: Probe, project: Project) -> Iterator[Finding]:
     refused = False
     for key, route in by_key(project).items():
         reading = route.direction is Direction.IN
@@ -150,7 +150,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
     yield Finding("clocks", "warning" if abs(skew) > SKEW else "ok", text)
 
 
-def _obeying(probe: BrokerProbe, attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
+def _obeying(probe: Probe, attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
     """Whether who takes the robot's commands is alive."""
     route = project.routes.get(COMMAND_ROUTE)
     if route is None or not probe.served(project.key_of(COMMAND_ROUTE), route).readers:
@@ -163,7 +163,7 @@ def _obeying(probe: BrokerProbe, attendance: RobotAttendance, project: Project) 
         yield Finding("robot", "warning", text)
 
 
-def _served(probe: BrokerProbe, project: Project) -> Iterator[Finding]:
+def _served(probe: Probe, project: Project) -> Iterator[Finding]:
     """Which routes that must arrive somebody takes; only a motion module may be missing."""
     taken: list[str] = []
     for key, route in by_key(project).items():

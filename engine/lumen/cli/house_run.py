@@ -9,13 +9,12 @@ from contextlib import ExitStack
 from lumen.bus.addresses import within_process
 from lumen.cli.main import ready
 from lumen.cli.printing import clock_time
-from lumen.cli.run_choices import chosen_story, period_of
+from lumen.cli.run_choices import chosen_story, period_of, robot_wishes
 from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals, leave, plan_of
 from lumen.cli.run_verdict import EARLY, FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict, troubles_of
 from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
 from lumen.errors import LumenError, UsageError
-from lumen.features.simulation.options import imperfections_of
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Clock
@@ -90,8 +89,8 @@ class HouseRun:
     def _set_up(self) -> dict[str, Setup]:
         if self._parts and ROBOT_PART not in self._parts:
             return {}
-        lacking = imperfections_of(self._options.imperfections)
-        return set_up_house(self._options.robot, self.projects, self._options.speed, self.stories, lacking)
+        options = robot_wishes(self._options)
+        return set_up_house(self._options.robot, self.projects, self._options.speed, self.stories, options)
 
     def _transcript(self, name: str) -> Transcript:
         width = max(map(len, self.projects))
@@ -130,8 +129,8 @@ class HouseRun:
 
 def check_house(options: argparse.Namespace, parts: Sequence[str]) -> None:
     """Raises UsageError for what is about one robot, or does not go with processes."""
-    own = (option.destination for option in robot_options())
-    for name in ("model", *own, "video", "record", "sound"):
+    own = (option.destination for option in robot_options() if not option.several)
+    for name in ("model", *own, "record", "sound"):
         if vars(options)[name]:
             flag = name.replace("_", "-")
             raise UsageError(f"--{flag} works with only one robot: choose it with `--robot-name NAME`")

@@ -11,11 +11,9 @@ from lumen.cli.foreign import foreign_content, one_line
 from lumen.cli.progress import progress
 from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
-from lumen.cli.writing import write_result
+from lumen.cli.writing import write_file, write_result
 from lumen.errors import UsageError
 from lumen.feature import distribution_of, rows
-from lumen.features.formats_robots.importing import robot_body, write_beside
-from lumen.features.formats_robots.offers import begins_robot
 from lumen.language.diagnostics import Diagnostic, Place, Severity, has_errors
 from lumen.language.robots import Body
 from lumen.language.text_lines import lines_of
@@ -29,8 +27,8 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import body_of
 from lumen.project.files import read_files
 from lumen.project.formats.conversion_findings import ForeignFileError
-from lumen.project.formats.imported_motions import choregraphe_list, read_gesture
-from lumen.project.formats.importers import FileReader, endings, importer, reader
+from lumen.project.formats.imported_motions import read_gesture
+from lumen.project.formats.importers import FileReader, RobotReader, endings, importer, reader, recognised
 from lumen.project.formats.yaml_document import document_yaml
 from lumen.project.motions import build_motion
 from lumen.project.packaged import find_project
@@ -85,10 +83,11 @@ def run(options: argparse.Namespace) -> int:
     """0 where everything was carried over, 1 where something is left out, 2 where nothing can be written."""
     content = foreign_content(options.file)
     title = _title(options.output or options.file)
-    if begins_robot(content) or options.file.suffix.lower() == ".urdf":
-        return _robot(options, content, title)
-    if hint := choregraphe_list(content):
-        raise UsageError(f"{options.file} is the file list of a Choregraphe project and contains no motion: {hint}")
+    row, convert = recognised(content) or (importer(options.file.suffix), None)
+    if row and row.kind == "robot":
+        return _robot(options, convert or reader(options.file.suffix), content, title)
+    if row and row.kind == "hint" and convert:
+        raise UsageError(f"{options.file} {convert(content)}")
     kind, read = _reader(options.file, content)
     body = _body(options.project) if kind == "motion" else None
     if body:
@@ -111,17 +110,20 @@ def run(options: argparse.Namespace) -> int:
     return _told(options, content, [*diagnostics, *faults])
 
 
-def _robot(options: argparse.Namespace, content: bytes, title: str) -> int:
+def _robot(options: argparse.Namespace, read: RobotReader, content: bytes, title: str) -> int:
     """A body file, and the MJCF that goes with it."""
     try:
-        text, diagnostics, beside = robot_body(options.file, content, options.output, title)
+        text, diagnostics, beside = read(options.file, content, options.output, title)
     except ForeignFileError as error:
         raise UsageError(one_line(error.diagnostic)) from None
     faults = result_faults(str(options.output or "the result"), text, "body")
     if refused := next((fault for fault in faults if fault.severity is Severity.ERROR), None):
         raise UsageError(_refusal(options.file, text, refused, diagnostics))
     write_result(text, options.output)
-    write_beside(beside)
+    for path, other in beside.items():
+        write_file(other, path, folders=True)
+    if beside:
+        print(f"wrote {next(iter(beside))}" + (f" and {len(beside) - 1} meshes" if len(beside) > 1 else ""))
     return _told(options, content, [*diagnostics, *faults])
 
 
@@ -160,7 +162,8 @@ def _added() -> dict[str, list[str]]:
 def _reader(path: Path, content: bytes) -> tuple[str, FileReader]:
     """Return the kind of our file, and the function that reads the other tool's: by its ending, else its first sign."""
     ending = path.suffix
-    if importer(ending) is None:
+    row = importer(ending)
+    if row is None or row.kind == "hint":
         start = content.removeprefix(b"\xef\xbb\xbf").lstrip()[:1]
         if start not in BEGINNINGS:
             known = ", ".join((*endings("motion"), *endings("controller")))

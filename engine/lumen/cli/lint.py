@@ -1,16 +1,14 @@
 """`lumen lint`: what is wrong in a project, and where."""
 
 import argparse
-import sys
 from collections.abc import Mapping, Sequence
 
+from lumen.cli.extras import lint_extras
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.printing import show, verdict
 from lumen.cli.render import finding_formats, render
 from lumen.cli.terminal import coloured
-from lumen.cli.workers_option import configure_workers
 from lumen.errors import UsageError
-from lumen.features.simulation.options import configure_imperfections, imperfections_of
 from lumen.language.diagnostics import Diagnostic
 from lumen.run.linting.findings import Findings
 from lumen.run.linting.targets import FindingsOf, LintTarget, Wanted, lint, lint_targets
@@ -28,14 +26,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="OLD",
         help="also report what a reload from OLD would refuse: a folder, a revision, or `live`",
     )
-    add("--physics", action="store_true", help="also play every motion in simulation (takes minutes; results are kept)")
-    add(
-        "--robots",
-        metavar="N",
-        help="with --physics: also play each motion on N slightly different robots (default: 20)",
-    )
-    configure_workers(parser, "with --physics: ")
-    configure_imperfections(parser)
+    for extra in lint_extras():
+        extra.configure(parser)
     add("--strict", action="store_true", help="count warnings as errors")
     add("--fix", action="store_true", help="make every repair that needs no decision")
     add("--diff", action="store_true", help="show what --fix would change, and change nothing")
@@ -62,28 +54,10 @@ def run(options: argparse.Namespace) -> int:
     if options.fix:
         _fix(projects, wanted)
     found = [judge(what) for what in projects]
-    if options.physics:
-        found = _physics(found, wanted, options)
+    for extra in lint_extras():
+        found = extra.more(found, wanted, options)
     show(render(options.format, found, coloured=options.format in ("text", "concise") and coloured()))
     return verdict(found, strict=options.strict)
-
-
-def _physics(found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
-    """The findings with those of the motions in simulation; how they went is told beside what is for people."""
-    from lumen.cli.progress import progress
-    from lumen.features.simulation.trials.playing import ROBOTS, number_of_robots, played, summary
-    from lumen.run.workers.workers import workers_of
-
-    robots = ROBOTS if options.robots is None else number_of_robots(options.robots)
-    workers, lacking = workers_of(options.workers), imperfections_of(options.imperfections)
-    with progress() as tell:
-        both = [played(each, wanted, robots, tell, imperfections=lacking, workers=workers) for each in found]
-    for _, rehearsals in both if options.format == "text" else ():
-        print(
-            summary(rehearsals) or "no motion was played: the project has none, or its files have errors",
-            file=sys.stderr,
-        )
-    return [each for each, _ in both]
 
 
 def _judge(against: str | None, wanted: Wanted, *, kept: bool) -> FindingsOf:
@@ -124,14 +98,8 @@ def _consistent(options: argparse.Namespace) -> None:
         raise UsageError("--fix changes the files, but --diff only shows the changes: choose one")
     if options.diff and options.against is not None:
         raise UsageError("--diff shows only what --fix would change: leave out --against")
-    if options.robots is not None and not options.physics:
-        raise UsageError("--robots needs --physics")
-    if options.workers is not None and not options.physics:
-        raise UsageError("--workers needs --physics")
-    if options.imperfections is not None and not options.physics:
-        raise UsageError("--imperfections needs --physics")
-    if options.physics and (options.watch or options.fix or options.diff or "-" in options.paths):
-        raise UsageError("--physics can't be combined with --watch, --fix, --diff or `-`")
+    for extra in lint_extras():
+        extra.check(options)
     if options.watch and (options.fix or options.diff or "-" in options.paths):
         raise UsageError("--watch can't be combined with --fix, --diff or `-`")
     if options.watch and options.format not in ("text", "concise"):

@@ -7,12 +7,13 @@ from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 
 from lumen.bus.addresses import examples, within_process
+from lumen.cli.extras import run_extras
 from lumen.cli.formats import configure_format, one_object
 from lumen.cli.main import ready
 from lumen.cli.model_option import configure_model, use_model
 from lumen.cli.performance import GREETING, Performance
 from lumen.cli.printing import clock_time
-from lumen.cli.run_choices import chosen_story, language_of, period_of
+from lumen.cli.run_choices import chosen_story, language_of, period_of, robot_of, wishes
 from lumen.cli.run_plan import RobotRun, bus_hint, compose_or_hint, heed_signals, leave, plan_of, running
 from lumen.cli.run_verdict import FAILED, INTERRUPTED, TROUBLED, WELL, RunVerdict, troubles_of
 from lumen.cli.streams import complain
@@ -20,9 +21,6 @@ from lumen.cli.transcript import Transcript
 from lumen.clock.following import FollowingClock
 from lumen.errors import UsageError
 from lumen.feature import table
-from lumen.features.simulation.filming.making import FilmPlan
-from lumen.features.simulation.filming.options import configure_size, film_path, film_progress, film_size
-from lumen.features.simulation.options import configure_imperfections, set_up_robot
 from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.language.stories import Story
 from lumen.ports import Clock
@@ -82,9 +80,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--bus", metavar="URL", help=f"{examples()} (default: LUMEN_BUS, then lumen.yaml)")
     add("--for", dest="period", metavar="60s", help="end after this much simulated time")
     add("--language", metavar="LANG", help="the language that the robot speaks first")
-    add("--video", metavar="FILE.mp4", type=Path, help="save a video of the run (simulation only; needs OpenGL)")
-    configure_size(parser)
-    configure_imperfections(parser)
+    for extra in run_extras():
+        extra.configure(parser)
     add("--record", metavar="FILE.mcap", type=Path, help="record the messages on the bus, for Foxglove and Lichtblick")
     add(
         "--voice",
@@ -125,6 +122,8 @@ def run(options: argparse.Namespace) -> int:
             f" {journal}. `lumen new DIR` makes a project of your own."
         )
     parts, robots = parts_of(options.only, options.robot), robots_of(root, options.robot_name)
+    for extra in run_extras():
+        extra.check(options, parts, len(robots))
     if len(robots) > 1:
         from lumen.cli.house_run import check_house  # nobody else needs it
 
@@ -164,20 +163,17 @@ def _run(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -
 def _whole(options: argparse.Namespace, one: RobotRun, url: str, period: float | None) -> RunVerdict:
     """Run a whole exhibition in this process."""
     project, story, made = one.project, one.story, list[Services]()
-    video, size = film_path(options.video, options.robot), film_size(options.size)
-    setup = set_up_robot(options, project, story)
-    track = AudioTrack() if video else None
+    more = {**wishes(options, project, story, period), "record": options.record, "greeting": GREETING}
+    setup = robot_of(options, project, story)
     performance = Performance(setup, project, made)
-    with _heard(options, one, setup, track):
-        film = FilmPlan(video, track, size, film_progress(project, story, period)) if video else None
-        more = {"film": film, "record": options.record, "greeting": GREETING}
+    with _heard(options, one, setup, more.get("track")):
         plan = plan_of(options, one, (), url, setup, setup.clock, performance.transcript, **more)
         with _composed(plan, made) as services:
             performance.introduce(services, options.speed)
             begin([services])
             performance.run(services, period)
         _ended(one, services)
-        return performance.summary(services, video)
+        return performance.summary(services, more.get("video"))
 
 
 def _processes(
@@ -186,10 +182,10 @@ def _processes(
     """Run these parts of an exhibition. Raises UsageError for options that do not go with that."""
     project, story, made = one.project, one.story, list[Services]()
     _check_processes(options, story, parts, url)
-    setup = set_up_robot(options, project, story) if ROBOT_PART in parts else None
+    setup = robot_of(options, project, story) if ROBOT_PART in parts else None
     clock: Clock = setup.clock if setup else FollowingClock(float(options.speed))
     transcript = Transcript(clock.now, lambda: running(made, project).machine, unread=lambda: leave(made))
-    more = {"record": options.record, "greeting": PROCESS_GREETING}
+    more = {**wishes(options, project, story, period), "record": options.record, "greeting": PROCESS_GREETING}
     plan = plan_of(options, one, parts, url, setup, clock, transcript, **more)
     with _heard(options, one, setup), _composed(plan, made, bus_hint(options)) as services:
         place, what = url.rpartition("@")[2], ", ".join(parts)
@@ -254,8 +250,6 @@ def _check_processes(options: argparse.Namespace, story: Story | None, parts: Se
         raise UsageError(
             "several processes can run only in real time: leave out --speed max, or run everything in one process"
         )
-    if options.video:
-        raise UsageError("--video works only if everything runs in one process: leave out --only")
     if options.robot == "none" and ROBOT_PART in parts:
         raise UsageError("`--only robot` needs a robot: leave out --robot none")
     if story and story.robot and ROBOT_PART not in parts:
@@ -274,7 +268,7 @@ def _heard(
     """
     with ExitStack() as stack:
         if setup and (options.voice != "none" or options.sound):
-            from lumen.features.voice.speaker import voiced  # few runs need espeak-ng
+            from lumen.run.voices import voiced  # few runs need a voice
 
             language = language_of(one.project, options.language) or one.project.languages[0]
             stack.callback(voiced(setup, options.voice, options.sound, language, track))

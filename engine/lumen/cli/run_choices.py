@@ -1,11 +1,16 @@
 """What the options of `lumen run` choose: its story, its language, and how long it lasts."""
 
+import argparse
+from typing import Any
+
+from lumen.cli.extras import run_extras
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.project.units import seconds
 from lumen.run.chosen_stories import stories_of
+from lumen.run.setup import Setup, robot_options, set_up
 
 
 def chosen_story(project: Project, name: str | None) -> Story | None:
@@ -33,3 +38,22 @@ def language_of(project: Project, language: str | None) -> str:
         hint = did_you_mean(language, project.languages, "it has")
         raise UsageError(f"the project has no language `{language}`: {hint}")
     return language or ""
+
+
+def robot_of(options: argparse.Namespace, project: Project, story: Story | None) -> Setup:
+    """Return the robot that the options ask for. Raises UsageError if they do not go together."""
+    return set_up(options.robot, project, options.speed, story, robot_wishes(options))
+
+
+def robot_wishes(options: argparse.Namespace) -> dict[str, str]:
+    """Return the options of robots that were given, by their names."""
+    given = {option.name: vars(options)[option.destination] for option in robot_options()}
+    return {name: value for name, value in given.items() if value}
+
+
+def wishes(options: argparse.Namespace, project: Project, story: Story | None, period: float | None) -> dict[str, Any]:
+    """Return what the options that features add want of the plan of one robot. Raises UsageError."""
+    found: dict[str, Any] = {}
+    for extra in run_extras():
+        found |= extra.wishes(options, project, story, period)
+    return found

@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 from lumen.bus.bodies import encode
+from lumen.bus.brokers import probe_of
 from lumen.bus.validated import by_key, validated
 from lumen.cli.progress import progress
 from lumen.cli.reach import reach
@@ -87,9 +88,9 @@ def _check_words(options: argparse.Namespace) -> None:
 
 def _check_right(broker: str, key: str) -> None:
     """Raises BusError where the broker does not let this user send under that key."""
-    from lumen.features.rabbitmq.probe import BrokerProbe  # imports pika, which only a broker needs
-
-    with closing(BrokerProbe(broker)) as probe:
+    if (opened := probe_of(broker)) is None:
+        return
+    with closing(opened) as probe:
         if reason := probe.writing(key):
             raise BusRefusedError(f"the broker at {probe.address} does not let this user send `{key}`: {reason}")
 

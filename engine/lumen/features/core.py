@@ -22,7 +22,6 @@ FEATURE = Feature(
         PartRow("forgetting", Phase.SERVE, f"{MAKING}.serving:forgetting", "option:operated", after="journal"),
         PartRow("reload", Phase.SERVE, f"{MAKING}.serving:reload", "brain option:reload", after="forgetting"),
         PartRow("operator", Phase.SERVE, f"{MAKING}.serving:operator", "brain option:operated", after="fleet"),
-        PartRow("film", Phase.SHOW, f"{MAKING}.showing:film", "option:film"),
         PartRow("typed visitor", Phase.VISIT, TYPED, "whole option:greeting"),
         PartRow("modules", Phase.MODULES, f"{MAKING}.modules:modules", "option:modules", claimed=True),
         PartRow(
@@ -185,15 +184,11 @@ FEATURE = Feature(
         "lint": Subcommand("report what is wrong in a project, and where", "lumen.cli.lint"),
         "explain": Subcommand("explain a lint code, with an example", "lumen.cli.explain"),
         "completion": Subcommand("print the completion script for bash, zsh or fish", "lumen.cli.completion"),
-        "lsp": Subcommand("run the language server for editors (LSP)", "lumen.features.editor.command"),
         "language": Subcommand("add a language to a project, or list what is missing in one", "lumen.cli.language"),
         "schema": Subcommand("print the JSON Schema of a kind of file, for editors", "lumen.cli.schema"),
         "upgrade": Subcommand("rewrite a project's files for the current vocabulary", "lumen.cli.upgrade"),
         "test": Subcommand("play the stories, try the sayings, and list those that fail", "lumen.cli.test"),
         "hear": Subcommand("explain how a state reacts to a sentence, row by row", "lumen.cli.hear"),
-        "play": Subcommand("play a motion on the simulated robot", "lumen.features.simulation.command"),
-        "memory": Subcommand("list what the robot remembers, or forget a visitor", "lumen.features.visitors.command"),
-        "graph": Subcommand("draw a behaviour as a diagram", "lumen.features.formats_charts.command"),
         "plot": Subcommand("draw a controller, its outputs for given inputs, or a motion", "lumen.cli.plot"),
         "import": Subcommand(
             "convert another tool's statechart, motion, controller or robot",

@@ -4,5 +4,6 @@ from lumen.feature import Feature, Section
 
 FEATURE = Feature(
     name="journal",
+    file_forgetters=("lumen.run.forgetting.files:forget_inputs",),
     sections={"journal": Section(read="lumen.project.retention:read_journal", of_house=True)},
 )

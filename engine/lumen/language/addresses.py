@@ -1,6 +1,7 @@
 """Addresses of brokers and servers (RFC 3986): the parts that may be shown, and the signs that need %XX."""
 
 import re
+from ipaddress import ip_address
 from urllib.parse import quote, unquote, urlsplit
 
 _FILE = re.compile(r"(?<=[?&])ca=[^&]*")
@@ -56,3 +57,11 @@ def fault_of_broker(url: str) -> str:
         other = f" (or /{bare})" if bare and "/" not in bare else ""
         return f"a virtual host is one segment, with %2F for each slash: write /{meant}{other} instead of /{segment}"
     return ""
+
+
+def loopback(host: str) -> bool:
+    """Whether a host is this machine."""
+    try:
+        return host == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False

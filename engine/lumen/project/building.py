@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 from unicodedata import normalize
 
-from lumen.features.fleet.reading import build_fleet
+from lumen.feature import rows
 from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
 from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
@@ -18,6 +18,7 @@ from lumen.language.robots import Body
 from lumen.language.shared import SharedKeys
 from lumen.project.behaviors import build_machine
 from lumen.project.bodies import build_body, build_likes
+from lumen.project.broken_features import resolved
 from lumen.project.built_file import Build, BuiltFile, read_file
 from lumen.project.chosen_model import chosen
 from lumen.project.chosen_robot import chosen_robot
@@ -42,7 +43,6 @@ from lumen.project.motions import build_motions
 from lumen.project.passages import belongs_to
 from lumen.project.project_folders import (
     ALL_FOLDERS,
-    FLEET_FILE,
     GESTURES_FOLDER,
     LIFE_FOLDER,
     MAIN_FILE,
@@ -86,10 +86,11 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
         if main.built and (other := other_vocabulary(main.built, main.report)):
             return ProjectDraft(files, loose=[other])
         found.settings = main.built and replace(main.built, model=chosen(files, main.built.model))
-    if (content := files.get(FLEET_FILE)) is not None and (
-        fleet := _read(found, FLEET_FILE, content, "fleet", build_fleet)
-    ):
-        found.fleet = fleet.built
+    for feature, (name, where) in rows("files"):
+        if (content := files.get(name)) is not None:
+            built = _read(found, name, content, PurePosixPath(name).stem, resolved(feature, where))
+            if built and built.built is not None:
+                found.beside[name] = built.built
     models, behaviors = _each(found, MODELS, build_body), _behaviors(found)
     found.controllers = _built(_each(found, "fuzzy", build_controller))
     if found.settings:

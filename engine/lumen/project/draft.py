@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ProjectError
-from lumen.features.fleet.settings import Fleet
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
 from lumen.language.folders import KNOWLEDGE_FOLDER
@@ -62,7 +61,8 @@ class ProjectDraft:
     unsound: set[tuple[str, str, str]] = field(default_factory=set)
     root: Path | None = None
     own_motions: frozenset[str] = frozenset()
-    fleet: Fleet | None = None
+    beside: dict[str, Any] = field(default_factory=dict)
+    """What rows of features built of files beside lumen.yaml, by the file's name."""
     today: date | None = None
     looks: Looks = field(default_factory=Looks)
 

@@ -8,7 +8,6 @@ from lumen.clock.real import RealClock
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import LumenError, UsageError
 from lumen.feature import Feature, RobotOption, RobotRow, distribution_of, owner, table
-from lumen.features.simulation.settings import Imperfections
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, Robot
@@ -46,14 +45,12 @@ class Setup:
 class RobotRequest:
     """A request for a robot.
 
-    `speed` is one of `SPEEDS`. `imperfections` replace the project's, None for none. `options` are those of the robot's
-    row that were given, by their names.
+    `speed` is one of `SPEEDS`. `options` are those of the robot's row that were given, by their names.
     """
 
     project: Project
     speed: str
     story: Story | None = None
-    imperfections: Imperfections | None = None
     options: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -61,18 +58,12 @@ class RobotRequest:
         """The multiple of real time; None for as fast as possible."""
         return None if self.speed == "max" else float(self.speed)
 
-    @property
-    def lacking(self) -> Imperfections:
-        """The imperfections of a simulated robot."""
-        return self.imperfections or self.project.section(Imperfections)
-
 
 def set_up(
     kind: str,
     project: Project,
     speed: str,
     story: Story | None = None,
-    imperfections: Imperfections | None = None,
     options: Mapping[str, str] = NO_OPTIONS,
 ) -> Setup:
     """Return the robot of that name, on its feet; `options` are those of its row that were given.
@@ -81,7 +72,7 @@ def set_up(
     of the installed package if the robot's own code is faulty.
     """
     row = _row(kind, options)
-    return _alone(kind, row, RobotRequest(project, speed, story, imperfections, options))
+    return _alone(kind, row, RobotRequest(project, speed, story, options))
 
 
 def set_up_house(
@@ -89,14 +80,14 @@ def set_up_house(
     projects: Mapping[str, Project],
     speed: str,
     stories: Mapping[str, Story | None],
-    imperfections: Imperfections | None = None,
+    options: Mapping[str, str] = NO_OPTIONS,
 ) -> dict[str, Setup]:
     """Return several robots of that kind, on their feet, by the names of their projects.
 
     Raises UsageError as `set_up` does, or if there can't be several.
     """
-    row = _row(kind)
-    requests = {n: RobotRequest(project, speed, stories[n], imperfections) for n, project in projects.items()}
+    row = _row(kind, options)
+    requests = {n: RobotRequest(project, speed, stories[n], options) for n, project in projects.items()}
     if row.set_up_house:
         feature = owner("robots", kind)
         setups: dict[str, Setup] = called(feature, row.set_up_house, requests)

@@ -12,12 +12,13 @@ from lumen.clock.simulated import SimulatedClock
 from lumen.errors import ModuleError, UsageError
 from lumen.features.simulation.offers import SimulatedRobot
 from lumen.features.voice.module import Espeak, Voice, espeak
-from lumen.features.voice.speaker import Speaker, voiced
+from lumen.features.voice.speaker import Speaker
 from lumen.language.commands import Say, Volume
 from lumen.language.projects import Project
 from lumen.robot.none import NoRobot
 from lumen.run.setup import Setup
 from lumen.run.sound import Sound, sound_of, wav
+from lumen.run.voices import voiced
 from tests import ROOT
 from tests.copying import copied_project
 from tests.features.conftest import Stand

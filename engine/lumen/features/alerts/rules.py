@@ -2,13 +2,12 @@
 
 import re
 from collections.abc import Mapping
-from ipaddress import ip_address
 from typing import Any
 from urllib.parse import urlsplit
 
 from lumen.features.alerts.reading import WHERE
 from lumen.features.alerts.settings import Alerts, Mail, Recipient, Webhook
-from lumen.language.addresses import credentials_of
+from lumen.language.addresses import credentials_of, loopback
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath
 from lumen.lint.routes import PASSWORD_IN_FILE
 from lumen.project.document_report import DocumentReport
@@ -106,11 +105,3 @@ def _web(report: DocumentReport, url: str, where: NodePath) -> None:
         report(ALERT_ADDRESS, where, f"`{url}` is not a web address", hint)
     elif parts.scheme == "http" and not loopback(parts.hostname):
         report(ALERT_IN_CLEAR, where, f"messages to {parts.hostname} are not encrypted", "write https://")
-
-
-def loopback(host: str) -> bool:
-    """Whether a host is this machine."""
-    try:
-        return host == "localhost" or ip_address(host).is_loopback
-    except ValueError:
-        return False

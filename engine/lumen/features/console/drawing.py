@@ -11,6 +11,7 @@ import lumen
 from lumen.extras import demand
 from lumen.ports import Joints, Sense
 from lumen.project.lending import model_files
+from lumen.robot.links import links_of
 from lumen.robot.sense_codec import decode_reading
 
 DIGITS = 4
@@ -24,10 +25,8 @@ class Drawing:
 
     def __init__(self, root: Path, robot: str = "") -> None:
         demand("simulation", "the view of the robot in its hall", "mujoco", "dm_control")
-        from lumen.features.simulation.link_frames import LinkFrames
-
         self._project = lumen.load(root, robot=robot)
-        self._links = LinkFrames(self._project.body, model_files(self._project)[0])
+        self._links = links_of(self._project.body, model_files(self._project)[0])
 
     def shape(self) -> dict[str, Any]:
         """The links with their shapes, and the stage [m]."""

@@ -2,8 +2,8 @@
 
 import re
 
-from lumen.features.alerts.rules import loopback
 from lumen.features.console.settings import ConsoleSettings
+from lumen.language.addresses import loopback
 from lumen.language.diagnostics import ERROR, Code
 from lumen.lint.routes import PASSWORD_IN_FILE
 from lumen.project.draft import ProjectDraft

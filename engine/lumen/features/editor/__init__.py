@@ -1,11 +1,16 @@
 """The language server's answers to an editor."""
 
-from lumen.feature import EditorRow, Feature
+from lumen.feature import EditorRow, Feature, Subcommand
 
 _ANSWERS = "lumen.features.editor.requests"
 
 FEATURE = Feature(
     name="editor",
+    subcommands={
+        "lsp": Subcommand(
+            "run the language server for editors (LSP)", "lumen.features.editor.command", after="completion"
+        )
+    },
     editor_requests={
         "textDocument/didOpen": EditorRow(f"{_ANSWERS}.sync:opened"),
         "textDocument/didChange": EditorRow(f"{_ANSWERS}.sync:changed"),

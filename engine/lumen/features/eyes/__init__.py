@@ -2,4 +2,8 @@
 
 from lumen.feature import Feature, ModuleRow
 
-FEATURE = Feature(name="eyes", modules={"eyes": ModuleRow("lumen.features.eyes.module:Eyes")})
+FEATURE = Feature(
+    name="eyes",
+    modules={"eyes": ModuleRow("lumen.features.eyes.module:Eyes")},
+    file_forgetters=("lumen.features.eyes.eyes:forget_faces",),
+)

@@ -17,6 +17,8 @@ from lumen.language.people import name_key
 from lumen.language.projects import Project
 from lumen.language.routes import IMAGE
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.run.forgetting.files import attempt
+from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 from lumen.run.module import DAY, KEEP_DAYS, Module
 
 FACES_FILE = "faces.npz"
@@ -212,3 +214,15 @@ class Eyes(Module):
 
 def _when(frame: Frame) -> dict[str, float]:
     return {} if frame.time is None else {"time": frame.time}
+
+
+def forget_faces(folder: Path, name: str, found: Forgetting) -> None:
+    """Forget the pictures of a person's face in a home."""
+
+    def work() -> None:
+        if gone := FaceGallery(file, time.time).forget(name):
+            found.pictures += gone
+            found.deleted.append(ForgottenPlace(file.name, f"pictures: {gone}"))
+
+    file = folder / FACES_FILE
+    attempt(found, file, work)

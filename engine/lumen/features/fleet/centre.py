@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
+from lumen.bus.brokers import Stream, StreamEntry
 from lumen.errors import BusError, UsageError
 from lumen.features.fleet.bundle import messages_of
 from lumen.features.fleet.centre_journal import CentreJournal
@@ -19,7 +20,6 @@ from lumen.features.fleet.rollouts.rollout import step
 from lumen.features.fleet.rollouts.state import CentreState, HeardPresence
 from lumen.features.fleet.settings import Fleet
 from lumen.features.fleet.signing import ORDER, Signer
-from lumen.features.rabbitmq.stream_reader import StreamEntry, StreamReader
 from lumen.language.counts import counted
 from lumen.language.fleet_keys import KEPT, PRESENCE, bundle_key, desired_key, robot_of
 from lumen.ports import Bus, Message
@@ -50,7 +50,7 @@ class Centre:
         signer: Signer,
         bus: Bus,
         log: FleetLog,
-        stream: StreamReader | None = None,
+        stream: Stream | None = None,
         *,
         tell: Callable[[str], None] = lambda _: None,
         clock: Callable[[], float] = time.time,

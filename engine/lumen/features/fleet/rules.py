@@ -5,10 +5,9 @@ import binascii
 from collections.abc import Iterable, Mapping
 from urllib.parse import urlsplit
 
-from lumen.features.alerts.rules import loopback
 from lumen.features.fleet.rollouts.conditions import condition_faults
 from lumen.features.fleet.settings import Fleet
-from lumen.language.addresses import credentials_of
+from lumen.language.addresses import credentials_of, loopback
 from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_mean
 from lumen.lint.routes import PASSWORD_IN_FILE
 from lumen.project.document_report import DocumentReport
@@ -33,8 +32,8 @@ KEY_BYTES = 32
 
 def check(draft: ProjectDraft) -> None:
     """Report what is wrong with the fleet beside a project, where there is one."""
-    fleet, report = draft.fleet, draft.reports.get(FLEET_FILE)
-    if fleet is not None and report is not None:
+    fleet, report = draft.beside.get(FLEET_FILE), draft.reports.get(FLEET_FILE)
+    if isinstance(fleet, Fleet) and report is not None:
         check_fleet(fleet, report)
         _at_home(draft, fleet)
 

@@ -6,7 +6,7 @@ import uuid
 from collections.abc import Callable
 from pathlib import Path
 
-from lumen.bus.addresses import is_rabbitmq
+from lumen.bus.brokers import Stream, has_streams, stream_of
 from lumen.errors import UsageError
 from lumen.features.fleet.centre import Centre
 from lumen.features.fleet.centre_desk import CentreDesk
@@ -17,7 +17,6 @@ from lumen.features.fleet.reading import read_fleet
 from lumen.features.fleet.rollouts.state import CentreState
 from lumen.features.fleet.settings import Fleet
 from lumen.features.fleet.signing import Signer
-from lumen.features.rabbitmq.stream_reader import StreamReader, has_stream
 from lumen.language.diagnostics import has_errors
 from lumen.language.fleet_keys import STREAM
 from lumen.ports import Bus
@@ -81,18 +80,15 @@ class ServedCentre:
         """Let `run` return; safe in a signal handler."""
         self._ending.set()
 
-    def _opened(self, url: str, first: int, tell: Callable[[str], None]) -> StreamReader | None:
-        if not is_rabbitmq(url):
+    def _opened(self, url: str, first: int, tell: Callable[[str], None]) -> Stream | None:
+        if not has_streams(url):
             return None
-        if not has_stream(url, STREAM):
+        if (stream := stream_of(url, STREAM, first)) is None:
             tell(
                 f"the broker has no stream {STREAM}: incidents are lost while no centre is running;"
                 " docs/fleet-brokers.md shows how to create it"
             )
-            return None
-        reader = StreamReader(url, STREAM, first)
-        reader.open()
-        return reader
+        return stream
 
     def close(self) -> None:
         self._desk.close()

@@ -1,9 +1,12 @@
 """Statecharts of other tools, and diagrams."""
 
-from lumen.feature import Exporter, Feature, Importer
+from lumen.feature import Exporter, Feature, Importer, Subcommand
 
 FEATURE = Feature(
     name="formats_charts",
+    subcommands={
+        "graph": Subcommand("draw a behaviour as a diagram", "lumen.features.formats_charts.command", after="memory")
+    },
     importers={
         ".scxml": Importer("behavior", "lumen.features.formats_charts.scxml:read_scxml"),
         ".xml": Importer("behavior", "lumen.features.formats_charts.scxml:read_scxml"),

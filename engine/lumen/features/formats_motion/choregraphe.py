@@ -125,23 +125,26 @@ def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCur
     return curves
 
 
-def choregraphe_list(content: bytes) -> str:
-    """Name the files to import instead of a `.pml`, the file list of a project; empty if this is no such list."""
+def is_choregraphe_list(content: bytes) -> bool:
+    """Whether a file is a `.pml`, the file list of a project."""
     if b"<Package" not in content[:1_000]:
-        return ""
+        return False
     try:
-        root = parse_xml("", content)
+        return local(parse_xml("", content)) == "Package"
     except ForeignFileError:
-        return ""
-    if local(root) != "Package":
-        return ""
-    named = [e for e in root.walk() if local(e) == "BehaviorDescription"]
+        return False
+
+
+def choregraphe_list(content: bytes) -> str:
+    """Say what a `.pml` is, and which files to import instead."""
+    named = [e for e in parse_xml("", content).walk() if local(e) == "BehaviorDescription"]
     files = [f"{e.get('src')}/{e.get('xar', 'behavior.xar')}".strip("/") for e in named]
-    return (
+    instead = (
         f"import {' or '.join(f'`{file}`' for file in files[:20])} instead"
         if files
         else "the project lists no behaviour"
     )
+    return f"is the file list of a Choregraphe project and contains no motion: {instead}"
 
 
 def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindings) -> None:

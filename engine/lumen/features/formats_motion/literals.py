@@ -6,8 +6,7 @@ from collections.abc import Callable, Mapping
 from operator import add, mul, sub, truediv
 from typing import Any
 
-MAX_NUMBER = 1e12
-"""No time and no angle of a motion is as large."""
+from lumen.project.formats.joint_curves import MAX_NUMBER
 
 _SIGNS: Mapping[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: add,

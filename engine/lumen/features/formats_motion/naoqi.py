@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from itertools import zip_longest
 from typing import Any
 
-from lumen.features.formats_motion.literals import MAX_NUMBER, NotWrittenOutError, value_of, written
+from lumen.features.formats_motion.literals import NotWrittenOutError, value_of, written
 from lumen.features.formats_motion.naoqi_calls import ALMOTION_CALLS, CALLS, CHAINS, PAUSE, WAIT, is_reading
 from lumen.features.formats_motion.statements import (
     Branch,
@@ -29,7 +29,7 @@ from lumen.language.counts import counted
 from lumen.language.diagnostics import Place, did_you_mean
 from lumen.language.numbers import is_number
 from lumen.project.formats.conversion_findings import ConversionFindings, broken, decoded
-from lumen.project.formats.joint_curves import BezierHandle, CurvePoint, JointCurves, MotionFile
+from lumen.project.formats.joint_curves import MAX_NUMBER, BezierHandle, CurvePoint, JointCurves, MotionFile
 
 BEZIER, LINEAR = 3, 1
 MAX_STEPS = 20_000

@@ -1,13 +1,11 @@
 """`lumen import` of a robot: URDF or MJCF as a body file of ours, and URDF as the MJCF that goes with it."""
 
 import re
-from collections.abc import Mapping
 from pathlib import Path
 
-from lumen.cli.writing import write_file
 from lumen.errors import LumenError
 from lumen.extras import MissingExtraError
-from lumen.features.formats_robots.offers import read_robot
+from lumen.features.formats_robots.reading import read_robot
 from lumen.language.diagnostics import Diagnostic, Place, Severity
 from lumen.project.formats.conversion_findings import LOST
 from lumen.project.formats.xml_elements import XmlElement, parse_xml
@@ -36,20 +34,11 @@ def robot_body(
     return text, found, beside
 
 
-def write_beside(files: Mapping[Path, bytes]) -> None:
-    """Write what goes with a body file; raises UsageError where it can't be written."""
-    for path, content in files.items():
-        write_file(content, path, folders=True)
-    if files:
-        print(f"wrote {next(iter(files))}" + (f" and {len(files) - 1} meshes" if len(files) > 1 else ""))
-
-
 def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[dict[Path, bytes], list[Diagnostic]]:
     """The MJCF of a URDF and its meshes, and what was lost on the way."""
     here = Place(str(path), 1, 1)
     try:
         from lumen.features.formats_robots.urdf_conversion import urdf_as_mjcf
-        from lumen.features.simulation import installed  # noqa: F401
     except MissingExtraError as error:
         return {}, [Diagnostic(LOST, f"{title}.xml was not written: {error}", here, "then import the robot again")]
     try:
@@ -69,7 +58,6 @@ def _refused(path: Path) -> list[Diagnostic]:
     """Return MuJoCo's error for an MJCF, which is not changed; nothing if MuJoCo is not installed."""
     try:
         from lumen.features.formats_robots.urdf_conversion import mjcf_fault
-        from lumen.features.simulation import installed  # noqa: F401
     except MissingExtraError:
         return []
     fault = mjcf_fault(path)

@@ -7,7 +7,11 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from lumen.errors import RobotModelError
-from lumen.features.simulation.physics import mujoco
+from lumen.extras import demand
+
+demand("simulation", "MuJoCo's model of an imported robot", "mujoco")
+
+import mujoco  # noqa: E402  if it is installed
 
 READ = (".stl", ".obj", ".msh")
 """Endings of meshes that MuJoCo reads."""

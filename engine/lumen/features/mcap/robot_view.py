@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from lumen.errors import LumenError
 from lumen.extras import demand
@@ -12,10 +12,8 @@ from lumen.features.mcap.files.recorded import RecordedMessage
 from lumen.language.projects import Project
 from lumen.ports import Joints, Message, Sense
 from lumen.project.lending import model_files
+from lumen.robot.links import BodyLinks, LinkShape, links_of
 from lumen.robot.sense_codec import decode_reading
-
-if TYPE_CHECKING:
-    from lumen.features.simulation.link_frames import LinkFrames, LinkShape
 
 FRAMES, LOOK = ".frames", ".look"
 """What follows the joints' topic for the frames of the links, and for what they look like."""
@@ -26,12 +24,10 @@ class RobotView:
 
     def __init__(self, project: Project, tell: Callable[[str], None] = lambda text: None) -> None:
         self._body, self._topic = project.body, project.key_of(Sense.JOINT)
-        self._links: "LinkFrames | None" = None  # noqa: UP037  imported where it is wanted
+        self._links: BodyLinks | None = None
         try:
             demand("simulation", "the robot's shape in a recording", "mujoco", "dm_control")
-            from lumen.features.simulation.link_frames import LinkFrames
-
-            self._links = LinkFrames(self._body, model_files(project)[0])
+            self._links = links_of(self._body, model_files(project)[0])
         except LumenError as error:
             tell(f"the recording shows no robot: {error}")
 
@@ -69,7 +65,7 @@ class RobotView:
         yield RecordedMessage(channel, when, when, update.SerializeToString())
 
 
-def _draw(entity: Any, shape: "LinkShape") -> None:
+def _draw(entity: Any, shape: LinkShape) -> None:
     x, y, z = shape.size
     match shape.kind:
         case "mesh":

@@ -28,12 +28,13 @@ How RabbitMQ is used, from the inside out:
 
 from lumen.feature import BusRow, Feature
 
-_OPEN = "lumen.features.rabbitmq.amqp:AmqpBus"
-
-FEATURE = Feature(
-    name="rabbitmq",
-    buses={
-        "amqp": BusRow(_OPEN, ("amqp://HOST",), example="amqp://user:password@host/", rabbitmq=True),
-        "amqps": BusRow(_OPEN, ("amqps://HOST",), rabbitmq=True),
-    },
+_AMQP = BusRow(
+    "lumen.features.rabbitmq.amqp:AmqpBus",
+    ("amqp://HOST",),
+    example="amqp://user:password@host/",
+    probe="lumen.features.rabbitmq.probe:BrokerProbe",
+    stream="lumen.features.rabbitmq.stream_reader:read_stream",
+    side_queues="lumen.dead and lumen.nowhere",
 )
+
+FEATURE = Feature(name="rabbitmq", buses={"amqp": _AMQP, "amqps": _AMQP._replace(forms=("amqps://HOST",), example="")})

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import Any
 
 import pika
 from pika.exceptions import ChannelClosedByBroker
 
+from lumen.bus.brokers import QueueStatus
 from lumen.errors import BusUnreachableError
 from lumen.features.rabbitmq.asked_channel import AskedChannel
 from lumen.features.rabbitmq.broker import BrokerAddress
@@ -27,18 +28,12 @@ ACCESS_REFUSED = 403
 """AMQP's code for what a user may not do."""
 
 
-class QueueStatus(NamedTuple):
-    """How many messages wait in a route's queue, and how many read it; both None where there is no such queue."""
-
-    waiting: int | None = None
-    readers: int | None = None
-
-
 class BrokerProbe:
     """A connection for questions; raises BusError, saying what to do, if the broker can't be used."""
 
     def __init__(self, url: str) -> None:
         self.address = BrokerAddress(url)
+        self.place, self.user = self.address.place, self.address.user
         with self._explained():
             self._connection = PolledConnection(self.address.parameters)
         server = self._connection.server

@@ -2,11 +2,12 @@
 
 from collections import deque
 from contextlib import closing
-from typing import Any, NamedTuple
+from typing import Any
 
 from pika.exceptions import ConsumerCancelled
 
 from lumen.bus.bodies import JSON, decode
+from lumen.bus.brokers import StreamEntry
 from lumen.features.rabbitmq.broker import BrokerAddress
 from lumen.features.rabbitmq.connection import BrokerConnection, OutageLog
 from lumen.features.rabbitmq.probe import BrokerProbe
@@ -18,19 +19,6 @@ MOST_READ = 2000
 """How many messages wait for `take`; then no more are asked for."""
 TURN = 0.2
 """How long the connection's thread waits for what comes, before it looks whether it is to end [s]."""
-
-
-class StreamEntry(NamedTuple):
-    """A message of a stream, at its `offset`, which is -1 in none; `body` is JSON data, None where it can't be read.
-
-    `id` tells it from every other one, and `time` is when it was sent [s since 1970]: empty and 0 where nobody said.
-    """
-
-    offset: int
-    key: str
-    body: Any
-    id: str = ""
-    time: float = 0.0
 
 
 class StreamReader(BrokerConnection):
@@ -81,7 +69,11 @@ class StreamReader(BrokerConnection):
         self.connection.fail(ConsumerCancelled(frame.method.consumer_tag))
 
 
-def has_stream(url: str, name: str) -> bool:
-    """Whether the broker has such a queue. Raises BusError where it can't be reached."""
+def read_stream(url: str, name: str, first: int) -> StreamReader | None:
+    """Read a stream from the offset `first` on; None if the broker has no such queue. Raises BusError."""
     with closing(BrokerProbe(url)) as probe:
-        return probe.has_queue(name)
+        if not probe.has_queue(name):
+            return None
+    reader = StreamReader(url, name, first)
+    reader.open()
+    return reader

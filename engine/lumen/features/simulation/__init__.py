@@ -1,6 +1,6 @@
 """The robot under physics."""
 
-from lumen.feature import BaseRow, Feature, RobotRow, Section
+from lumen.feature import BaseRow, Feature, PartRow, Phase, RobotOption, RobotRow, Section, Subcommand
 
 FEATURE = Feature(
     name="simulation",
@@ -13,6 +13,13 @@ FEATURE = Feature(
         )
     },
     extras=("simulation",),
+    parts=(PartRow("film", Phase.SHOW, "lumen.features.simulation.filming.part:make", "option:film"),),
+    run_options=("lumen.features.simulation.filming.options:FilmOptions",),
+    lint_options=("lumen.features.simulation.trials.lint_options:PhysicsOptions",),
+    links=("lumen.features.simulation.link_frames:LinkFrames",),
+    subcommands={
+        "play": Subcommand("play a motion on the simulated robot", "lumen.features.simulation.command", after="hear")
+    },
     bases={
         "biped": BaseRow("lumen.features.simulation.biped:Biped", "a biped", legs=True),
         "wheels": BaseRow("lumen.features.simulation.wheels:Wheels", "a base on wheels", drives=True, wheels=True),
@@ -20,7 +27,19 @@ FEATURE = Feature(
     },
     robots={
         "simulation": RobotRow(
-            "lumen.features.simulation.set_up:set_up", "lumen.features.simulation.set_up:set_up_house", bounded=True
+            "lumen.features.simulation.set_up:set_up",
+            "lumen.features.simulation.set_up:set_up_house",
+            bounded=True,
+            options=(
+                RobotOption(
+                    "imperfections",
+                    "LIST",
+                    "imperfections of the simulated robot: `none`, or a list of noise, quantisation, gyro_bias,"
+                    " latency, backlash, torque_speed, supply (default: as in lumen.yaml, else all)",
+                    short=True,
+                    several=True,
+                ),
+            ),
         )
     },
 )

@@ -3,46 +3,17 @@
 from collections.abc import Iterator, Mapping
 from math import cos, sin
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lumen.features.simulation.model import alone
 from lumen.features.simulation.physics import mjcf, mujoco
 from lumen.language.robots import Body
 from lumen.ports import Joints
+from lumen.robot.links import FLOOR, LinkFrame, LinkNumbers, LinkShape
 
-LinkNumbers = NDArray[np.float64]
-FLOOR = "hall"
-"""The frame that the first link stands in: where the robot started, z up."""
 SEEN_GROUP = 2
 """The geoms that one sees."""
-
-
-class LinkFrame(NamedTuple):
-    """A link in the frame of its parent: position [m], quaternion (w, x, y, z)."""
-
-    name: str
-    parent: str
-    position: LinkNumbers
-    rotation: LinkNumbers
-
-
-class LinkShape(NamedTuple):
-    """What one sees of a link, in its frame: a box, ellipsoid, cylinder or capsule of half sizes [m], or triangles.
-
-    Of a capsule and a cylinder `size` is the radius and half the length along z; `colour` is red, green, blue, alpha.
-    """
-
-    link: str
-    kind: str
-    position: LinkNumbers
-    rotation: LinkNumbers
-    size: LinkNumbers
-    colour: LinkNumbers
-    vertices: LinkNumbers
-    faces: NDArray[np.int32]
 
 
 class LinkFrames:

@@ -1,5 +1,14 @@
 """The visitors whom the exhibition remembers, and the journal of what happened."""
 
-from lumen.feature import Feature, ModuleRow
+from lumen.feature import Feature, ModuleRow, Subcommand
 
-FEATURE = Feature(name="visitors", modules={"memory": ModuleRow("lumen.features.visitors.module:Memory")})
+FEATURE = Feature(
+    name="visitors",
+    modules={"memory": ModuleRow("lumen.features.visitors.module:Memory")},
+    file_forgetters=("lumen.features.visitors.memory:forget_in_database",),
+    subcommands={
+        "memory": Subcommand(
+            "list what the robot remembers, or forget a visitor", "lumen.features.visitors.command", after="play"
+        )
+    },
+)

@@ -100,20 +100,20 @@ def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
     return 0 if found.deleted and not found.left else 1
 
 
-def _tell_running(options: argparse.Namespace, settings: Settings | None, found: Forgetting) -> bool:
-    """Have the exhibition that runs forget them, too, and whoever stands there; whether it runs on a broker."""
+def _tell_running(options: argparse.Namespace, settings: Settings | None, found: Forgetting) -> str:
+    """Have the exhibition that runs forget them, too, and whoever stands there; the address of its broker, or empty."""
     try:
         reached = reach_exhibition(options.project, options.bus, options.robot_name)
     except BusUnreachableError as error:
         url = options.bus or os.environ.get("LUMEN_BUS") or (settings.bus if settings else "")
         if url and not within_process(url):
             found.left.append(ForgottenPlace("the running exhibition", str(error)))
-        return bool(url) and not within_process(url)
+        return "" if within_process(url) else url
     try:
         _ask(reached.bus, settings or Settings(), options.name, found)
     finally:
         reached.bus.close()
-    return bool(reached.broker)
+    return reached.broker
 
 
 def _ask(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:

@@ -14,6 +14,8 @@ from lumen.language.modules import MEMORY, VISITOR_KEY
 from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.run.forgetting.files import attempt
+from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 from lumen.run.module import DAY, KEEP_DAYS, Module
 
 DATABASE_FILE = "memory.db"
@@ -231,3 +233,23 @@ def _check_name(name: str, method: str) -> None:
     """Raises ModuleError where there is none that could be found again."""
     if not name_key(name):
         raise ModuleError(f"`{method}` takes a `name`")
+
+
+def forget_in_database(folder: Path, name: str, found: Forgetting) -> None:
+    """Forget a visitor in the database of a home, and note whose names only contain that name."""
+
+    def work() -> None:
+        store = Store(file)
+        try:
+            gone = store.forget(name)
+        finally:
+            store.close()
+        found.visitors += gone.visitors
+        found.entries += gone.entries
+        found.others = gone.others
+        if gone.visitors or gone.entries:
+            counts = f"visitors: {gone.visitors}, entries of the journal: {gone.entries}"
+            found.deleted.append(ForgottenPlace(file.name, counts))
+
+    file = folder / DATABASE_FILE
+    attempt(found, file, work)

@@ -3,15 +3,12 @@
 from pathlib import PurePath
 from typing import Any, Protocol
 
-from lumen.features.formats_motion.choregraphe import choregraphe_list
 from lumen.language.diagnostics import Diagnostic, Place
 from lumen.language.robots import Body
 from lumen.project.formats.conversion_findings import LOST, ConversionFindings, broken
 from lumen.project.formats.importers import reader
 from lumen.project.formats.joint_curves import JointCurves, MotionFile
 from lumen.project.formats.motion_writer import MotionWriter
-
-__all__ = ["MotionReader", "choregraphe_list", "read_gesture"]
 
 
 class MotionReader(Protocol):

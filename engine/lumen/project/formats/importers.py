@@ -1,11 +1,12 @@
 """Other tools' files that can be imported, by the ending of their names: rows of manifests."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, Protocol
 
 from lumen.feature import Importer, distribution_of, owner, table
 from lumen.language.diagnostics import Diagnostic
-from lumen.project.broken_features import faulty, resolved, shown
+from lumen.project.broken_features import called, faulty, resolved, shown
 from lumen.project.formats.known import FormatTable
 
 
@@ -16,6 +17,26 @@ class FileReader(Protocol):
     """
 
     def __call__(self, file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]: ...
+
+
+class RobotReader(Protocol):
+    """Converts a model of a robot to the text of a body file, what there is to say of it, and files beside it.
+
+    `output` is where the body file will be, None if it is printed; `title` names the robot. Raises ForeignFileError.
+    """
+
+    def __call__(
+        self, path: Path, content: bytes, output: Path | None, title: str
+    ) -> tuple[str, list[Diagnostic], dict[Path, bytes]]: ...
+
+
+def recognised(content: bytes) -> tuple[Importer, Any] | None:
+    """Return the row and the function of the importer that recognises a file by its content; None if none does."""
+    for ending, row in table("importers").items():
+        feature = owner("importers", ending)
+        if row.begins and called(feature, row.begins, content):
+            return row, resolved(feature, row.read)
+    return None
 
 
 def importer(ending: str) -> Importer | None:

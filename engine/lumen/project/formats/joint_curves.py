@@ -3,9 +3,10 @@
 from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
-from lumen.features.formats_motion.literals import MAX_NUMBER
 from lumen.language.diagnostics import Place
 
+MAX_NUMBER = 1e12
+"""No time and no angle of a motion is as large."""
 BezierHandle = tuple[float, float]
 
 

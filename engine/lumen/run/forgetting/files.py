@@ -6,19 +6,14 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from lumen.errors import JournalError, LumenError, ModuleError
-from lumen.features.eyes.eyes import FACES_FILE
-from lumen.features.mcap.files.rewriting import rewrite
-from lumen.features.mcap.recordings_folder import RecordingsFolder
-from lumen.features.mcap.redaction import redacted
-from lumen.features.visitors.memory import DATABASE_FILE
-from lumen.features.visitors.module import Store
+from lumen.errors import JournalError, ModuleError
+from lumen.feature import rows
 from lumen.journal.forgotten_snapshots import forgetful_data
 from lumen.journal.journal_file import JOURNAL_SUFFIX, read_journal
 from lumen.journal.journal_folder import JOURNAL_FOLDER, newest
 from lumen.journal.redaction import names, redact
-from lumen.language.counts import counted
 from lumen.language.people import PersonName, name_key
+from lumen.project.broken_features import called
 from lumen.project.files import MAX_PROJECT_BYTES
 from lumen.project.home import Home
 from lumen.project.json_lines import forget_lines, line_names
@@ -37,52 +32,33 @@ def forget_in(folder: Path, name: str, found: Forgetting) -> None:
 
     What a running exhibition remembers it forgets itself: that is waited for.
     """
-    _attempt(found, folder / DATABASE_FILE, lambda: _database(folder / DATABASE_FILE, name, found))
-    _attempt(found, folder / FACES_FILE, lambda: _faces(folder / FACES_FILE, name, found))
-    person, home = PersonName(name, map(name_key, found.others)), Home(folder)
-    for file in sorted(folder.glob("*.jsonl*")):
-        _attempt(found, file, lambda file=file: _lines(file, person, found))  # type: ignore[misc]
-    if home.held():
-        _await(lambda: not _names(folder / SNAPSHOT_FILE, person) and not _names_in_journal(folder, person))
-    else:
-        _snapshot(home, person, found)
-    _attempt(found, folder / JOURNAL_FOLDER, lambda: _journal(folder, person, found))
-    _recordings(home, person, found)
+    for feature, where in rows("file_forgetters"):
+        called(feature, where, folder, name, found)
+    person = PersonName(name, map(name_key, found.others))
     _drafts(folder)
     found.left += _left(folder, person)
     found.elsewhere += _own_files(folder, person)
 
 
-def _attempt(found: Forgetting, file: Path, work: Callable[[], None]) -> None:
-    """One file that can't be written keeps no other from being forgotten."""
+def forget_inputs(folder: Path, name: str, found: Forgetting) -> None:
+    """Forget somebody in the journal of inputs, in the snapshot of the behaviour, and in small records."""
+    person, home = PersonName(name, map(name_key, found.others)), Home(folder)
+    for file in sorted(folder.glob("*.jsonl*")):
+        attempt(found, file, lambda file=file: _lines(file, person, found))  # type: ignore[misc]
+    if home.held():
+        await_others(lambda: not _names(folder / SNAPSHOT_FILE, person) and not _names_in_journal(folder, person))
+    else:
+        _snapshot(home, person, found)
+    attempt(found, folder / JOURNAL_FOLDER, lambda: _journal(folder, person, found))
+
+
+def attempt(found: Forgetting, file: Path, work: Callable[[], None]) -> None:
+    """Do `work` if there is such a file; one that can't be written is left, and keeps no other from being forgotten."""
     try:
         if file.exists():
             work()
     except ModuleError as error:
         found.left.append(ForgottenPlace(file.name, str(error)))
-
-
-def _database(file: Path, name: str, found: Forgetting) -> None:
-    store = Store(file)
-    try:
-        gone = store.forget(name)
-    finally:
-        store.close()
-    found.visitors += gone.visitors
-    found.entries += gone.entries
-    found.others = gone.others
-    if gone.visitors or gone.entries:
-        found.deleted.append(
-            ForgottenPlace(file.name, f"visitors: {gone.visitors}, entries of the journal: {gone.entries}")
-        )
-
-
-def _faces(file: Path, name: str, found: Forgetting) -> None:
-    from lumen.features.eyes.gallery import FaceGallery  # importing OpenCV is slow
-
-    if gone := FaceGallery(file, time.time).forget(name):
-        found.pictures += gone
-        found.deleted.append(ForgottenPlace(file.name, f"pictures: {gone}"))
 
 
 def _lines(file: Path, person: PersonName, found: Forgetting) -> None:
@@ -95,38 +71,6 @@ def _journal(folder: Path, person: PersonName, found: Forgetting) -> None:
     files, held = sorted((folder / JOURNAL_FOLDER).rglob(f"*{JOURNAL_SUFFIX}")), Home(folder).held()
     if named := sum(redact(file, person) for file in files if not (held and file == newest(folder))):
         found.deleted.append(ForgottenPlace(JOURNAL_FOLDER, f"the name, in entries: {named}"))
-
-
-def _recordings(home: Home, person: PersonName, found: Forgetting) -> None:
-    """What was recorded of the bus, wherever that is; what is being written, who writes it writes anew."""
-    recordings, held = RecordingsFolder(home.folder), home.held()
-    begun = {each.path.absolute(): each.written for each in recordings.begun()}
-    files = dict.fromkeys([*begun, *(file.absolute() for file in recordings.files()), *recordings.parts()])
-    for file in files:
-        if begun.get(file) or (held and file.parent == recordings.ring):
-            _await(lambda file=file: not _named_in_recording(file, person))  # type: ignore[misc]
-            if _named_in_recording(file, person):
-                found.left.append(ForgottenPlace(str(file), "it is being written, and still contains the name"))
-        else:
-            _attempt(found, file, lambda file=file: _recording(file, person, found))  # type: ignore[misc]
-
-
-def _recording(file: Path, person: PersonName, found: Forgetting) -> None:
-    try:
-        gone, changed = redacted(file, person)
-        if gone:
-            rewrite([file], file, changed)
-            said = f"the name: {counted(gone.messages, 'message')}, {counted(gone.files, 'attached file')}"
-            found.deleted.append(ForgottenPlace(str(file), f"{said}; pictures and sounds: {gone.pictures}"))
-    except LumenError as error:
-        raise ModuleError(str(error)) from None
-
-
-def _named_in_recording(file: Path, person: PersonName) -> bool:
-    try:
-        return bool(redacted(file, person)[0])
-    except LumenError:
-        return False
 
 
 def _names_in_journal(folder: Path, person: PersonName) -> bool:
@@ -192,7 +136,7 @@ def _names(file: Path, person: PersonName) -> bool:
         return False
 
 
-def _await(condition: Callable[[], bool]) -> None:
+def await_others(condition: Callable[[], bool]) -> None:
     """Look again and again, as the condition is another process's work; no longer than PATIENCE."""
     deadline = time.monotonic() + PATIENCE
     while not condition() and time.monotonic() < deadline:

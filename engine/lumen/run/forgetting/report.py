@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from lumen.bus.brokers import side_queues
 from lumen.feature import distribution_of, rows
-from lumen.features.rabbitmq.queues import SIDE_QUEUES
 from lumen.language.routes import Carried, Direction, Route
 
 
@@ -38,8 +38,8 @@ OF_A_PACKAGE = "what it keeps itself: it forgets only while an exhibition runs"
 COPIES = "videos, sounds and transcripts of runs, recordings that were moved, copies and backups of these files"
 
 
-def out_of_reach(routes: Iterable[Route], broker: bool) -> Iterator[ForgottenPlace]:
-    """Places that can't be looked at from here; a `broker` keeps messages of these routes for some time."""
+def out_of_reach(routes: Iterable[Route], broker: str) -> Iterator[ForgottenPlace]:
+    """Places that can't be looked at from here; the `broker` at that address keeps messages of these routes."""
     if broker:
         for route in (route for route in routes if route.carried is Carried.JOURNAL):
             if route.direction is Direction.OUT:
@@ -48,9 +48,10 @@ def out_of_reach(routes: Iterable[Route], broker: bool) -> Iterator[ForgottenPla
                 yield ForgottenPlace(
                     f"the broker's queue of `{route.name}`", "messages that no process has received yet"
                 )
-        yield ForgottenPlace(
-            f"the broker's {SIDE_QUEUES}", "messages that no process could use, for up to 7 days and an hour"
-        )
+        if queues := side_queues(broker):
+            yield ForgottenPlace(
+                f"the broker's {queues}", "messages that no process could use, for up to 7 days and an hour"
+            )
     for distribution in dict.fromkeys(distribution_of(feature) for feature, _ in rows("forgets")):
         if distribution:
             yield ForgottenPlace(f"the installed package `{distribution.name}`", OF_A_PACKAGE)

@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
-from lumen.features.voice.speaker import RobotVoice
 from lumen.language.commands import Say
 from lumen.language.events import Event
 from lumen.language.stories import Visitor
 from lumen.ports import Reading, RobotCommand, Sense
 from lumen.run.setup import RobotRequest, Setup, set_up_with
+from lumen.run.voices import RobotVoice
 from lumen_stranger.honey import Honey
 
 TIME_TO_SAY = 0.5

@@ -3,14 +3,17 @@
 import argparse
 import os
 import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from lumen.cli.streams import complain
 from lumen.errors import UsageError
 from lumen.features.simulation.filming.progress import FilmProgress
 from lumen.language.projects import Project
 from lumen.language.stories import Story
-from lumen.run.rehearsal import rehearse
+from lumen.run.audio_track import AudioTrack
 
 
 def film_path(path: Path | None, robot: str) -> Path | None:
@@ -49,7 +52,44 @@ def film_size(text: str) -> tuple[int, int]:
     return sides
 
 
+@dataclass(frozen=True, slots=True)
+class FilmPlan:
+    """A video of a simulated robot: its file, sound, size (width, height) [px], and progress on the terminal."""
+
+    path: Path
+    track: AudioTrack | None = None
+    size: tuple[int, int] | None = None
+    progress: FilmProgress | None = None
+
+
+class FilmOptions:
+    """`--video` and `--size` of `lumen run`."""
+
+    def configure(self, parser: argparse.ArgumentParser) -> None:
+        add = parser.add_argument
+        add("--video", metavar="FILE.mp4", type=Path, help="save a video of the run (simulation only; needs OpenGL)")
+        configure_size(parser)
+
+    def check(self, options: argparse.Namespace, parts: Sequence[str], robots: int) -> None:
+        if options.video and robots > 1:
+            raise UsageError("--video works with only one robot: choose it with `--robot-name NAME`")
+        if options.video and parts:
+            raise UsageError("--video works only if everything runs in one process: leave out --only")
+
+    def wishes(
+        self, options: argparse.Namespace, project: Project, story: Story | None, period: float | None
+    ) -> Mapping[str, Any]:
+        video, size = film_path(options.video, options.robot), film_size(options.size)
+        if video is None:
+            return {}
+        track = AudioTrack()
+        film = FilmPlan(video, track, size, film_progress(project, story, period))
+        return {"film": film, "track": track, "video": video}
+
+
 def film_progress(project: Project, story: Story | None, period: float | None) -> FilmProgress:
     """Who tells how far a film is, of a story or of a `period` [s]: the recording robot plays the story beforehand."""
+    from lumen.run.rehearsal import rehearse  # few runs are filmed
+
     lengths = [length for length in (rehearse(project, story).time if story else None, period) if length]
     return FilmProgress(complain, min(lengths, default=0.0))

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from lumen.errors import UsageError
+from lumen.features.simulation.filming.options import FilmPlan
 from lumen.features.simulation.filming.progress import FilmProgress
 from lumen.features.simulation.filming.sound import add_sound
 from lumen.language.commands import Command, Play, Say, Start
@@ -14,6 +15,7 @@ from lumen.run.audio_track import AudioTrack
 from lumen.run.loop import Observer
 from lumen.run.narrator import Narrator
 from lumen.run.parts.part import Part
+from lumen.run.services import Services
 
 
 class FilmPart(Part, Observer):
@@ -83,3 +85,14 @@ class FilmPart(Part, Observer):
         if self._track:
             add_sound(self._path, self._track, self._film.length)
             self._track = None
+
+
+def make(services: Services) -> FilmPart:
+    """Make the part that writes a video. Raises RobotError if nothing can be drawn."""
+    wanted: FilmPlan = services.plan.options["film"]
+    story = services.plan.story
+    title = story.title if story else services.project.name
+    robot = services.setup.robot
+    return FilmPart(
+        wanted.path, robot, services.narrator, wanted.track, size=wanted.size, title=title, progress=wanted.progress
+    )

@@ -1,0 +1,60 @@
+"""Options that features add to `lumen run` and `lumen lint`."""
+
+import argparse
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Protocol
+
+from lumen.feature import rows
+from lumen.language.projects import Project
+from lumen.language.stories import Story
+from lumen.project.broken_features import called
+from lumen.run.linting.findings import Findings
+from lumen.run.linting.targets import Wanted
+
+
+class RunExtra(Protocol):
+    """Options of `lumen run`, and what they want of an exhibition."""
+
+    def configure(self, parser: argparse.ArgumentParser) -> None:
+        """Add the options."""
+        ...
+
+    def check(self, options: argparse.Namespace, parts: Sequence[str], robots: int) -> None:
+        """Raise UsageError if the options do not go with these parts of an exhibition, or with so many robots."""
+        ...
+
+    def wishes(
+        self, options: argparse.Namespace, project: Project, story: Story | None, period: float | None
+    ) -> Mapping[str, Any]:
+        """Return options of the plan of one robot that acts for `period` [s], None for until it ends.
+
+        Of these names the core knows two: `track`, an `AudioTrack` that gets whatever is heard, and `video`, the path
+        of a file that is written. Raises UsageError.
+        """
+        ...
+
+
+class LintExtra(Protocol):
+    """Options of `lumen lint`, and the findings that they add."""
+
+    def configure(self, parser: argparse.ArgumentParser) -> None:
+        """Add the options."""
+        ...
+
+    def check(self, options: argparse.Namespace) -> None:
+        """Raise UsageError if the options do not go together."""
+        ...
+
+    def more(self, found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
+        """Return the findings of each project, with those that the options ask for."""
+        ...
+
+
+def run_extras() -> Iterator[RunExtra]:
+    """Return the options that features add to `lumen run`, in the order of the features."""
+    return (called(feature, where) for feature, where in rows("run_options"))
+
+
+def lint_extras() -> Iterator[LintExtra]:
+    """Return the options that features add to `lumen lint`, in the order of the features."""
+    return (called(feature, where) for feature, where in rows("lint_options"))

@@ -1,0 +1,69 @@
+"""The links of a robot: where they are for given joint angles, and what they look like. A feature computes both."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
+
+from lumen.errors import RobotError
+from lumen.feature import rows
+from lumen.language.robots import Body
+from lumen.ports import Joints
+from lumen.project.broken_features import called
+
+if TYPE_CHECKING:  # numpy takes longer to import than most commands
+    import numpy as np
+    from numpy.typing import NDArray
+
+    LinkNumbers: TypeAlias = NDArray[np.float64]
+    Triangles: TypeAlias = NDArray[np.int32]
+
+FLOOR = "hall"
+"""The frame that the first link stands in: where the robot started, z up."""
+
+
+class LinkFrame(NamedTuple):
+    """A link in the frame of its parent: position [m], quaternion (w, x, y, z)."""
+
+    name: str
+    parent: str
+    position: "LinkNumbers"
+    rotation: "LinkNumbers"
+
+
+class LinkShape(NamedTuple):
+    """What one sees of a link, in its frame: a box, ellipsoid, cylinder or capsule of half sizes [m], or triangles.
+
+    Of a capsule and a cylinder `size` is the radius and half the length along z; `colour` is red, green, blue, alpha.
+    """
+
+    link: str
+    kind: str
+    position: "LinkNumbers"
+    rotation: "LinkNumbers"
+    size: "LinkNumbers"
+    colour: "LinkNumbers"
+    vertices: "LinkNumbers"
+    faces: "Triangles"
+
+
+class BodyLinks(Protocol):
+    """The links of one body."""
+
+    def frames(self, joints: Joints) -> Iterator[LinkFrame]:
+        """Yield each link in its parent's frame, the first one in the hall's: its lowest point is on the floor."""
+        ...
+
+    def shapes(self) -> Iterator[LinkShape]:
+        """Yield what one sees of the links."""
+        ...
+
+
+def links_of(body: Body, models: Path) -> BodyLinks:
+    """Return the links of a body whose model is in the folder `models`.
+
+    Raises LumenError if no feature computes them, if what it needs is not installed, or if the model can't be built.
+    """
+    for feature, where in rows("links"):
+        links: BodyLinks = called(feature, where, body, models)
+        return links
+    raise RobotError("no feature computes where the links of a robot are")
