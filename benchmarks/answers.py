@@ -19,9 +19,9 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from lumen.features.answers.embeddings import PackagedVectors
 from lumen.features.answers.folder_vectors import FolderVectors
 from lumen.features.answers.meaning import Embed, by_meaning
-from lumen.features.answers.packaged_vectors import PackagedVectors
 from lumen.features.answers.vectors import KnownText, TextVector, VectorSource
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.projects import Project

@@ -14,9 +14,8 @@ from hypothesis import strategies as st
 from lumen.errors import UndeliveredError
 from lumen.features.alerts import courier as couriers
 from lumen.features.alerts.alert import Alert, Origin
-from lumen.features.alerts.courier import MAX_PENDING_ALERTS, Courier
+from lumen.features.alerts.courier import MAX_PENDING_ALERTS, Courier, Ration
 from lumen.features.alerts.desk import AlertDesk
-from lumen.features.alerts.ration import Ration
 from lumen.features.alerts.settings import Alerts, Program, QuietHours, Recipient, Webhook
 from tests.features.alerts.servers import Web
 from tests.waiting import HANG, finished, until

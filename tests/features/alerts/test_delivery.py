@@ -14,7 +14,7 @@ import pytest
 from lumen.errors import UndeliveredError
 from lumen.features.alerts import program
 from lumen.features.alerts.alert import Alert, Origin
-from lumen.features.alerts.delivery import address, deliver
+from lumen.features.alerts.desk import address, deliver
 from lumen.features.alerts.settings import AlertChannel, Mail, Program, Webhook
 from tests.certificates import certify
 from tests.features.alerts.servers import Post, Web

@@ -13,8 +13,8 @@ from tokenizers.models import WordLevel
 from tokenizers.pre_tokenizers import Whitespace
 
 from lumen.errors import ModuleError
+from lumen.features.answers.embeddings import PackagedVectors
 from lumen.features.answers.folder_vectors import FolderVectors
-from lumen.features.answers.packaged_vectors import PackagedVectors
 from lumen.features.answers.vectors import KnownText, TextVector, VectorSource
 from lumen.language.modules import ANSWERS, ModuleSettings
 from lumen.language.projects import Project

@@ -14,12 +14,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lumen.errors import ModuleError
-from lumen.features.ears.bigrams import arpa
 from lumen.features.ears.expected import expected, heard_names
 from lumen.features.ears.module import Ears, Hypothesis
 from lumen.features.ears.resampling import resampled
-from lumen.features.ears.spelling import pronounced
-from lumen.features.ears.sphinx import MAX_MODELS, Sphinx
+from lumen.features.ears.sphinx import MAX_MODELS, Sphinx, arpa, pronounced
 from lumen.features.voice.module import Espeak
 from lumen.insight.explaining.sayings import path_of
 from lumen.insight.explaining.sentences import explained, first_context

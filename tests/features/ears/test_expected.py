@@ -8,7 +8,7 @@ import pytest
 
 import lumen
 from lumen import statechart
-from lumen.features.ears.active_states import LOST_AFTER, ActiveStates
+from lumen.features.ears.ears import LOST_AFTER, ActiveStates
 from lumen.features.ears.expected import MAX_SENTENCES, STORY_WEIGHT, HeardName, expected, heard_names
 from lumen.features.ears.module import Ears
 from lumen.features.ears.recogniser import Hypothesis

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lumen.features.rabbitmq.turn_clock import STALL_TIME, TurnClock
+from lumen.features.rabbitmq.polled import STALL_TIME, TurnClock
 
 
 class Time:

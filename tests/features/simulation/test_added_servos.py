@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from dm_control import mjcf
 
-from lumen.features.simulation.added_servos import add_servos
+from lumen.features.simulation.model import add_servos
 from lumen.language.robots import Body, Joint
 
 MODEL = """

@@ -12,9 +12,9 @@ import pytest
 from numpy.typing import NDArray
 
 from lumen.errors import RobotError
-from lumen.features.simulation.culling import FrustumCulling
 from lumen.features.simulation.filming.film import FILM_RATE, Film
 from lumen.features.simulation.offers import SimulatedRobot
+from lumen.features.simulation.rendering import FrustumCulling
 from lumen.features.simulation.shells import write
 from lumen.language.commands import Look
 from lumen.language.robots import Body

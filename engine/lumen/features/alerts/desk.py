@@ -8,8 +8,36 @@ from pathlib import Path
 from lumen.errors import UndeliveredError
 from lumen.features.alerts.alert import TEST, Alert, Origin, one_line
 from lumen.features.alerts.courier import Courier
-from lumen.features.alerts.delivery import address, deliver
-from lumen.features.alerts.settings import Alerts, Recipient
+from lumen.features.alerts.settings import AlertChannel, Alerts, Mail, Program, Recipient, Webhook
+
+
+def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> None:
+    """Tell somebody; waits for the network. Raises UndeliveredError, which says why it did not arrive."""
+    match channel:
+        case Webhook(url):
+            from lumen.features.alerts.webhook import post  # each with libraries that few exhibitions need
+
+            post(url, origin.body(alert))
+        case Mail():
+            from lumen.features.alerts.mail import send_mail
+
+            send_mail(channel, origin.line(alert), origin.body(alert))
+        case Program(command):
+            from lumen.features.alerts.program import run_program
+
+            run_program(command, origin.body(alert), root)
+
+
+def address(channel: AlertChannel) -> str:
+    """Where it goes, without what may be a secret: a webhook's host, not its path."""
+    match channel:
+        case Webhook(url):
+            return f"the webhook {url if url.startswith('$') else '/'.join(url.split('/')[:3])}"
+        case Mail(host=host, to=to):
+            return f"{', '.join(to)} by {host}"
+        case Program(command):
+            return f"the command {command[0]}"
+
 
 CLOSE_TIMEOUT = 10.0
 """How long the end of a process waits for alerts to arrive [s]."""

@@ -1,5 +1,7 @@
 """What of an exhibition people have to know who are not there."""
 
+import shutil
+import threading
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -7,10 +9,8 @@ from pathlib import Path
 from lumen.bus.validated import ValidatedBus
 from lumen.features.alerts.alert import Origin
 from lumen.features.alerts.desk import AlertDesk
-from lumen.features.alerts.disk import DiskWatch
-from lumen.features.alerts.falls import FallWatch
 from lumen.features.alerts.settings import Alerts
-from lumen.language.commands import Command
+from lumen.language.commands import Command, Posture, Start, Wake
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import BlockableBus, UsesBroker
@@ -26,6 +26,84 @@ from lumen.run.resuming import FreshStart, Resumption
 from lumen.run.run_start import RunFailure
 from lumen.run.services import Services
 from lumen.statechart import Step
+from lumen.upkeep.threads import WatchedThread
+
+TIME_TO_RISE = 60.0
+"""How long a robot may take to get up [s]; one that gets up by itself takes 20."""
+
+
+class FallWatch:
+    """Hears what the robot is told and what it answers; `tick` says once of each fall that it is not got up from."""
+
+    def __init__(self) -> None:
+        self._fallen: float | None = None
+        self._rising: set[str] = set()
+        self._failed = False
+
+    def performing(self, command: Command) -> None:
+        match command:
+            case Start(id, Posture() | Wake()):
+                self._rising.add(id)
+
+    def answered(self, event: Event, now: float) -> None:
+        kind, _, id = event.name.partition(".command.")
+        if event.name == "fallen" and self._fallen is None:
+            self._fallen, self._failed, self._rising = now, False, set()
+        elif id in self._rising:
+            self._rising.discard(id)
+            self._failed = self._failed or kind == "error"
+            if kind == "done":
+                self._fallen, self._failed = None, False
+
+    def tick(self, now: float) -> str:
+        """Why it does not get up, empty where it stands, may still get up, or that was said."""
+        if self._fallen is None:
+            return ""
+        why = "it fell and can't get up" if self._failed else "it fell and has not got up"
+        if not self._failed and now - self._fallen < TIME_TO_RISE:
+            return ""
+        self._fallen, self._failed = None, False
+        return why
+
+
+LEAST_ROOM = 100_000_000
+"""How much room a disk has to have [bytes]: the database, the journal and a bundle need that in a bad month."""
+LOOK_INTERVAL = 60.0
+"""How often it is looked [s]; on a thread, for a disk of the network may take its time."""
+
+
+class DiskWatch:
+    """`trouble` says how little room there is where `folder` is, empty where there is enough."""
+
+    def __init__(self, folder: Path) -> None:
+        self.trouble = ""
+        self._folder = folder
+        self._ending = threading.Event()
+        self._thread = WatchedThread("lumen-disk", self._run)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Nobody waits for a disk that does not answer."""
+        self._ending.set()
+        self._thread.join(0.1)
+
+    def _run(self) -> None:
+        while True:
+            self.trouble = room(self._folder)
+            if self._ending.wait(LOOK_INTERVAL):
+                return
+
+
+def room(folder: Path) -> str:
+    """What is wrong with the room on the disk of that folder, or of the nearest above it that is there."""
+    while not folder.exists() and folder != folder.parent:
+        folder = folder.parent
+    try:
+        free = shutil.disk_usage(folder).free
+    except OSError as error:
+        return f"the free space of the disk can't be read: {error.strerror}"
+    return f"the disk is nearly full: {free / 1e6:.0f} MB are left" if free < LEAST_ROOM else ""
+
 
 BROKER_PATIENCE = 5.0
 """How long a broker may be away before that is told [s]: it comes back from a restart within that."""

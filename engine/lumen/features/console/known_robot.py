@@ -1,5 +1,6 @@
 """What is known of one robot: what its exhibition says, its senses, its processes, its files."""
 
+import re
 import time
 from collections.abc import Mapping
 from typing import Any
@@ -7,10 +8,32 @@ from typing import Any
 import orjson
 
 from lumen.features.console.entry_ring import EntryRing
-from lumen.features.console.spoken_names import SpokenNames
 from lumen.language.iso_time import iso_time, time_of
 from lumen.language.numbers import is_number
 from lumen.run.presence import HERE, LEAVES, LOST_AFTER
+
+MAX_NAMES = 50
+"""Names that are known at a time; a robot may still say that of a visitor who has gone."""
+LEFT_OUT = "…"
+
+
+class SpokenNames:
+    """Remembers the names that a robot has heard or recognised lately; any thread may say one."""
+
+    def __init__(self) -> None:
+        self._names: tuple[str, ...] = ()
+
+    def add(self, name: object) -> None:
+        """Somebody is called that."""
+        if isinstance(name, str) and (known := name.strip()) and known not in self._names:
+            self._names = (*self._names, known)[-MAX_NAMES:]
+
+    def without(self, text: str) -> str:
+        """The text without these names, however they are written in it."""
+        for name in sorted(self._names, key=len, reverse=True):  # Ani Putri before Ani
+            text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", LEFT_OUT, text, flags=re.IGNORECASE)
+        return text
+
 
 SILENT_AFTER = 2.5
 """How long an exhibition may say nothing until it counts as away [s]."""

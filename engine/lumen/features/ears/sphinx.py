@@ -1,19 +1,77 @@
 """PocketSphinx, which carries its model of American English in its own package and needs no network."""
 
-from collections.abc import Sequence
+import re
+from collections import Counter, defaultdict
+from collections.abc import Mapping, Sequence
 from itertools import islice
-from math import exp
+from math import exp, log10
 from pathlib import Path
 from statistics import geometric_mean
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from lumen.errors import ModuleError
-from lumen.features.ears.bigrams import arpa
 from lumen.features.ears.recogniser import Hypothesis, RankingRecogniser
 from lumen.features.ears.resampling import resampled
-from lumen.features.ears.spelling import pronounced
 from lumen.run.sound import Sound
+
+_SOUNDS = {
+    "ngg": "NG G", "ng": "NG", "ny": "N Y", "sy": "SH", "kh": "K", "ai": "AY", "au": "AW",
+    "a": "AA", "b": "B", "c": "CH", "d": "D", "e": "AH", "f": "F", "g": "G", "h": "HH", "i": "IY", "j": "JH", "k": "K",
+    "l": "L", "m": "M", "n": "N", "o": "OW", "p": "P", "q": "K", "r": "R", "s": "S", "t": "T", "u": "UW", "v": "F",
+    "w": "W", "x": "K S", "y": "Y", "z": "Z",
+}  # fmt: skip
+"""Indonesian is written as it is spoken; these are the nearest of the 39 sounds of CMU's dictionary."""
+
+_LETTERS = re.compile("|".join(sorted(_SOUNDS, key=len, reverse=True)))
+
+
+def pronounced(word: str) -> str:
+    """The sounds of a word in small letters, as PocketSphinx names them; empty where it has no letters."""
+    return " ".join(_SOUNDS[letters] for letters in _LETTERS.findall(word))
+
+
+COMMON_WEIGHT = 0.75
+"""How much of the chance of a word is that of the language, and not that of the expected sentences.
+
+With less, more of these is understood where it is quiet, and more of other talk is taken for one where it is not.
+"""
+SENTENCE_BEGIN, SENTENCE_END = "<s>", "</s>"
+
+
+def arpa(sentences: Sequence[Sequence[str]], common: Mapping[str, float]) -> str:
+    """The model in ARPA's format; `common` are words with their chances.
+
+    Bigrams are smoothed as Witten and Bell (1991) have it: a word that many different ones follow leaves much to words
+    that never followed it. Without the common words everything that is said would be taken for something expected.
+    """
+    pairs = Counter(pair for s in sentences for pair in zip([SENTENCE_BEGIN, *s], [*s, SENTENCE_END], strict=True))
+    seen: dict[str, int] = Counter()
+    followers: dict[str, set[str]] = defaultdict(set)
+    for (word, after), count in pairs.items():
+        seen[word] += count
+        followers[word].add(after)
+    chances = _chances(Counter(after for _, after in pairs.elements()), common)
+    known = {word: count / (count + len(followers[word])) for word, count in seen.items()}
+    lines = ["\\data\\", f"ngram 1={len(chances) + 1}", f"ngram 2={len(pairs)}", "", "\\1-grams:"]
+    lines.append(f"-99 {SENTENCE_BEGIN} {log10(1 - known[SENTENCE_BEGIN]):.4f}")
+    lines += [f"{log10(p):.4f} {w} {log10(1 - known.get(w, 0.0)):.4f}" for w, p in sorted(chances.items())]
+    lines += ["", "\\2-grams:"]
+    for (word, after), count in sorted(pairs.items()):
+        part = known[word]
+        lines.append(f"{log10(part * count / seen[word] + (1 - part) * chances[after]):.4f} {word} {after}")
+    return "\n".join([*lines, "", "\\end\\", ""])
+
+
+def _chances(expected: Mapping[str, int], common: Mapping[str, float]) -> dict[str, float]:
+    """The chance of each word by itself."""
+    total, whole = sum(expected.values()), sum(common.values())
+    share = COMMON_WEIGHT if common else 0.0
+    chances = {word: (1 - share) * count / total for word, count in expected.items()}
+    for word, chance in common.items():
+        chances[word] = chances.get(word, 0.0) + share * chance / whole
+    return chances
+
 
 if TYPE_CHECKING:
     import numpy as np

@@ -9,8 +9,8 @@ from typing import Any, Self
 from lumen.errors import ModuleError
 from lumen.features.eyes.detector import Box, PersonDetector
 from lumen.features.eyes.gallery import MAX_PICTURES_PER_NAME, FaceGallery
-from lumen.features.eyes.pictures import Frame, frame_of
-from lumen.features.eyes.video import ROBOT_CAMERA, VideoSource
+from lumen.features.eyes.opencv import opencv
+from lumen.features.eyes.pictures import Frame, check_size, frame_of
 from lumen.features.eyes.window import Window
 from lumen.language.modules import EYES
 from lumen.language.people import name_key
@@ -20,6 +20,46 @@ from lumen.ports import Bus, Message, MessageHandler
 from lumen.run.forgetting.files import attempt
 from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 from lumen.run.module import DAY, KEEP_DAYS, Module
+
+ROBOT_CAMERA = "robot"
+"""The value of `camera` that stands for the robot's own."""
+
+
+class VideoSource:
+    """Frames of the webcam of that number, or of a video file in `root`; `read` gives the next one, None at the end.
+
+    Raises ModuleError where there is no such camera or file.
+    """
+
+    def __init__(self, camera: int | str, root: Path) -> None:
+        cv2 = self._cv2 = opencv()
+        self.live = isinstance(camera, int)
+        what: Any = camera if isinstance(camera, int) else str(root / camera)
+        if not self.live and not Path(what).is_file():
+            raise ModuleError(
+                f"there is no video {what}: set `camera` to `robot`, the number of a webcam, or a video file"
+            )
+        self._what = f"webcam {camera}" if self.live else what
+        self._capture = cv2.VideoCapture(what)
+        if not self._capture.isOpened():
+            self._capture.release()
+            raise ModuleError(
+                f"{self._what} cannot be opened" + ("" if self.live else ": its video format is not supported")
+            )
+        rate = self._capture.get(cv2.CAP_PROP_FPS)
+        self.period = 1.0 / rate if 1.0 <= rate <= 240.0 else 1.0 / 30.0
+
+    def read(self) -> Frame | None:
+        """The next frame; its time is unknown to the robot's clock."""
+        there, pixels = self._capture.read()
+        if not there:
+            return None
+        check_size(pixels.shape[1], pixels.shape[0])
+        return Frame(self._cv2.cvtColor(pixels, self._cv2.COLOR_BGR2GRAY), None)
+
+    def close(self) -> None:
+        self._capture.release()
+
 
 FACES_FILE = "faces.npz"
 LOOK_INTERVAL = 0.1

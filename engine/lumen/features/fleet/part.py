@@ -5,17 +5,17 @@ import time
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
 from lumen.bus.validated import ValidatedBus
 from lumen.errors import BusError
 from lumen.features.fleet.agent import FleetAgent
-from lumen.features.fleet.counter import MeasureCounter
 from lumen.features.fleet.installing import all_have, bundle_folder, install, written
 from lumen.features.fleet.memory import keep, remember
 from lumen.features.fleet.reading import read_fleet
-from lumen.features.fleet.settings import Fleet
+from lumen.features.fleet.settings import Fleet, FleetMeasure
 from lumen.language.diagnostics import has_errors
 from lumen.language.events import Event
 from lumen.language.fleet_keys import bundle_key, desired_key, incident_key, numbers_key, presence_key
@@ -23,11 +23,34 @@ from lumen.ports import Message
 from lumen.project.files import fingerprint, read_files
 from lumen.project.home import Home
 from lumen.run.live_behavior import LiveBehavior
+from lumen.run.loop import Observer
 from lumen.run.making.serving import directory_of
 from lumen.run.parts.part import Part
 from lumen.run.reload.reloader import Reloader
 from lumen.run.services import Services
 from lumen.run.snapshot_store import SnapshotStore
+from lumen.statechart import Step
+
+
+class MeasureCounter(Observer):
+    """`take` gives what was counted since it was called last."""
+
+    def __init__(self, measures: Mapping[str, FleetMeasure]) -> None:
+        self._measures, self._counts = measures, dict.fromkeys(measures, 0)
+
+    def stepped(self, step: Step) -> None:
+        events = [event.name for event in (step.event, *step.raised) if event]
+        for name, measure in self._measures.items():
+            if measure.event:
+                self._counts[name] += sum(fnmatchcase(event, measure.event) for event in events)
+            if measure.enters:
+                self._counts[name] += sum(fnmatchcase(state, measure.enters) for state in step.entered)
+
+    def take(self) -> dict[str, int]:
+        """How often each was counted since the last call."""
+        found, self._counts = self._counts, dict.fromkeys(self._measures, 0)
+        return found
+
 
 HOUSE_VARIABLE = "LUMEN_HOUSE"
 PERIOD = 10.0

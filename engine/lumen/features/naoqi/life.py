@@ -4,19 +4,60 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 
 from lumen.errors import RobotError
-from lumen.features.naoqi.eyes import NaoqiEyes
 from lumen.features.naoqi.hardware import hardware_of
+from lumen.features.naoqi.lights import fades
 from lumen.features.naoqi.session import NaoqiCall, NaoqiSession
 from lumen.language.body_parts import ARMS, HEAD, LEGS, VOICE, WHOLE_BODY
-from lumen.language.commands import Posture, Rest, Say, Wake
+from lumen.language.commands import Leds, Posture, Rest, Say, Wake
 from lumen.language.gestures import NO_GESTURES
 from lumen.language.life import NAOQI_BLINKING, NAOQI_BREATHING, NAOQI_SPEECH, OWN_LEGS, STILL_STYLE
+from lumen.language.lights import LIGHT_GROUPS, lights_of
 from lumen.language.robots import Body
 from lumen.motion.bounds import nearest_angles
 from lumen.motion.life import vigour
-from lumen.ports import Live, RobotCommand
+from lumen.ports import Live, Perform, RobotCommand
 from lumen.robot.command_table import speech_duration
 from lumen.robot.life_layer import LifeLayer
+
+OURS_AFTER = 0.5
+"""How long after eyes were lit they are ours at the soonest [s]: what lights them is on its way."""
+
+UNLIT = "white"
+"""The colour of eyes that nobody has lit."""
+
+
+class NaoqiEyes:
+    """Sends the colour that the eyes are to have, where it changes. `post` calls NAOqi."""
+
+    def __init__(self, post: Callable[..., NaoqiCall], body: Body) -> None:
+        self._post, self._body = post, body
+        self._lit, self._lit_until = False, 0.0
+        self._worn = UNLIT
+        self._sent = NaoqiCall()
+
+    def begins(self, command: RobotCommand, now: float) -> None:
+        """A command begins that may light them; `white` leaves them to us again."""
+        match command:
+            case Leds(colours, seconds):
+                self._light(colours, now + seconds)
+            case Perform(motion):
+                for cue in sorted((cue for cue in motion.cues if cue.kind == "leds"), key=lambda cue: cue.time):
+                    self._light(cue.value, now + cue.time)
+
+    def wear(self, colour: str, now: float) -> None:
+        """Have them in this colour, `off` where it blinks; empty where they stay as they are."""
+        colour = colour or UNLIT
+        if self._lit or now < self._lit_until or colour == self._worn or not self._sent.done:
+            return
+        self._worn = colour
+        for fade in fades({"eyes": colour}, self._body):
+            self._sent = self._post("ALLeds", "fadeRGB", *fade)
+
+    def _light(self, colours: object, until: float) -> None:
+        for light, colour in lights_of(colours if isinstance(colours, Mapping) else {}):
+            if light in LIGHT_GROUPS["eyes"]:
+                self._lit, self._lit_until, self._worn = colour != UNLIT, until + OURS_AFTER, UNLIT
+
 
 SEND_PERIOD = 0.1
 """How often it is sent where the joints are wanted [s]; NAOqi goes on evenly in between."""

@@ -4,16 +4,36 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 
 from lumen.errors import RobotRefusedError
 from lumen.features.naoqi.call_sequence import CallSequence, CallSteps, WhileWaiting
-from lumen.features.naoqi.cue_player import CuePlayer
 from lumen.features.naoqi.curves import curves
+from lumen.features.naoqi.lights import fades
 from lumen.features.naoqi.session import NaoqiCall
 from lumen.features.naoqi.walks import PostCall, grounded
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 from lumen.motion.postures import UPRIGHT
 from lumen.motion.trajectories import JointTrack, Trajectory
-from lumen.robot.cues import EventSink
+from lumen.robot.cues import CueNotifier, EventSink
 from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_from, home_angles, way_duration
+
+
+class CuePlayer:
+    """The cues of a motion, each when its time has come."""
+
+    def __init__(self, post: PostCall, motion: MotionDefinition, body: Body, notice: EventSink) -> None:
+        self._post, self._body = post, body
+        self._cues = sorted((cue for cue in motion.cues if cue.kind == "leds"), key=lambda cue: -cue.time)
+        self._prompter = CueNotifier(motion, notice)
+        self._begin = 0.0
+
+    def begin(self, now: float) -> None:
+        self._begin = now
+
+    def __call__(self, now: float) -> None:
+        self._prompter.advance(now - self._begin, now)
+        while self._cues and self._cues[-1].time <= now - self._begin:
+            for fade in fades(self._cues.pop().value, self._body):
+                self._post("ALLeds", "fadeRGB", *fade)
+
 
 START_POSTURE_TOLERANCE = 0.1
 """Legs that are nearer than this to the posture that a motion begins in need no way there [rad]."""

@@ -1,7 +1,7 @@
 """What a real NAO or Pepper can do: how each command begins, and how it ends early."""
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from math import inf
 from typing import assert_never
 
@@ -12,7 +12,6 @@ from lumen.features.naoqi.lights import fades
 from lumen.features.naoqi.microphones import Microphones
 from lumen.features.naoqi.motion_player import MotionPlayer
 from lumen.features.naoqi.session import NaoqiSession
-from lumen.features.naoqi.speech import language_of, words
 from lumen.features.naoqi.walking_area import WalkingArea
 from lumen.features.naoqi.walks import NaoqiWalks
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
@@ -21,6 +20,31 @@ from lumen.ports import Aim, Live, NativeCommand, Perform, Record
 from lumen.robot.command_table import parts_of
 from lumen.robot.cues import EventSink
 from lumen.robot.joint_ways import LOOK_SPEED
+
+LANGUAGE_NAMES = {
+    "en": "English", "id": "Indonesian", "fr": "French", "de": "German", "es": "Spanish", "it": "Italian",
+    "ja": "Japanese", "zh": "Chinese", "ko": "Korean", "nl": "Dutch", "pt": "Portuguese", "ar": "Arabic",
+    "ru": "Russian", "tr": "Turkish", "pl": "Polish", "sv": "Swedish", "da": "Danish", "fi": "Finnish",
+    "cs": "Czech", "el": "Greek", "nb": "Norwegian",
+}  # fmt: skip
+"""NAOqi's names of languages."""
+
+
+def words(text: str) -> str:
+    r"""The text without anything that the voice would take for an order to itself, such as `\vol=100\` or `^run(…)`.
+
+    Visitors' names are in what is said, and `\…\` would change volume, speed or language from then on; `^…(…)` would
+    have ALAnimatedSpeech start behaviours.
+    """
+    printable = "".join(sign if sign.isprintable() and sign not in "\\^" else " " for sign in text)
+    return " ".join(printable.split())
+
+
+def language_of(code: str, spoken: Sequence[str]) -> str:
+    """NAOqi's name of the language, empty where the robot has no voice for it; `spoken` are those that it has."""
+    name = LANGUAGE_NAMES.get(code.partition("-")[0].lower(), code)
+    return name if name in spoken else ""
+
 
 LOOK_TOLERANCE = 0.03
 """A head that is nearer than this to where it should look is there [rad]."""

@@ -17,7 +17,6 @@ How RabbitMQ is used, from the inside out:
     wire.py           pika's connection, which writes and reads messages itself
     asked_channel.py  a channel of its own for what the broker is asked, and may refuse
     poll_loop.py      the loop that pika's connection lives in: waiting apart from what is done then
-    turn_clock.py     when a message came, where this process stood still
     polled.py         pika's asynchronous connection, driven by that thread, and lent to others while it waits
     publisher.py      the connection that sends, on the thread of whoever publishes, and hears what the broker has
     consumer.py       the connection that receives

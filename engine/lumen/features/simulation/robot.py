@@ -9,16 +9,15 @@ import numpy as np
 
 from lumen.errors import RobotRefusedError, UsageError
 from lumen.feature import owner
-from lumen.features.simulation.aim_controller import AimController
 from lumen.features.simulation.base import BaseRequest, RobotBase
 from lumen.features.simulation.battery_and_heat import BatteryAndHeat
-from lumen.features.simulation.camera import RobotCamera
 from lumen.features.simulation.force_sensors import ForceSensors
 from lumen.features.simulation.hazards import Hazards
 from lumen.features.simulation.lights import Lights
 from lumen.features.simulation.model_terms import Variation
 from lumen.features.simulation.motors import Motors
 from lumen.features.simulation.playback import SpeechActivity
+from lumen.features.simulation.rendering import CAMERA_QUALITY, PixelArray, RenderState, SceneRenderer, available
 from lumen.features.simulation.sensors import BodySensors
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.skills import SimulatedSkills
@@ -34,18 +33,80 @@ from lumen.language.commands import Rest, Say
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.events import Event
 from lumen.language.projects import Stage
-from lumen.language.robots import Body
+from lumen.language.robots import Body, Camera
 from lumen.language.roles import HEAD_ROLES
-from lumen.language.routes import BATTERY, IMAGE, JOINT, SONAR, TACTILE
+from lumen.language.routes import BATTERY, IMAGE, JOINT, SONAR, TACTILE, Size
 from lumen.language.stories import Visitor
 from lumen.motion.life import vigour
-from lumen.motion.projection import centring
+from lumen.motion.projection import centring, project
 from lumen.ports import Aim, Battery, Image, Joints, Live, NativeCommand, Reading, RobotCommand, Sense, Sonar, Tactile
 from lumen.project.broken_features import called, need_made
 from lumen.robot.command_bounds import CommandBounds
 from lumen.robot.executor import Activity, ExecutingRobot, Executor
 from lumen.robot.life_layer import LifeLayer
 from lumen.robot.skill_runner import SkillRunner
+
+
+class RobotCamera:
+    """Takes images, to be drawn later by another thread, and computes where a point appears in them."""
+
+    def __init__(self, world: World, camera: Camera) -> None:
+        self._world, self._camera = world, camera
+        self._name = f"{world.prefix}/{world.body.roles.eyes.camera}"
+        self._renderer = None if available() else SceneRenderer(world.model, CAMERA_QUALITY)
+
+    def image(self, now: float) -> Image | None:
+        """The image of this moment; None where nothing can be drawn."""
+        if self._renderer is None:
+            return None
+        studio, camera, name = self._renderer, self._camera, self._name
+        scene = RenderState.of(self._world.model, self._world.data)
+
+        def pixels(size: Size | None = None) -> PixelArray:
+            return studio.draw(scene, name, *(size or (camera.width, camera.height)))
+
+        return Image(now, pixels)
+
+    def pixel(self, point: tuple[float, float, float]) -> tuple[float, float] | None:
+        """Where a point of the hall [m] appears [px]; None outside the image or behind."""
+        view = self._world.data.camera(self._name)
+        right, up, back = view.xmat.reshape(3, 3).T @ (point - view.xpos)
+        return project((-float(back), -float(right), float(up)), self._camera)
+
+    def close(self) -> None:
+        """Let go of this thread's OpenGL context."""
+        if self._renderer:
+            self._renderer.close()
+
+
+class AimController:
+    """Moves the goals of joints that no command owns; a later aim replaces an earlier one, joint by joint."""
+
+    def __init__(self, motors: Motors) -> None:
+        self._motors = motors
+        self._aims: dict[str, tuple[float, float]] = {}
+
+    def aim(self, aim: Aim) -> None:
+        """Begin."""
+        speeds = self._motors.envelope.speed
+        for name, angle in aim.angles.items():
+            speed = float(speeds[self._motors.index[name]]) * aim.speed
+            self._aims[name] = angle, speed
+
+    def advance(self, dt: float, free: Callable[[str], bool]) -> None:
+        """Live `dt` [s]; an aim ends where it is reached, or where its joint is not free any more."""
+        moved = {}
+        for name, (angle, speed) in list(self._aims.items()):
+            if not free(name):
+                del self._aims[name]
+                continue
+            goal = float(self._motors.goal[self._motors.index[name]])
+            moved[name] = min(max(angle, goal - speed * dt), goal + speed * dt)
+            if moved[name] == angle:
+                del self._aims[name]
+        if moved:
+            self._motors.aim(moved)
+
 
 _EMPTY = "battery-empty"
 """The id of the rest that an empty battery takes."""

@@ -7,7 +7,6 @@ from typing import Any
 from lumen.expressions import unparse
 from lumen.features.formats_charts.ecmascript import ScriptError, parse_script, read_condition, read_value
 from lumen.features.formats_charts.ecmascript.constants import constant
-from lumen.features.formats_charts.scxml.assignments import assignments
 from lumen.features.formats_charts.scxml.data_model import ScxmlDataModel, written
 from lumen.features.formats_charts.scxml.log_templates import plain_template, template_of
 from lumen.features.formats_charts.scxml.namespaces import LUMEN_NAMESPACE
@@ -16,6 +15,30 @@ from lumen.project.formats.conversion_findings import ConversionFindings
 from lumen.project.formats.durations import duration, milliseconds
 from lumen.project.formats.foreign_json import foreign_json
 from lumen.project.formats.xml_elements import XmlElement
+
+_STATEMENT = re.compile(
+    r"(?P<name>[A-Za-z_$][\w$]*)\s*(?:(?P<sign>[-+*/%]?)=(?!=)(?P<value>.+)|(?P<step>\+\+|--))", re.DOTALL
+)
+
+
+def assignments(source: str) -> list[tuple[str, str]] | None:
+    """The names and values of `x = 1; y += x; z++`, in order; None where the script does anything else."""
+    text = re.sub(r"//[^\n]*|/\*.*?\*/", "", source, flags=re.DOTALL)
+    if "'" in text or '"' in text:
+        return None
+    found = []
+    for statement in filter(None, map(str.strip, text.split(";"))):
+        match = _STATEMENT.fullmatch(statement)
+        if match is None:
+            return None
+        name, value = match["name"], match["value"]
+        if match["step"]:
+            value = f"{name} {match['step'][0]} 1"
+        elif match["sign"]:
+            value = f"{name} {match['sign']} ({value})"
+        found.append((name, value.strip()))
+    return found
+
 
 PROCESSORS = ("", "scxml", "http://www.w3.org/TR/scxml/#SCXMLEventProcessor", "http://www.w3.org/TR/scxml/")
 _NOT_CONSTANT = object()

@@ -1,12 +1,14 @@
 """A film of a simulated robot."""
 
+import os
+import subprocess
+import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from lumen.errors import UsageError
+from lumen.errors import RobotFailedError, UsageError
 from lumen.features.simulation.filming.options import FilmPlan
 from lumen.features.simulation.filming.progress import FilmProgress
-from lumen.features.simulation.filming.sound import add_sound
 from lumen.language.commands import Command, Play, Say, Start
 from lumen.language.events import Event
 from lumen.language.stories import Arrive, Leave, Speak, VisitorAction
@@ -16,6 +18,26 @@ from lumen.run.loop import Observer
 from lumen.run.narrator import Narrator
 from lumen.run.parts.part import Part
 from lumen.run.services import Services
+from lumen.run.sound import save
+from lumen.upkeep.private_folder import private_folder
+
+
+def add_sound(film: Path, track: AudioTrack, length: float) -> None:
+    """Give the MP4 of that length [s] this track, as AAC; the pictures stay. Raises RobotFailedError where it can't."""
+    import imageio_ffmpeg
+
+    with tempfile.TemporaryDirectory(dir=film.parent, prefix=".lumen-film-") as folder:
+        private_folder(Path(folder))
+        heard, whole = Path(folder, "heard.wav"), Path(folder, "whole.mp4")
+        save(heard, track.mixed(length))
+        command = [imageio_ffmpeg.get_ffmpeg_exe(), "-v", "error", "-y", "-i", str(film), "-i", str(heard)]
+        command += ["-map", "0:v", "-map", "1:a", "-c:v", "copy", "-c:a", "aac", str(whole)]
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if done.returncode:
+            raise RobotFailedError(
+                f"{film} has no sound; ffmpeg's error: {(done.stderr.strip().splitlines() or ['nothing'])[-1]}"
+            )
+        os.replace(whole, film)
 
 
 class FilmPart(Part, Observer):
