@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lumen.bus.routing import matches
+from lumen.bus.memory import matches
 from tests.tables import for_each
 
 WORDS = st.lists(st.sampled_from(["a", "b", "", "*", "#"]), max_size=7).map(".".join)

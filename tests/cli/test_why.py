@@ -11,7 +11,7 @@ import pytest
 import lumen
 from lumen.cli.answers import why_lines, why_not_lines
 from lumen.cli.main import main
-from lumen.cli.moments import moment
+from lumen.cli.questions import moment
 from lumen.errors import UsageError
 from lumen.journal.journal_writer import JournalWriter
 from lumen.language.people import PersonName

@@ -8,14 +8,12 @@ from lumen.bus import connect
 from lumen.bus.memory import MemoryBus
 from lumen.bus.validated import validated
 from lumen.clock.following import CATCH_UP, SILENCE, FollowingClock
-from lumen.clock.pace import WINDOW
-from lumen.clock.simulated import MAX_ARREARS, SimulatedClock
+from lumen.clock.simulated import MAX_ARREARS, WINDOW, SimulatedClock
 from lumen.language.events import Event
 from lumen.robot.recording import RecordingRobot
 from lumen.run.compose import compose
 from lumen.run.loop import BRAIN_LOST_AFTER, TICK_PERIOD, BehaviorLoop
-from lumen.run.node import Node
-from lumen.run.pace import PaceWatch
+from lumen.run.node import Node, PaceWatch
 from lumen.run.plan import Plan
 from lumen.run.presence import Presence
 from lumen.run.setup import Setup, set_up_with

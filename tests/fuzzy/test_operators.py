@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from lumen.fuzzy.activations import ACTIVATE, COMPARISON_FUNCTIONS
 from lumen.fuzzy.arithmetic import NUMBERS, arrays
-from lumen.fuzzy.hedges import HEDGE_FUNCTIONS, hedged
 from lumen.fuzzy.norms import NORM_FUNCTIONS, norm
+from lumen.fuzzy.program import HEDGE_FUNCTIONS, hedged
 from lumen.language import controllers
 from lumen.language.controllers import ACTIVATIONS, COMPARISONS, S_NORMS, T_NORMS, Activation
 from tests.tables import for_each

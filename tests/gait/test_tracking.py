@@ -4,7 +4,7 @@ import pytest
 
 from lumen.motion.gait import Feet, Gait, GaitParameters, Pose
 from lumen.motion.gait.footsteps import beside
-from lumen.motion.gait.tracking import StepTracker
+from lumen.motion.gait.gait import StepTracker
 from tests.gait.nao_legs import NAO_LEGS
 from tests.gait.test_gait import mass
 

@@ -10,7 +10,7 @@ import lumen
 from lumen.bus.local import LocalBusServer
 from lumen.bus.local.address import LocalAddress
 from lumen.bus.local.client import LocalBusClient
-from lumen.bus.routing import matches
+from lumen.bus.memory import matches
 from lumen.cli.main import main
 from lumen.insight.replay.entries import entry_data
 from lumen.insight.replay.forking import fork

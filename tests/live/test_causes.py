@@ -12,7 +12,7 @@ from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.events import Event
 from lumen.language.machines import Transition
 from lumen.language.projects import Project
-from lumen.run.event_causes import caused
+from lumen.run.loop import caused
 from lumen.statechart import Step
 from tests.tables import for_each
 from tests.waiting import Collector

@@ -24,7 +24,7 @@ from lumen.lint import check_files
 from lumen.lint.repairs import repaired
 from lumen.project.files import fingerprint, read_files
 from lumen.project.yaml_reader import parse
-from lumen.run.local_timezone import local_timezone
+from lumen.run.live_behavior import local_timezone
 from lumen.upkeep import replacing
 from lumen.upkeep.replacing import replace_file
 from tests import ROOT

@@ -25,7 +25,7 @@ from lumen.robot.bounded_robot import BoundedRobot
 from lumen.robot.remote import RemoteRobot
 from lumen.run.exhibition import Exhibition
 from lumen.run.making.modules import ModulesPlan
-from lumen.run.parts.module_factory import make_module
+from lumen.run.parts.module import make_module
 from lumen.run.plan import Plan
 from lumen.run.presence import all_parts, unique_parts
 from lumen.run.setup import set_up, set_up_house

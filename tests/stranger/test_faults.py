@@ -10,7 +10,7 @@ from lumen.cli.main import main
 from lumen.project import load
 from lumen.run.exhibition import Exhibition
 from lumen.run.making.modules import ModulesPlan
-from lumen.run.parts.module_factory import make_module
+from lumen.run.parts.module import make_module
 from lumen.run.plan import Plan
 from lumen.run.rehearsal import RehearsalTrace
 from lumen.run.setup import set_up

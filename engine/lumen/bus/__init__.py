@@ -10,7 +10,6 @@ What crosses a bus:
 
     bodies.py         JSON data as bytes and back, and what bodies and keys may be
     identities.py     ids of messages, and what others say theirs are
-    routing.py        which keys a pattern of a subscription matches
     aliases.py        second names of keys, while one robot is on the bus
     checking.py       what is wrong with a body, by its JSON Schema, in a line
 

@@ -12,6 +12,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 from threading import get_ident
 from time import time
 from typing import Any
@@ -19,11 +20,42 @@ from weakref import WeakValueDictionary
 
 from lumen.bus.bodies import check_key, check_subscription, copied
 from lumen.bus.identities import new_id
-from lumen.bus.routing import matches
 from lumen.errors import BusClosedError, Refused
 from lumen.language.routes import Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
 from lumen.upkeep.drops import DropLog
+
+# Which keys a pattern stands for, as an AMQP 0-9-1 topic exchange decides it: keys and patterns are words with dots
+# between them; in a pattern `*` stands for exactly one word and `#` for any number of them. An empty key has no words.
+
+
+@lru_cache(maxsize=16_384)
+def matches(pattern: str, key: str) -> bool:
+    """Whether a message with this key goes to who subscribed to `pattern`; remembered for each pair."""
+    return _match(_words(pattern), _words(key))
+
+
+@lru_cache(maxsize=4_096)
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(text.split(".")) if text else ()
+
+
+def _match(pattern: tuple[str, ...], key: tuple[str, ...]) -> bool:
+    """Compare word by word; where that fails, the last `#` takes one word more. At most |pattern| x |key| steps."""
+    p = k = taken = 0
+    hash_at = -1
+    while k < len(key):
+        if p < len(pattern) and pattern[p] == "#":
+            hash_at, taken, p = p, k, p + 1
+        elif p < len(pattern) and pattern[p] in ("*", key[k]):
+            p, k = p + 1, k + 1
+        elif hash_at >= 0:
+            taken += 1
+            p, k = hash_at + 1, taken
+        else:
+            return False
+    return all(word == "#" for word in pattern[p:])
+
 
 HANDLER_TIMEOUT = 5.0
 """How long closing waits for a subscriber that still works [s]."""

@@ -3,16 +3,35 @@
 import argparse
 import sys
 from collections.abc import Callable, Iterator
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from lumen.cli.formats import configure_format, print_object
-from lumen.cli.moments import moment
 from lumen.cli.reach import configure_reach, reach
 from lumen.errors import BusUnreachableError, UsageError
+from lumen.language.iso_time import time_of_day
 from lumen.language.operator_requests import OperatorRequest
 from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
 from lumen.run.recalling import answer_from_journal
+
+
+def moment(text: str, now: datetime) -> str:
+    """The end of the minute `14:03`, or of the second `14:03:20`, the last time that a clock here showed it.
+
+    `now` is the time here. What is written with a date is that moment. ISO 8601 in UTC; raises UsageError for what is
+    no time.
+    """
+    try:
+        if "-" in text:
+            return datetime.fromisoformat(text).astimezone(UTC).isoformat()
+        of_day = time_of_day(text)
+    except ValueError:
+        raise UsageError(f"`{text}` is not a time: write 14:03, 14:03:20, or 2026-11-22T14:03:20") from None
+    begin = datetime.combine(now.date(), of_day, now.tzinfo)
+    if begin > now:
+        begin -= timedelta(days=1)
+    length = timedelta(minutes=1) if text.count(":") == 1 else timedelta(seconds=1)
+    return (begin + length - timedelta(milliseconds=1)).astimezone(UTC).isoformat()
 
 
 def configure_question(parser: argparse.ArgumentParser) -> None:

@@ -5,13 +5,12 @@ one value. What is asked for twice is computed once, and a rule that merely pass
 Outputs read only their own slots, so groups of outputs that have nothing in common never meet.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
 from typing import Any, NamedTuple
 
 from lumen.fuzzy.activations import ACTIVATE
-from lumen.fuzzy.arithmetic import Arithmetic
-from lumen.fuzzy.hedges import hedged
+from lumen.fuzzy.arithmetic import Arithmetic, Number
 from lumen.fuzzy.memberships import membership
 from lumen.fuzzy.norms import norm
 from lumen.language.controllers import (
@@ -25,6 +24,33 @@ from lumen.language.controllers import (
     Rule,
     RuleBlock,
 )
+
+
+def _extremely(m: Arithmetic, x: Number) -> Number:
+    return m.where(x <= 0.5, 2.0 * x * x, 1.0 - 2.0 * (1.0 - x) * (1.0 - x))
+
+
+def _seldom(m: Arithmetic, x: Number) -> Number:
+    low, high = m.sqrt(m.maximum(0.5 * x, 0.0)), m.sqrt(m.maximum(0.5 * (1.0 - x), 0.0))
+    return m.where(x <= 0.5, low, 1.0 - high)
+
+
+HEDGE_FUNCTIONS: Mapping[str, Callable[[Arithmetic, Number], Number]] = {
+    "any": lambda m, x: 1.0,
+    "not": lambda m, x: m.maximum(1.0 - x, 0.0),
+    "extremely": _extremely,
+    "seldom": _seldom,
+    "somewhat": lambda m, x: m.sqrt(m.maximum(x, 0.0)),
+    "very": lambda m, x: x * x,
+}
+
+
+def hedged(m: Arithmetic, hedges: tuple[str, ...], degree: Number) -> Number:
+    """The degree after its hedges; the one next to the term acts first."""
+    for hedge in reversed(hedges):
+        degree = HEDGE_FUNCTIONS[hedge](m, degree)
+    return degree
+
 
 Tape = list[Any]
 Operation = Callable[[Tape], Any]

@@ -6,18 +6,52 @@ What MuJoCo thinks of it is told when it is simulated; it is not imported here.
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, nearest
 from lumen.language.robots import Body
 from lumen.language.roles import Roles
 from lumen.lint.mjcf_elements import ModelElement, ModelFault, mjcf_elements
-from lumen.lint.model_files import missing, outside
 from lumen.project.draft import ProjectDraft
 from lumen.project.files import MAX_FILE_BYTES, Unreadable
 from lumen.project.memoization import memoize
 from lumen.project.packaged_models import in_package
 from lumen.upkeep.regular_files import read_regular
+
+_MODELS = "models"
+
+
+def outside(draft: ProjectDraft, folder: str, name: str) -> bool:
+    """Whether a name leads out of models/, or through a link out of the project where that lies in a folder."""
+    path = os.path.normpath(os.path.join(_MODELS, folder, name))
+    if "\\" in name or "\0" in name or not path.startswith(_MODELS + os.sep):
+        return True
+    if draft.root is None:
+        return False
+    real, project = draft.looks.at(draft.root / path), draft.looks.at(draft.root)
+    return not real.startswith(project.rstrip(os.sep) + os.sep)
+
+
+def missing(draft: ProjectDraft, folder: str, name: str) -> str:
+    """What to do about a file in models/ that is not there; empty where it is, or where nobody knows."""
+    if draft.root is None:
+        return ""
+    models = draft.root / _MODELS
+    beside = models / folder
+    for path in (models, beside, beside / name):
+        draft.looks.at(path)
+    if not models.is_dir() or _there(beside / name):
+        return ""
+    near = nearest(PurePosixPath(name).name, [path.name for path in beside.glob("*")] if beside.is_dir() else [])
+    return f"did you mean `{near}`?" if near else "add the file, or delete the reference to it"
+
+
+def _there(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
 
 BROKEN_MODEL = Code("broken-model", "robot", ERROR, "a model is not MJCF, or lacks a file or a joint")
 FOREIGN_FILE = Code("foreign-file", "robot", ERROR, "a model refers to a file outside models/")

@@ -1,12 +1,12 @@
 """Controllers that move no joint: what their inputs and outputs are bound to, in messages, contexts and behaviours."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import combinations
 from typing import Any
 
 from lumen.expressions import schema_of
-from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY
+from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_FIELD
 from lumen.language.commands import Track
 from lumen.language.controllers import (
     ContextBinding,
@@ -23,11 +23,31 @@ from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_m
 from lumen.language.routes import Direction
 from lumen.lint.events import UNUSED_EVENT, descriptors, hears
 from lumen.lint.lookups import first
-from lumen.lint.message_fields import field_schema
-from lumen.lint.references import WRONG_DIRECTION
+from lumen.lint.references import WRONG_DIRECTION, known_route
 from lumen.lint.walk import action_sites
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
+
+
+def field_schema(
+    draft: ProjectDraft, report: DocumentReport, path: NodePath, route: str, field: Sequence[str]
+) -> Mapping[str, Any] | None:
+    """The schema of a field, None where nothing says what it is; an unknown route or field is reported at `path`."""
+    if not known_route(draft, report, path, route) or draft.settings is None:
+        return None
+    schema: Any = draft.messages.get(draft.settings.routes[route].schema)
+    for i, step in enumerate(field):
+        fields = schema.get("properties") if isinstance(schema, Mapping) else None
+        if not isinstance(fields, Mapping):
+            return None
+        if step not in fields:
+            owner = ".".join((route, *field[:i]))
+            hint = did_you_mean(step, fields, f"`{owner}` has")
+            report(UNKNOWN_FIELD, path, f"the messages of `{owner}` have no field `{step}`", hint)
+            return None
+        schema = fields[step]
+    return schema if isinstance(schema, Mapping) else None
+
 
 BOUND_TWICE = Code("bound-twice", "controllers", WARNING, "two controller outputs are bound to the same target")
 MISSING_FIELD = Code("missing-field", "controllers", ERROR, "a controller's message lacks a required field")

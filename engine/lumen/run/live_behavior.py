@@ -1,17 +1,22 @@
 """A behaviour that runs, and goes on with another bundle where that is asked for."""
 
+import logging
+import os
 import time
 from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
 from typing import Protocol
 
 from lumen.clock.checked import ability
+from lumen.errors import UsageError
+from lumen.expressions.wall_clock import zone
 from lumen.insight.migration import MigrationPlan, MigrationVerdict
 from lumen.insight.replay.entries import JumpKind
 from lumen.language.people import PersonName
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Bus, HasSpeed, RobotCommand
-from lumen.run.local_timezone import local_timezone
 from lumen.run.loop import BehaviorLoop
 from lumen.run.setup import Setup
 from lumen.run.story import staged
@@ -19,6 +24,44 @@ from lumen.run.story_time import story_epoch
 from lumen.run.trace_publisher import TracePublisher
 from lumen.run.wall_clock_watch import WallClockWatch
 from lumen.statechart.compiled_machine import prepare
+
+_log = logging.getLogger(__name__)
+
+_LINK, _NAME = Path("/etc/localtime"), Path("/etc/timezone")
+
+
+def local_timezone() -> str:
+    """The IANA name of this machine's time zone; `UTC+02:00` where it has none to tell, as it is now."""
+    wanted = os.environ.get("TZ", "").removeprefix(":")
+    found = next((name for name in (wanted, _linked(), _named()) if name and _known(name)), "")
+    if not found:
+        offset = datetime.now().astimezone().strftime("%z")
+        found = f"UTC{offset[:3]}:{offset[3:5]}"
+    if wanted not in ("", found):
+        _log.warning("TZ=%s is not a known time zone: times of day are in %s", wanted, found)
+    return found
+
+
+def _linked() -> str:
+    try:
+        return _LINK.resolve().as_posix().partition("/zoneinfo/")[2]
+    except OSError:
+        return ""
+
+
+def _named() -> str:
+    try:
+        return _NAME.read_text(encoding="ascii").strip()
+    except (OSError, UnicodeDecodeError):
+        return ""
+
+
+def _known(name: str) -> bool:
+    try:
+        zone(name)
+    except UsageError:
+        return False
+    return True
 
 
 class Forgetter(Protocol):

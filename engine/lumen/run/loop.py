@@ -10,14 +10,16 @@ from lumen.insight.explaining.pressing import pressed
 from lumen.insight.migration import MigrationPlan, MigrationVerdict
 from lumen.insight.replay.entries import JumpKind
 from lumen.language.approvals import Autonomy
+from lumen.language.causes import Cause
 from lumen.language.commands import Command, GoTo, Move, Play, Posture, Rest, Start, Track, Wake, Walk
 from lumen.language.events import CUE, RECORDED, Event
+from lumen.language.gestures import NO_GESTURES, merged
+from lumen.language.life import STILL_STYLE
 from lumen.language.projects import Project
-from lumen.ports import Bus, Clock, Robot, RobotCommand
+from lumen.motion.life import gestures_wanted, style_name
+from lumen.ports import Bus, Clock, Live, Robot, RobotCommand
 from lumen.run.cues import MotionCues
-from lumen.run.event_causes import caused
 from lumen.run.inbox import Inbox
-from lumen.run.life import LifeDirector
 from lumen.run.performer import Performer
 from lumen.run.questions import Questions
 from lumen.run.regulation import Regulation
@@ -27,8 +29,64 @@ from lumen.run.shared_board import SharedBoard
 from lumen.run.tracking import LocalTracking, TrackingService
 from lumen.run.troubles import RunTrouble, trouble_of_answer, troubles_of_step
 from lumen.run.wall_clock_watch import WallClockWatch
-from lumen.statechart import Step, due
+from lumen.statechart import Snapshot, Step, due
 from lumen.statechart.offers import offers
+
+REMIND_PERIOD = 5.0
+"""How long after the last time the robot is told again [s]: one that was restarted meanwhile has forgotten it."""
+
+_STILL = Live(STILL_STYLE)
+
+
+class LifeDirector:
+    """Watches where the behaviour stands. It takes no part in its steps, so that journals know nothing of it."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        self._told, self._wanted = _STILL, _STILL
+        self._told_at = 0.0
+        self._seen: tuple[object, object] = (None, None)
+
+    def tick(self, project: Project, snapshot: Snapshot, now: float) -> None:
+        """Tell the robot where that is something else, or a file has changed; and again now and then."""
+        if self._seen[0] is not project or self._seen[1] != snapshot.configuration:
+            self._seen = project, snapshot.configuration
+            self._wanted = _wanted(project, snapshot)
+        reminds = self._wanted is not _STILL and now >= self._told_at + REMIND_PERIOD
+        if self._wanted != self._told or reminds:
+            self._told, self._told_at = self._wanted, now
+            self._robot.start("", self._wanted)
+
+
+def _wanted(project: Project, snapshot: Snapshot) -> Live:
+    style = project.life.get(style_name(project.machine, snapshot.configuration))
+    if style is None:
+        return _STILL
+    speaks = gestures_wanted(project.machine, snapshot.configuration)
+    return Live(style, merged(project.gestures) if speaks else NO_GESTURES)
+
+
+_BY_PEOPLE = ("stop", "resume")
+_FROM_THE_START = ("lost.command.", "brain.lost")
+"""What is told where the behaviour was away, and goes on."""
+
+
+def caused(event: Event) -> Event:
+    """The event with its cause, which is left as it is where somebody has named one."""
+    return event if event.cause else event._replace(cause=_cause(event))
+
+
+def _cause(event: Event) -> Cause:
+    _, separator, command = event.name.partition(".command.")
+    if event.name.startswith(_FROM_THE_START):
+        return Cause("start", command)
+    if separator:
+        return Cause("command", command)
+    if event.name in _BY_PEOPLE:
+        by = event.data.get("by", "") if isinstance(event.data, dict) else ""
+        return Cause("person", sender=str(by))
+    return Cause("robot")
+
 
 TICK_PERIOD = 0.02
 BRAIN_LOST_AFTER = 5.0

@@ -1,9 +1,11 @@
 """One `do` being moved on: from action to action, until it awaits something or is done."""
 
+import re
+from dataclasses import replace
 from typing import Literal, Protocol
 
 from lumen.expressions import ExpressionError
-from lumen.language.commands import Cancel
+from lumen.language.commands import BodyCommand, Cancel, Say
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import Event
 from lumen.statechart.action_context import ActionContext, ActionError
@@ -19,8 +21,27 @@ from lumen.statechart.do_actions import (
     TimedWait,
 )
 from lumen.statechart.question_position import QuestionPosition, fork
-from lumen.statechart.spoken import rest_of
 from lumen.statechart.values import Awaiting, Fork, Position, Timer, Within, awaited
+
+SPEECH_RATE = 17.0
+"""How many characters are said in a second, at most."""
+DOUBT = 1.0
+"""How much earlier it may have been [s]: a sentence said twice is better than one not heard."""
+
+_SENTENCE = re.compile(r"(?<=[.!?…])\s+")
+
+
+def rest_of(command: BodyCommand, elapsed: float) -> BodyCommand:
+    """A command that begins again, `elapsed` [s] after it first began: of what is said, that sentence and the rest."""
+    return replace(command, text=_rest(command.text, elapsed)) if isinstance(command, Say) else command
+
+
+def _rest(text: str, elapsed: float) -> str:
+    sentences = _SENTENCE.split(text)
+    said = max(elapsed - DOUBT, 0.0) * SPEECH_RATE
+    while len(sentences) > 1 and len(sentences[0]) < said:
+        said -= len(sentences.pop(0)) + 1
+    return " ".join(sentences)
 
 
 class ActivityContext(ActionContext, Protocol):

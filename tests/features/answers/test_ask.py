@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from lumen.insight.migration.activity_compatibility import can_continue
+from lumen.insight.migration.situation import can_continue
 from lumen.language.commands import Ask, Cancel, Say, Start
 from lumen.statechart import Event, Machine, Snapshot, Step, deserialize, due, initial, serialize, step
 from tests.tables import for_each

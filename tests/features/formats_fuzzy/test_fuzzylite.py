@@ -19,9 +19,9 @@ from lumen.errors import LumenError
 from lumen.features.formats_fuzzy.fll import read_fll, write_fll
 from lumen.fuzzy import Controller
 from lumen.fuzzy.arithmetic import NUMBERS
-from lumen.fuzzy.hedges import hedged
 from lumen.fuzzy.memberships import membership
 from lumen.fuzzy.norms import norm
+from lumen.fuzzy.program import hedged
 from lumen.fuzzy.weighted import INVERSE_MEMBERSHIPS, value
 from lumen.language.controllers import (
     DEFUZZIFIERS,

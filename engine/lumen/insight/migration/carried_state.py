@@ -5,9 +5,8 @@ from itertools import combinations
 from typing import Any, NamedTuple
 
 from lumen.insight.migration.identity import Identity
-from lumen.insight.migration.rounds import carried_round
 from lumen.language.actions import Template
-from lumen.language.machines import StateKind
+from lumen.language.machines import ForEach, MachineDefinition, StateKind
 from lumen.language.nanoseconds import nanoseconds
 from lumen.language.shared import SHARED
 from lumen.statechart.chart import Chart, StateNode
@@ -18,6 +17,31 @@ from lumen.statechart.schedule_timers import schedule_timer
 from lumen.statechart.state_sets import EntrySet, StateSets
 from lumen.statechart.type_checks import fits, type_name
 from lumen.statechart.values import Halted, Timer
+
+_LIST = "lists."
+
+
+def carried_round(old: MachineDefinition, new: MachineDefinition, loop: ForEach, value: Mapping[str, Any]) -> Any:
+    """What the key of a `for` holds under the new machine: the same entries as they are written now.
+
+    One that is gone is not asked any more; the entry that is being asked stays, even so. Of another list than one under
+    `lists` nothing is known, and nothing changes.
+    """
+    name = loop.each.source.strip().removeprefix(_LIST)
+    before, after = list(old.lists.get(name, ())), list(new.lists.get(name, ()))
+    if not loop.each.source.strip().startswith(_LIST) or before == after:
+        return value
+    entry, left = value.get("entry"), value.get("left")
+    kept = [now for one in left or () if (now := _now(one, before, after)) is not None]
+    return {"entry": _now(entry, before, after) or entry, "left": kept}
+
+
+def _now(entry: Any, before: list[Any], after: list[Any]) -> Any:
+    """An entry of the old list as the new one has it: unchanged wherever it stands, else what took its place."""
+    if entry in after or entry not in before:
+        return entry if entry in after else None
+    place = before.index(entry)
+    return after[place] if place < len(after) and after[place] not in before else None
 
 
 class CarriedContext(NamedTuple):

@@ -1,21 +1,53 @@
 """A walk to a place, or on and on, tick by tick: planned anew from each foot that has landed."""
 
 from collections.abc import Callable, Mapping
-from math import hypot, inf
+from math import atan2, hypot, inf
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lumen.motion.gait.footsteps import Feet, Footstep, first_side, footsteps, middle
-from lumen.motion.gait.legs import LegGeometry, Placed, Side, other, sign, torso_rotation
+from lumen.motion.gait.legs import SIDES, LegGeometry, Placed, Side, other, sign, torso_rotation
 from lumen.motion.gait.parameters import GaitParameters
 from lumen.motion.gait.pendulum import Pendulum
 from lumen.motion.gait.planning import GaitPhase, StepPlanner, between
-from lumen.motion.gait.poses import Pose
+from lumen.motion.gait.poses import Pose, wrap
 from lumen.motion.gait.stance import Stance, stand
-from lumen.motion.gait.tracking import StepTracker
 from lumen.motion.gait.velocity import Velocity, strides
+
+
+class StepTracker:
+    """Follows the bearing foot from step to step.
+
+    Each foot has moved as the legs say while both are on the ground: one that comes down still slides a little then.
+    Where it points says the gyrometer, counted from `feet` and `heading` [rad] at the beginning: soles turn on the
+    floor, which no encoder feels, little in each step and degrees in a hundred. `measured` are the legs' angles.
+    """
+
+    def __init__(self, legs: LegGeometry, feet: Feet, measured: Mapping[str, float], heading: float) -> None:
+        self._legs, self._seen = legs, list[Pose]()
+        left, right = (wrap(feet[side].theta - self._yaw(side, measured)) for side in SIDES)
+        self._north = heading - left - wrap(right - left) / 2
+
+    def look(self, next_side: Side, measured: Mapping[str, float]) -> None:
+        """Both feet are on the ground; `next_side` leaves it next."""
+        self._seen.append(self._legs.foot_from(next_side, measured))
+
+    def stands(self, bearing: Side, feet: Feet, measured: Mapping[str, float], heading: float) -> Pose:
+        """Where the bearing foot of a step that ends now has stood; `feet` as believed when it began."""
+        place = feet[bearing].place
+        if self._seen:
+            x, y, _ = np.mean(self._seen, axis=0).tolist()
+            place = feet[other(bearing)].then(Pose(x, y)).place
+        self._seen.clear()
+        return Pose(place.real, place.imag, heading - self._north + self._yaw(bearing, measured))
+
+    def _yaw(self, side: Side, measured: Mapping[str, float]) -> float:
+        """Where that foot points, seen from the torso [rad]."""
+        turned, _ = self._legs.sole(side, measured)
+        return atan2(turned[1, 0], turned[0, 0])
+
 
 CentreOfMass = Callable[[Mapping[str, float]], NDArray[np.float64]]
 """The centre of mass (3,) [m] in the torso's frame, of the robot with its legs bent like this [rad]."""
