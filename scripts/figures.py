@@ -1,7 +1,7 @@
 """The figures of the architecture: how an exhibition is put together, and how long and wide the code is.
 
-Each is counted by a rule from the code alone; the rules are in wiring.py, closed_lists.py and below. tests/house holds
-them: ceilings.yaml lists the greatest value that each may have.
+Each is counted by a rule from the code alone; the rules are in wiring.py, closed_lists.py, features.py and below.
+tests/house holds them: ceilings.yaml lists the greatest value that each may have.
 """
 
 import ast
@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from callables import Callables
 from closed_lists import closed_lists, closed_on_purpose
+from features import imports_by_core, imports_by_features, small_modules
 from scopes import Package, Place, parameters
 from source_files import SourceFile, statements
 from wiring import added_callables, assigned_callables, composition_sites, seam_probes, storing_methods
@@ -49,6 +50,9 @@ def figures(files: Sequence[SourceFile]) -> dict[str, Figure]:
         "storing methods": _number(storing_methods(package, callables)),
         "closed lists": _number(closed_lists(package)),
         "lists closed on purpose": _number(closed_on_purpose(package)),
+        "imports of features by the core": _number(imports_by_core(files)),
+        "imports of features by features": _number(imports_by_features(files)),
+        "small modules with one reader": _number(small_modules(files)),
         "wide functions": _number(wide_functions(package)),
         "unformatted statements": _number(unformatted_statements(files)),
         "statements": Figure(sizes.total(), [f"{size:>7,} in {folder}" for folder, size in sizes.most_common()]),

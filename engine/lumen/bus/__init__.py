@@ -3,6 +3,7 @@
     memory.py         the embedded bus, in this process
     local/            the embedded bus of another process of this machine: a server, its clients
     addresses.py      the kinds of buses, by the schemes of their addresses
+    brokers.py        what a broker offers beside a bus: answers about itself, and streams
     validated.py      any bus, with every body checked against the schema of its route
     checked_bus.py    the bus of an installed package, whose faults name the package
 

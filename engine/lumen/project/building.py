@@ -86,11 +86,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
         if main.built and (other := other_vocabulary(main.built, main.report)):
             return ProjectDraft(files, loose=[other])
         found.settings = main.built and replace(main.built, model=chosen(files, main.built.model))
-    for feature, (name, where) in rows("files"):
-        if (content := files.get(name)) is not None:
-            built = _read(found, name, content, PurePosixPath(name).stem, resolved(feature, where))
-            if built and built.built is not None:
-                found.beside[name] = built.built
+    _beside(found)
     models, behaviors = _each(found, MODELS, build_body), _behaviors(found)
     found.controllers = _built(_each(found, "fuzzy", build_controller))
     if found.settings:
@@ -121,6 +117,15 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     for file, report in found.reports.items():
         report.whole = not (report.pruned or file in torn or has_errors(report.diagnostics))
     return found
+
+
+def _beside(found: ProjectDraft) -> None:
+    """Build the files beside lumen.yaml that features have rows for."""
+    for feature, (name, where) in rows("files"):
+        if (content := found.files.get(name)) is not None:
+            file = _read(found, name, content, PurePosixPath(name).stem, resolved(feature, where))
+            if file and file.built is not None:
+                found.beside[name] = file.built
 
 
 def motion_parts(files: Mapping[str, bytes]) -> ProjectDraft:

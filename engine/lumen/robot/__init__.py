@@ -19,6 +19,7 @@ How a command is performed:
     joint_offsets.py      how joints go to where life and gestures want them
     life_layer.py         what the robot does of its own accord, beneath all commands
     silent_recording.py   a recording where nobody makes a sound
+    links.py              where the links of a robot are, and what they look like: a feature computes both
     skill_runner.py       verbs of features: their code runs in threads that nothing waits for
 
 A robot on the bus:

@@ -1,0 +1,83 @@
+"""Whether each capability is in one folder: imports of features, and modules that are too small to stand alone."""
+
+import ast
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+
+from scopes import Place
+from source_files import SourceFile
+
+SMALL = 50
+"""A module of fewer lines needs a second reader, or a reason."""
+ALONE: Mapping[str, str] = {
+    "cli/report.py": "imported only after a fault, with the modules that describe it",
+    "features/answers/meaning.py": "knows numpy only for types: the retriever imports it when vectors are there",
+    "features/answers/server_vectors.py": "one of three sources of vectors, each with limits of its own",
+    "features/editor/server.py": "imported after the command line is read: pygls takes a third of a second",
+    "features/naoqi/offers.py": "the names that the robot's row may import without a connection",
+    "features/simulation/tactile_sensors.py": "with it the robot's own file would have more than 450 lines",
+}
+"""Small modules that stand alone, and why."""
+
+
+def imports_by_core(files: Sequence[SourceFile]) -> Iterator[Place]:
+    """The imports of features by the core."""
+    for file, line, name in _imports(files):
+        if _feature(file) is None:
+            yield Place(file, line, f"imports {name}")
+
+
+def imports_by_features(files: Sequence[SourceFile]) -> Iterator[Place]:
+    """The imports of one feature by another."""
+    for file, line, name in _imports(files):
+        if (own := _feature(file)) is not None and own != name.split(".")[2]:
+            yield Place(file, line, f"imports {name}")
+
+
+def small_modules(files: Sequence[SourceFile]) -> Iterator[Place]:
+    """The modules of fewer than `SMALL` lines that only a module of the same folder imports, without a reason.
+
+    One that an import string names has a reader elsewhere.
+    """
+    sizes = {file.path: file.text.count("\n") for file in files if not file.path.endswith("__init__.py")}
+    readers: dict[str, set[str]] = defaultdict(set)
+    named: set[str] = set()
+    for file in files:
+        for node in ast.walk(file.tree):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                for path in (_path(node.module), *(_path(f"{node.module}.{alias.name}") for alias in node.names)):
+                    readers[path].add(file.path)
+            elif isinstance(node, ast.Import):
+                for alias in node.names:
+                    readers[_path(alias.name)].add(file.path)
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                named.add(_path(node.value.partition(":")[0]))
+    for path, lines in sizes.items():
+        only = readers[path]
+        if lines < SMALL and len(only) == 1 and path not in named and path not in ALONE:
+            reader = next(iter(only))
+            if reader.rpartition("/")[0] == path.rpartition("/")[0] and not reader.endswith("__init__.py"):
+                yield Place(path, 1, f"has {lines} lines, and only {reader} imports it")
+
+
+def _imports(files: Sequence[SourceFile]) -> Iterator[tuple[str, int, str]]:
+    """File, line and module of each import of a module in a feature's folder."""
+    folders = {path.split("/")[1] for file in files if (path := file.path).count("/") > 1 and _feature(path)}
+    for file in files:
+        for node in ast.walk(file.tree):
+            names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+            names += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            for name in names:
+                parts = name.split(".")
+                if parts[:2] == ["lumen", "features"] and len(parts) > 2 and parts[2] in folders:
+                    yield file.path, getattr(node, "lineno", 1), name
+
+
+def _feature(path: str) -> str | None:
+    """The feature in whose folder a file is; None for a file of the core."""
+    parts = path.split("/")
+    return parts[1] if parts[0] == "features" and len(parts) > 2 else None
+
+
+def _path(module: str) -> str:
+    return module.removeprefix("lumen.").replace(".", "/") + ".py"
