@@ -10,7 +10,7 @@ import pytest
 
 from lumen.cli.main import main
 from lumen.errors import UsageError
-from lumen.insight.changes import Change, Risk, changes, live, risk, summary
+from lumen.insight.changes import Change, Risk, change_data, changes, live, risk, summary
 from lumen.insight.changes.machines import machine_changes
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -210,6 +210,23 @@ def test_all_changes_in_one_line() -> None:
     assert summary(()) == "no relevant changes"
     many = [Change("story", "", "", Risk.COSMETIC), Change("behavior", "", "", Risk.BEHAVIOR)]
     assert summary(many * 5) == "5 behaviors changed; 5 stories changed"
+
+
+def test_a_changed_text_is_whole_before_and_now_with_its_line() -> None:
+    """The sentence shows the first 60 characters; what changed may be later."""
+    was = FILES[TOUR].decode()
+    end = "{{ context.title_en }}. Goodbye!"
+    long = next(line for line in was.splitlines() if end in line)
+    new = edited((TOUR, end, "{{ context.title_en }}. See you soon, and goodbye!"))
+    [change] = changes(PLAIN, new)
+    said = change_data(change, new)
+    assert "See you soon" not in str(change)
+    assert (said["was"].partition("}}. ")[2], said["now"].partition("}}. ")[2]) == (
+        "Goodbye!",
+        "See you soon, and goodbye!",
+    )
+    assert (said["file"], said["line"]) == (TOUR, 1 + was.splitlines().index(long))
+    assert change_data(change, replace(new, documents={}))["line"] is None
 
 
 def test_what_can_not_change_live_stays_as_it_was() -> None:

@@ -1,6 +1,7 @@
 """What differs between two blocks of actions: texts, and what is done."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TypeVar
 
@@ -34,13 +35,20 @@ def block_changes(
     old: Sequence[PlacedAction], new: Sequence[PlacedAction], title: str, when: str, file: str
 ) -> Iterator[Change]:
     """The changes of a block of actions; `title` is whose it is, `when` when it is done (` on entering`)."""
+    places = {id(step.action): step.where for step in (*old, *new)}
     for one, other in paired([s.action for s in old], [s.action for s in new], lambda action: type(action).__name__):
-        if one is not None and other is not None:
-            yield from _action(one, other, title, when, file)
-        elif other is not None:
-            yield Change("action", title, f"{title} now also {described(other)}{when}", Risk.BEHAVIOR, file)
-        elif one is not None:
-            yield Change("action", title, f"{title} no longer {described(one)}{when}", Risk.BEHAVIOR, file)
+        where = places[id(one if other is None else other)]
+        for change in _pair(one, other, title, when, file):
+            yield change if change.where else replace(change, where=where)
+
+
+def _pair(old: Action | None, new: Action | None, title: str, when: str, file: str) -> Iterator[Change]:
+    if old is not None and new is not None:
+        yield from _action(old, new, title, when, file)
+    elif new is not None:
+        yield Change("action", title, f"{title} now also {described(new)}{when}", Risk.BEHAVIOR, file)
+    elif old is not None:
+        yield Change("action", title, f"{title} no longer {described(old)}{when}", Risk.BEHAVIOR, file)
 
 
 def paired(old: Sequence[T], new: Sequence[T], sort: Callable[[T], object]) -> Iterator[Pair[T]]:
@@ -81,7 +89,8 @@ def _action(old: Action, new: Action, title: str, when: str, file: str) -> Itera
                 yield Change("text", title, f"{title} now speaks{when} {how} gestures", Risk.COSMETIC, file)
             for language in dict.fromkeys((*before, *after)):
                 if before.get(language) != after.get(language):
-                    yield _text(language, after.get(language), title, when, file)
+                    change = _text(language, after.get(language), title, when, file)
+                    yield replace(change, was=_whole(before.get(language)), now=_whole(after.get(language)))
         case If(before, then, otherwise), If(after, then_now, otherwise_now):
             if before != after:
                 now = f"{title} now decides{when} by {code(after.source)}, not {code(before.source)}"
@@ -108,6 +117,11 @@ def _text(language: str, texts: Sequence[object] | None, title: str, when: str, 
         return Change("text", title, f"{title} no longer speaks{when} in `{language}`", Risk.COSMETIC, file)
     said = quoted(str(getattr(texts[0], "text", ""))) + (" and others" if len(texts) > 1 else "")
     return Change("text", title, f"{title} now says {said}{when}{spoken}", Risk.COSMETIC, file)
+
+
+def _whole(texts: Sequence[object] | None) -> str:
+    """All alternatives of a text, a line each."""
+    return "\n".join(str(getattr(one, "text", "")) for one in texts or ())
 
 
 def described(action: Action) -> str:

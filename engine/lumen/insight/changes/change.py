@@ -1,7 +1,9 @@
 """A difference between two bundles, in the words of whoever edits the files."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
+
+from lumen.language.diagnostics import NodePath
 
 
 class Risk(IntEnum):
@@ -26,7 +28,8 @@ class Risk(IntEnum):
 class Change:
     """One difference: what `kind` it is (`text`, `state`, `route`, …), what it is `about`, a sentence, and its risk.
 
-    `file` is where it stands, relative to the project.
+    `file` is where it stands, relative to the project, `where` the place in it; `was` and `now` are a text that
+    changed, whole. Two changes are equal if their sentences, files and risks are.
     """
 
     kind: str
@@ -34,6 +37,9 @@ class Change:
     sentence: str
     risk: Risk
     file: str = ""
+    where: NodePath = field(default=(), compare=False)
+    was: str = field(default="", compare=False)
+    now: str = field(default="", compare=False)
 
     def __str__(self) -> str:
         return self.sentence

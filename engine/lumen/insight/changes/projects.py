@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from itertools import groupby
+from typing import Any
 
 from lumen.insight.changes.change import Change, Risk
 from lumen.insight.changes.entries import entry_changes
@@ -25,6 +26,13 @@ def changes(old: Project, new: Project) -> tuple[Change, ...]:
     What several behaviours have from one words file is told once.
     """
     return tuple(dict.fromkeys(_changes(old, new)))
+
+
+def change_data(change: Change, new: Project) -> dict[str, Any]:
+    """Return a change as JSON data: `file`, `line` in the new files (None if unknown), the texts `was` and `now`."""
+    known = bool(change.where) and change.file in new.documents
+    line = new.place(change.file, change.where).line if known else None
+    return {"file": change.file, "line": line, "was": change.was, "now": change.now}
 
 
 def risk(found: Sequence[Change]) -> Risk:

@@ -241,4 +241,5 @@ class MigrationQueue:
 
     def _about(self, staged: StagedBundle, verdict: str) -> ReloadReport:
         hashes = self.running.hash, staged.project.hash
-        return ReloadReport(verdict, staged.who, *hashes, self.revision, staged.changes, staged.validation)
+        report = ReloadReport(verdict, staged.who, *hashes, self.revision, staged.changes, staged.validation)
+        return report.compared(staged.project)

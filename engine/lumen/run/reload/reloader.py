@@ -264,7 +264,8 @@ class Reloader:
 
     def _verdict(self, verdict: str, who: str, validation: Validation, reason: str = "") -> ReloadReport:
         hashes, revision = (self._running.hash, validation.hash), self._queue.revision
-        return ReloadReport(verdict, who, *hashes, revision, validation.changes, validation, reason=reason)
+        report = ReloadReport(verdict, who, *hashes, revision, validation.changes, validation, reason=reason)
+        return report.compared(validation.project) if validation.project else report
 
     def _answer(self, verdict: str, reason: str) -> ReloadReport:
         hash = self._running.hash

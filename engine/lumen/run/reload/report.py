@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from lumen.insight.changes import Change, Risk, risk, summary
+from lumen.insight.changes import Change, Risk, change_data, risk, summary
 from lumen.insight.migration import MigrationDelay, Refusal
 from lumen.language.diagnostics import Diagnostic, Severity
 from lumen.language.projects import Project
@@ -24,7 +24,7 @@ class ReloadReport:
     `who` asked for it: `files`, `command`, `trial`, `probation`, or the `start` of a run on other files than those
     before. `before` and `after` are hashes of bundles, `restart` sentences about what becomes active only then, `took`
     times [s] by what took them. `back`: the files ran before. `told_visits`: what came of recorded visits was told
-    already.
+    already. `details` has the data of each listed change (`change_data`).
     """
 
     verdict: str
@@ -42,6 +42,11 @@ class ReloadReport:
     took: dict[str, float] = field(default_factory=dict)
     more: dict[str, Any] = field(default_factory=dict)
     told_visits: bool = False
+    details: list[dict[str, Any]] = field(default_factory=list)
+
+    def compared(self, project: Project) -> "ReloadReport":
+        """Return the same with the details of its changes, which led to `project`."""
+        return replace(self, details=[change_data(change, project) for change in self.changes[:MAX_LISTED]])
 
     def kept(self) -> "ReloadReport":
         """The same without the files and the project that it is about."""
@@ -131,6 +136,8 @@ class ReloadReport:
             found["risk"] = str(risk(self.changes))
             found["changes"] = [str(change) for change in self.changes[:MAX_LISTED]]
             found["restart"] = self.restart
+            if any(detail["line"] for detail in self.details):
+                found["details"] = self.details
         if self.validation:
             found["diagnostics"] = [d.to_json() for d in self.validation.diagnostics[:MAX_LISTED]]
             found["stories"] = [told(rehearsal) for rehearsal in self.validation.failed]

@@ -14,13 +14,30 @@ function Findings({ findings }) {
       <p lang="en"><b>${one.message}</b></p>${one.hint && html`<p lang="en">${one.hint}</p>`}<p class="place">${one.code}</p></li>`)}</ul>`}</${Part}>`;
 }
 
+/** What two texts begin and end with alike, and what differs between. */
+function differing(was, now) {
+  let begin = 0, end = 0;
+  while (begin < Math.min(was.length, now.length) && was[begin] === now[begin]) begin++;
+  while (end < Math.min(was.length, now.length) - begin && was.at(-1 - end) === now.at(-1 - end)) end++;
+  const cut = (text) => [text.slice(0, begin), text.slice(begin, text.length - end), text.slice(text.length - end)];
+  return [cut(was), cut(now)];
+}
+
+/** A change: what it is, where, and of a text all of it before and now, with what differs marked. */
+function Change({ change, detail }) {
+  const [was, now] = differing(detail?.was ?? "", detail?.now ?? "");
+  return html`<li><p>${change}</p>${detail && html`<p class="place">${place(detail.file, detail.line)}</p>`}
+    ${detail?.was && html`<p>− ${was[0]}<del>${was[1]}</del>${was[2]}</p>`}
+    ${detail?.now && html`<p>+ ${now[0]}<ins>${now[1]}</ins>${now[2]}</p>`}</li>`;
+}
+
 /** The text for a report without changes: files with errors, or that nobody watches, were not compared with those that run. */
 const noChanges = (report, mode) => (mode === "off" || report.verdict === "refused" ? "files.unread" : "files.nothing");
 
 function Changes({ report, mode }) {
   const changes = report.changes ?? [];
   return html`<${Part} title=${t("files.diff")} kind="changes" aside=${report.risk && html`<span class="badge" data-state=${report.risk === "cosmetic" ? "open" : "warn"}>${t("files.risk", { risk: t(`risk.${report.risk}`) })}</span>`}>
-    ${changes.length ? html`<${InEnglish} /><ul class="diff" lang="en">${changes.map((change) => html`<li>${change}</li>`)}</ul>` : html`<p class="quiet">${t(noChanges(report, mode))}</p>`}
+    ${changes.length ? html`<${InEnglish} /><ul class="diff" lang="en">${changes.map((change, n) => html`<${Change} change=${change} detail=${report.details?.[n]} />`)}</ul>` : html`<p class="quiet">${t(noChanges(report, mode))}</p>`}
     ${report.restart?.length > 0 && html`<ul class="diff" lang="en">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`}</${Part}>`;
 }
 
