@@ -10,6 +10,7 @@ from lumen.clock.simulated import SimulatedClock
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
 from lumen.lint import check_files
+from lumen.project.files import read_files
 from lumen.project.home import Home
 from lumen.robot.recording import RecordingRobot
 from lumen.run.rehearsal import Rehearsal
@@ -77,6 +78,7 @@ class Live:
         self.home = Home(folder / ".lumen")
         assert self.home.hold()
         self.records = RunRecords(self.home)
+        self.records.store(read_files(folder, project.one_of_several))
         self.reloading = Reloader(
             self.show.behavior,
             transcript,

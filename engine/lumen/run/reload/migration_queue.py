@@ -59,12 +59,18 @@ class MigrationQueue:
     """Holds at most one bundle, `staged`; `tick` makes it active, waits for what it has to wait for, or refuses it.
 
     `revision` counts how often another bundle became active, `applied` is told of it. What has just come is on
-    `probation`.
+    `probation`. `restore` brings the files of a roll back into the project's folder, then tells of it.
     """
 
     def __init__(
-        self, behavior: LiveBehavior, notifier: ReloadNotifier, records: RunRecords, applied: Callable[[Project], None]
+        self,
+        behavior: LiveBehavior,
+        notifier: ReloadNotifier,
+        records: RunRecords,
+        applied: Callable[[Project], None],
+        restore: Callable[[ReloadReport, list[ReloadRequest]], None],
     ) -> None:
+        self._restore = restore
         self._behavior, self._notifier, self._records, self._applied = behavior, notifier, records, applied
         self.revision = 0
         self.staged: StagedBundle | None = None
@@ -203,7 +209,10 @@ class MigrationQueue:
     def _tell_all(self, report: ReloadReport, orders: list[ReloadRequest]) -> None:
         """Let everybody know of another bundle that is active; a fault of ours in that changes nothing about it."""
         try:
-            self._notifier.tell(report, orders)
+            if report.back and report.who == "command":
+                self._restore(report, orders)
+            else:
+                self._notifier.tell(report, orders)
             if report.verdict == "applied":
                 self._records.begin(self.running.hash)
             else:

@@ -67,6 +67,10 @@ class RunRecords:
         if self.keeper:
             self.keeper.store(files)
 
+    def files(self, hash: str) -> Mapping[str, bytes] | None:
+        """The files of a bundle that was kept; None if they are not kept."""
+        return self.keeper.files(hash) if self.keeper else None
+
     def begin(self, hash: str) -> None:
         """This bundle is active now, and on trial; the one before has ended nothing."""
         self.annul()

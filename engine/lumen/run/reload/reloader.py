@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from lumen.bus.validated import by_key
 from lumen.errors import BusError, UsageError
@@ -27,12 +27,16 @@ from lumen.run.reload.notifier import ReloadNotifier
 from lumen.run.reload.records import RunRecords
 from lumen.run.reload.report import ReloadReport
 from lumen.run.reload.requests import WAITING, ReloadRequest, answering, command_key, request_from
+from lumen.run.reload.restoring import Restored, restore
 from lumen.run.reload.validation_worker import FileJudge, ValidationWorker
 from lumen.run.reload.validator import BUDGET, BundleValidator, Validation, fault_of, told
 from lumen.run.status import LastReload
 from lumen.run.watcher import QUIET_PERIOD, FileWatcher, SavedFiles
 
 _log = logging.getLogger(__name__)
+
+NEWER_ON_DISK = "the project's folder still has the newer files"
+UNTIL_APPLIED = "nothing saved there is activated until a person applies it"
 
 MODES = ("auto", "manual", "off")
 """Take saved files at once; only judge them, and wait for `lumen reload --apply`; leave them alone."""
@@ -50,6 +54,15 @@ class ReloadOptions:
 
 
 AUTO = ReloadOptions()
+
+
+class _RolledBack(NamedTuple):
+    """A roll back that is over but for being told: what came of the folder, and of the files in it now."""
+
+    report: ReloadReport
+    orders: list[ReloadRequest]
+    restored: Restored
+    validation: Validation
 
 
 class Reloader:
@@ -73,13 +86,14 @@ class Reloader:
         self._behavior, self._mode = behavior, options.mode
         self._records = records or RunRecords(None)
         self._notifier = ReloadNotifier(behavior, narrator, self._records)
-        self._queue = MigrationQueue(behavior, self._notifier, self._records, applied)
+        self._queue = MigrationQueue(behavior, self._notifier, self._records, applied, self._restore)
+        self._wake, self._newer_on_disk = wake, ""
         self._bus = behavior.loop.bus
         self._came: deque[Message] = deque(maxlen=WAITING)
         project = behavior.loop.project
         self._worker = worker or ValidationWorker(Path(project.root))
         self._validator = BundleValidator(self._worker, lambda: self._running, options.budget)
-        self._watcher: FileWatcher[Validation | list[Rehearsal]] = FileWatcher(
+        self._watcher: FileWatcher[Validation | list[Rehearsal] | _RolledBack] = FileWatcher(
             Path(project.root),
             read_files(Path(project.root), project.one_of_several),
             self._judge,
@@ -176,6 +190,8 @@ class Reloader:
             found = self._watcher.results.get()
             if isinstance(found, Validation):
                 self._take(found)
+            elif isinstance(found, _RolledBack):
+                self._tell_back(found)
             else:
                 self._warn(found)
         self._queue.tick(now)
@@ -195,7 +211,32 @@ class Reloader:
             return replace(validation, fault=fault_of(error))
         return validation
 
-    def _advise(self, validation: Validation | list[Rehearsal], urgent: Callable[[], bool]) -> None:
+    def _restore(self, report: ReloadReport, orders: list[ReloadRequest]) -> None:
+        """Have the folder hold the files that run again, on the thread that reads it; then the roll back is told."""
+        root, robot = Path(self._running.root), self._running.one_of_several
+
+        def change() -> Mapping[str, bytes]:
+            restored = restore(root, self._records.files(report.after))
+            files, now = read_files(root, robot), time.monotonic()
+            judged = self._judge(SavedFiles(files, (), now, now))
+            self._watcher.results.put(_RolledBack(report, orders, restored, judged))
+            self._wake()
+            return files
+
+        self._watcher.write(change)
+
+    def _tell_back(self, back: _RolledBack) -> None:
+        """Tell a roll back, and where the newer versions are; those still on the disk wait for a person from now on."""
+        report, restored = back.report, back.restored
+        if restored.trouble:
+            self._newer_on_disk = f"{NEWER_ON_DISK} ({restored.trouble})"
+            report.notes += (f"{self._newer_on_disk}: {UNTIL_APPLIED}",)
+        else:
+            report.notes += tuple(restored.lines())
+            report.validation = back.validation if back.validation.hash == report.after else None
+        self._notifier.tell(report, back.orders)
+
+    def _advise(self, validation: Validation | list[Rehearsal] | _RolledBack, urgent: Callable[[], bool]) -> None:
         """On the watcher's thread, when there is nothing more urgent."""
         if isinstance(validation, Validation) and (failed := self._validator.advise(validation, urgent)):
             self._watcher.results.put(failed)
@@ -211,6 +252,8 @@ class Reloader:
             answering(message, self._bus)(self._answer("refused", str(error)).to_json())
             return
         queue = self._queue
+        if order.verb in ("apply", "try", "reload"):
+            self._newer_on_disk = ""
         if order.verb == "stop":
             self._behavior.loop.happen(Event("stop", {}, cause=Cause("person", sender=message.sender)))
             order.answer(self._answer("stopped", "the behaviour stops").to_json())
@@ -257,7 +300,7 @@ class Reloader:
             self._notifier.tell(self._verdict("unchanged", who, validation), orders)
         elif validation.objects and (order or self._mode == "auto"):
             queue.object(staged, order)
-        elif order or self._mode == "auto":
+        elif order or (self._mode == "auto" and not self._newer_on_disk):
             queue.stage(staged, order)
         else:
             queue.hold(staged)
@@ -274,7 +317,8 @@ class Reloader:
     def _status(self) -> ReloadReport:
         staged, last = self._queue.staged, self.last
         waiting = f", waiting: {staged.told}" if staged and staged.told else ", staged" if staged else ""
-        report = self._answer("status", f"revision {self._queue.revision} runs ({self._mode}){waiting}")
+        newer = f", {self._newer_on_disk}: {UNTIL_APPLIED}" if self._newer_on_disk else ""
+        report = self._answer("status", f"revision {self._queue.revision} runs ({self._mode}){waiting}{newer}")
         report.more = {
             "mode": self._mode,
             "staged": [str(change) for change in staged.changes] if staged else None,

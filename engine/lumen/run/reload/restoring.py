@@ -1,0 +1,147 @@
+"""A rolled-back project's folder: it holds the files that run again, and the newer versions are kept beside it."""
+
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from datetime import datetime
+from itertools import count
+from pathlib import Path
+from typing import NamedTuple
+
+from lumen.project.files import Unreadable, belongs, on_disk, read_files
+from lumen.project.home import home_of
+from lumen.project.project_folders import FLEET_FILE
+from lumen.upkeep.private_folder import private_folder
+
+KEPT_FOLDER = "rolled-back"
+"""The folder of a home with the newer versions, a folder for each time."""
+NOT_KEPT = "the previous files are not kept"
+_NEW = ".restored"
+
+
+class Restored(NamedTuple):
+    """What was done to the folder: the paths that differ now, `kept` where their newer versions are.
+
+    `trouble` is why nothing was done, empty otherwise.
+    """
+
+    paths: tuple[str, ...] = ()
+    kept: str = ""
+    trouble: str = ""
+
+    def lines(self) -> list[str]:
+        """Return what a person needs to know, a sentence for each file."""
+        return [f"{path} is as it was before; the newer version is in {self.kept}/{path}" for path in self.paths]
+
+
+def restore(root: Path, wanted: Mapping[str, bytes] | None) -> Restored:
+    """Make the project's files `wanted`, all of them or none; what differed is kept in the home first.
+
+    fleet.yaml and files that Lumen does not read stay as they are. A newer file that `wanted` does not have is moved
+    away. A link is never replaced.
+    """
+    if wanted is None:
+        return Restored(trouble=NOT_KEPT)
+    there = read_files(root)
+    paths = tuple(path for path in sorted({*there, *wanted}) if _own(path) and there.get(path) != wanted.get(path))
+    if not paths:
+        return Restored()
+    try:
+        _check(root, paths, there)
+        folder = _keep(root, {path: there[path] for path in paths if path in there})
+        _replace(root, {path: wanted.get(path) for path in paths}, there)
+    except OSError as error:
+        file = Path(error.filename).name if error.filename else "the folder"
+        return Restored(trouble=f"{file} can't be written: {(error.strerror or str(error)).lower()}")
+    with suppress(ValueError):
+        folder = folder.relative_to(root)
+    return Restored(paths, folder.as_posix())
+
+
+def _own(path: str) -> bool:
+    return path != FLEET_FILE and belongs(path)
+
+
+def _check(root: Path, paths: tuple[str, ...], there: Mapping[str, bytes]) -> None:
+    """Raise OSError for the first file that is a link, or can't be read and so not be kept."""
+    for path in paths:
+        file = on_disk(root, path)
+        if file.is_symlink():
+            raise OSError(None, "it is a link", path)
+        if isinstance(content := there.get(path), Unreadable):
+            raise OSError(None, content.decode("utf-8", "replace"), path)
+
+
+def _keep(root: Path, newer: Mapping[str, bytes]) -> Path:
+    """Write the newer versions into a new folder of the home; return that folder. Raises OSError."""
+    folder = _new_folder(home_of(root) / KEPT_FOLDER)
+    for path, content in newer.items():
+        _write(folder / path, content)
+    return folder
+
+
+def _new_folder(kept: Path) -> Path:
+    private_folder(kept)
+    name = f"{datetime.now():%Y-%m-%d-%H%M%S}"
+    for number in count(1):
+        folder = kept / (name if number == 1 else f"{name}-{number}")
+        with suppress(FileExistsError):
+            folder.mkdir(mode=0o700)
+            return folder
+    raise AssertionError
+
+
+def _replace(root: Path, wanted: Mapping[str, bytes | None], there: Mapping[str, bytes]) -> None:
+    """Bring the files into the folder; if one can't be, those before it are as they were. Raises OSError."""
+    drafts = dict(_drafts(root, wanted))
+    done: list[str] = []
+    try:
+        for path, content in wanted.items():
+            file = on_disk(root, path)
+            if content is None:
+                file.unlink(missing_ok=True)
+            else:
+                os.replace(drafts[path], file)
+            done.append(path)
+    except OSError:
+        for path in done:
+            with suppress(OSError):
+                _undo(on_disk(root, path), there.get(path))
+        for draft in drafts.values():
+            draft.unlink(missing_ok=True)
+        raise
+
+
+def _drafts(root: Path, wanted: Mapping[str, bytes | None]) -> Iterator[tuple[str, Path]]:
+    """Write each file under another name first: a full disk is noticed before anything is replaced. Raises OSError."""
+    written: list[Path] = []
+    try:
+        for path, content in wanted.items():
+            if content is not None:
+                file = on_disk(root, path)
+                draft = file.with_name(f".{file.name}{_NEW}")
+                written.append(draft)
+                _write(draft, content)
+                with suppress(FileNotFoundError):
+                    shutil.copymode(file, draft)
+                yield path, draft
+    except OSError:
+        for draft in written:
+            draft.unlink(missing_ok=True)
+        raise
+
+
+def _undo(file: Path, content: bytes | None) -> None:
+    if content is None:
+        file.unlink(missing_ok=True)
+    else:
+        _write(file, content)
+
+
+def _write(file: Path, content: bytes) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with open(file, "wb") as opened:
+        opened.write(content)
+        opened.flush()
+        os.fsync(opened.fileno())
