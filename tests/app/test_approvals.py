@@ -231,3 +231,36 @@ def test_a_crash_keeps_autonomy_and_says_what_is_lost(tmp_path: Path) -> None:
     fresh = Approvals()
     Decisions(fresh, narrator, told.append, Mock()).recover(kept, resumed=False)
     assert fresh.autonomy == "ask"
+
+
+TALKS = """
+phrases: {bye: {en: [bye]}}
+states:
+  hall:
+    on:
+      heard: {guard: "heard(event.data.result, 'bye')", target: "#leaving", approve: operator}
+  leaving:
+    id: leaving
+    do: [{say: "Goodbye!"}, {posture: StandInit}, {say: "See you."}]
+    onDone: hall
+"""
+HEARD = "routes: {heard: {key: lumen.heard, direction: in, schema: speech.recognition, event: heard}}\n"
+
+
+def test_who_decides_hears_the_words_and_what_comes_of_them(folder: Path) -> None:
+    """All of what the robot would do until the next transition, in order; the words before that."""
+    (folder / "behaviors" / "mine.yaml").write_text(TALKS)
+    with (folder / "lumen.yaml").open("a") as main:
+        main.write(HEARD)
+    bus = connect("memory://")
+    with lumen.open(folder, bus=bus) as one:
+        raised(one, "heard", {"result": "bye bye", "language": "en"})
+        now = asker(one, bus)("now")
+        [waiting] = now["waiting"]
+        assert waiting["data"]["result"] == now["visitor_said"]["text"] == "bye bye"
+        assert [deed.get("text") or deed.get("name") for deed in waiting["would"]] == [
+            "Goodbye!",
+            "StandInit",
+            "See you.",
+        ]
+        assert one.configuration == {"hall"}

@@ -12,6 +12,7 @@ from lumen.language.projects import Project
 from lumen.language.verbs import verb_of
 from lumen.ports import Message
 from lumen.robot.command_table import speech_duration
+from lumen.run.approvals import HeldEvent
 from lumen.run.loop import Observer
 from lumen.run.visitor import SPEECH_ROUTE
 from lumen.statechart import Snapshot, Step
@@ -96,6 +97,11 @@ class Doings(Observer):
             self.since = {name: at if name in came else since.get(name, at) for name in names}
         if step.event and (said := self._words(step.event)):
             self.heard = Spoken(said, step.event.at)
+
+    def approval(self, how: str, held: HeldEvent, why: str) -> None:
+        """A visitor's words are heard before a person decides what comes of them."""
+        if how == "waits" and (said := self._words(held.event)):
+            self.heard = Spoken(said, held.event.at)
 
     def performing(self, command: Command, now: float) -> None:
         if not isinstance(command, Start):

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
+from lumen.insight.explaining.foresight import foreseen
 from lumen.insight.explaining.names import machines_in
 from lumen.insight.explaining.outlook import GuardTruth, Running, WayOut, running, ways_out
 from lumen.insight.explaining.pressing import ShownButton, shown_buttons
@@ -98,7 +99,7 @@ class NowView:
             "visitor_said": {"text": now.heard.text, "at": time(now.heard.at)} if now.heard else None,
             "ways": [_way(way, bundle, time) for way in ways_out(now.project.machine, now.snapshot, now.at)],
             "buttons": [_button(one, now.project) for one in shown_buttons(now.project.machine, now.snapshot, now.at)],
-            "waiting": [_held(held, bundle, time) for held in now.waiting],
+            "waiting": [_held(held, now, bundle, time) for held in now.waiting],
             "autonomy": now.autonomy,
             "model": now.model,
             "queues": {"events": now.events, "commands": now.commands},
@@ -229,8 +230,9 @@ def _button(shown: ShownButton, project: Project) -> dict[str, Any]:
     }
 
 
-def _held(held: HeldEvent, bundle: _Bundle, time: Callable[[float], str]) -> dict[str, Any]:
+def _held(held: HeldEvent, now: PresentMoment, bundle: _Bundle, time: Callable[[float], str]) -> dict[str, Any]:
     machine, wanted, approval = held.marked
+    event = held.event._replace(at=now.at)
     return {
         "id": held.id,
         "event": held.event.name,
@@ -241,6 +243,7 @@ def _held(held: HeldEvent, bundle: _Bundle, time: Callable[[float], str]) -> dic
         "since": time(held.since),
         "until": None if approval.within is None else time(held.until),
         "else": approval.otherwise,
+        "would": foreseen(now.project.machine, now.snapshot, event),
     }
 
 

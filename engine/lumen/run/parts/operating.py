@@ -117,6 +117,7 @@ class OperatorPart(Part, Observer):
         self._unsay = self._bus.subscribe(behavior.project.key_of(TEXT_ROUTE), self._doings.told.append)
         told = [behavior.trace.approval] if behavior.trace in behavior.loop.observers else []
         self._decisions = Decisions(runtime.approvals, narrator, records.write, records.keep_decisions, *told)
+        runtime.approvals.watchers.append(self._doings)
         behavior.forgetters += [self.steps, self._doings, runtime.approvals]
         self.model = ModelSwitch(behavior.loop.performer.questions, lambda: runtime.project, records.write, kept)
         self._raising = RaisedEvents(behavior.loop, self._reply)
