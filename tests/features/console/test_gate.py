@@ -3,6 +3,7 @@
 import json
 import socket
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -11,10 +12,12 @@ from lumen.errors import UsageError
 from lumen.features.console.access import Access, TooFastError
 from lumen.features.console.gate import MAX_BODY
 from lumen.features.console.people import Person, Role
+from lumen.features.console.proxies import TrustedProxies
 from lumen.features.console.requests import REQUESTS_PER_SECOND
 from lumen.features.console.serving import Console
 from lumen.upkeep.ratelimit import BURST
 from tests.features.console.pages import Browser, Served, Stream
+from tests.tables import for_each
 from tests.waiting import until
 
 PINS = {Role.SHOW: "show-1", Role.OPERATOR: "operator-2", Role.AUTHOR: "author-3"}
@@ -114,6 +117,7 @@ def test_without_a_role_one_may_rest_and_nothing_else(alone: Browser) -> None:
     ):
         assert alone.get(path).status == 401, path
     assert alone.post("/api/fork", {}).status == 401
+    assert alone.post("/api/fork", {}, Authorization="Bearer operator-2").status == 403
     assert alone.command("say", text="x", robot="NAO").status == 401
     assert alone.command("rest", robot="NAO").data["state"] == "unsent"
 
@@ -185,3 +189,80 @@ def test_it_ends_at_once_with_pages_that_listen(tmp_path: Path) -> None:
     for stream in streams:
         assert stream.ended.wait(10.0)
         stream.close()
+
+
+@pytest.fixture(scope="module")
+def behind(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """A console whose trusted proxies connect from this machine, and from a network."""
+    served = Served(tmp_path_factory.mktemp("nobody"), pins=PINS, proxies=["127.0.0.1", "10.0.0.0/8"])
+    yield served.browser
+    served.close()
+
+
+def signs_in(browser: Browser, pin: str, **forwarded: str) -> int:
+    return browser.post("/api/session", {"pin": pin}, **forwarded).status
+
+
+def test_wrong_pins_behind_a_proxy_cost_time_only_where_they_came_from(behind: Browser) -> None:
+    guesser, neighbour = ({"X_Forwarded_For": f"10.0.0.7, 203.0.113.{n}, 10.0.0.2"} for n in (5, 6))
+    statuses = [signs_in(behind, "wrong", **guesser) for _ in range(4)]
+    assert statuses == [401, 401, 401, 429]
+    assert signs_in(behind, "show-1", **neighbour) == 200
+    assert signs_in(behind, "show-1", **guesser) == 429
+
+
+def test_nobody_but_a_trusted_proxy_is_believed(alone: Browser) -> None:
+    """Else whoever guesses PINs would send each from another address."""
+    statuses = [signs_in(alone, "wrong", X_Forwarded_For=f"203.0.113.{n}") for n in range(4)]
+    assert statuses == [401, 401, 401, 429]
+    cookie = alone.post("/api/session", {"pin": "show-1"}, X_Forwarded_Proto="https").headers.get("set-cookie", "")
+    assert "Secure" not in cookie
+
+
+@for_each(
+    "client, forwarded, address",
+    [
+        ("127.0.0.1", [], "127.0.0.1"),
+        ("127.0.0.1", ["203.0.113.5"], "203.0.113.5"),
+        ("127.0.0.1", ["198.51.100.1, 203.0.113.5"], "203.0.113.5"),
+        ("127.0.0.1", ["198.51.100.1", "203.0.113.5:4711, 10.1.2.3"], "203.0.113.5"),
+        ("127.0.0.1", ["[2001:db8::1]:443"], "2001:db8::1"),
+        ("127.0.0.1", ["::ffff:203.0.113.5"], "203.0.113.5"),
+        ("127.0.0.1", ["203.0.113.5, unknown"], "127.0.0.1"),
+        ("127.0.0.1", ["10.1.2.3"], "127.0.0.1"),
+        ("::ffff:127.0.0.1", ["203.0.113.5"], "203.0.113.5"),
+        ("192.0.2.1", ["203.0.113.5"], "192.0.2.1"),
+    ],
+)
+def test_the_address_is_the_last_that_is_no_proxy(client: str, forwarded: list[str], address: str) -> None:
+    headers = [(b"x-forwarded-for", value.encode()) for value in forwarded]
+    scope = {"client": (client, 1), "headers": headers, "scheme": "http"}
+    assert TrustedProxies(["127.0.0.1", "10.0.0.0/8"]).seen(scope)["client"][0] == address
+
+
+def test_a_cookie_of_an_encrypted_session_is_never_sent_in_the_clear(behind: Browser) -> None:
+    forwarded = {"X_Forwarded_For": "203.0.113.9"}
+    for protocol, secure in (("https", True), ("http", False)):
+        answer = behind.post("/api/session", {"pin": "show-1"}, **forwarded, X_Forwarded_Proto=protocol)
+        assert ("secure" in answer.headers["set-cookie"].lower()) is secure
+        gone = behind.ask("DELETE", "/api/session", **forwarded, X_Forwarded_Proto=protocol)
+        assert ("secure" in gone.headers["set-cookie"].lower()) is secure
+
+
+def test_a_proxy_needs_pins_and_an_address(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="through a proxy, but no PINs are set"):
+        Console(lambda: pytest.fail("no bus is wanted"), tmp_path, "127.0.0.1", 0, proxies=["127.0.0.1"])
+    with pytest.raises(UsageError, match=r"'proxy\.museum\.example' does not appear to be"):
+        TrustedProxies(["proxy.museum.example"])
+
+
+def test_the_folder_of_the_project_is_told_to_nobody(tmp_path: Path) -> None:
+    root = tmp_path / "secret-place"
+    root.mkdir()
+    with closing(Served(root, pins=PINS)) as served:
+        browser = served.browser
+        until(lambda: "no exhibition of this project is running" in browser.get("/api/now").data["bus"])
+        answers = [browser.get("/api/now"), browser.command("rest", robot="NAO"), browser.command("rest", robot="*")]
+        answers.append(browser.get("/api/now", Authorization="Bearer show-1"))
+        answers.append(browser.command("say", text="x", robot="NAO7"))
+        assert [answer for answer in answers if b"secret-place" in answer.body] == []

@@ -44,9 +44,8 @@ def run(options: argparse.Namespace) -> int:
     found = main_settings(root)
     said = found.section(ConsoleSettings) if found else ConsoleSettings()
     port = said.port if options.port is None else options.port
-    console = Console(
-        reach, root, options.host or said.host, port, pins=pins_from(said.pins, os.environ), hosts=said.hosts
-    )
+    pins, host = pins_from(said.pins, os.environ), options.host or said.host
+    console = Console(reach, root, host, port, pins=pins, hosts=said.hosts, proxies=said.proxies)
     if options.beside:
         WatchedThread("lumen-console-parent", lambda: _end_with_parent(console.end)).start()
     print(f"The console is at {console.address} (Ctrl-C ends it)", flush=True)

@@ -11,6 +11,7 @@ from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from lumen.features.console.connections import READ_TIMEOUT, cut_off
+from lumen.features.console.proxies import TrustedProxies
 
 MAX_BODY = 65_536
 """Of what is posted [bytes]."""
@@ -37,10 +38,12 @@ class Gate:
     """Refuses what a foreign page, a rebound name or a careless program may send; adds headers to every answer.
 
     `hosts` are names and addresses under which the console is reached, besides the address of the connection itself.
+    What `proxies` say about where a request comes from is believed.
     """
 
-    def __init__(self, app: ASGIApp, hosts: Iterable[str]) -> None:
+    def __init__(self, app: ASGIApp, hosts: Iterable[str], proxies: TrustedProxies | None = None) -> None:
         self._app, self._hosts = app, frozenset(map(str.lower, hosts))
+        self._proxies = proxies or TrustedProxies()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -52,7 +55,7 @@ class Gate:
             body, refusal = await _read(receive, headers)
             receive = _given(body, receive)
         if refusal is None:
-            await self._app(scope, receive, _guarded(send, scope.get("client")))
+            await self._app(self._proxies.seen(scope), receive, _guarded(send, scope.get("client")))
         else:
             status, reason = refusal
             await refused(status, reason)(scope, receive, _guarded(send, scope.get("client")))

@@ -63,7 +63,7 @@ class Past:
         return as_json(said)
 
     async def _fork(self, request: Request) -> Response:
-        self._reception.person(request, Role.OPERATOR)
+        self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         view = self._reception.robot(data.get("robot"))
         asked: dict[str, Any] = {key: data[key] for key in ("at", "position", "event", "bundle") if key in data}

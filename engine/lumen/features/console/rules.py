@@ -1,7 +1,9 @@
-"""The console: nobody can use it from elsewhere without a PIN, and no PIN stands in a file."""
+"""The console: nobody can use it from elsewhere without a PIN, no PIN is in a file, and proxies have addresses."""
 
 import re
 
+from lumen.language.addresses import loopback
+from lumen.features.console.proxies import network_of
 from lumen.features.console.settings import ConsoleSettings
 from lumen.language.addresses import loopback
 from lumen.language.diagnostics import ERROR, Code
@@ -9,6 +11,7 @@ from lumen.lint.routes import PASSWORD_IN_FILE
 from lumen.project.draft import ProjectDraft
 
 OPEN_CONSOLE = Code("open-console", "robot", ERROR, "other computers can reach the console, and it has no PINs")
+PROXY_ADDRESS = Code("proxy-address", "robot", ERROR, "a trusted proxy of the console is not an address")
 _VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")
 
 
@@ -25,9 +28,19 @@ def check(draft: ProjectDraft) -> None:
             hint = f"write `{role}: $LUMEN_PIN_{role.upper()}`, and put the PIN into that environment variable"
             where = ("console", "pins", role)
             report(PASSWORD_IN_FILE, where, "a PIN is in a file that others can read", hint)
-    if not console.pins and not loopback(console.host):
-        hint = (
-            "write `pins: {operator: $LUMEN_PIN_OPERATOR}`, or delete `host`, so that only this computer can reach it"
-        )
+    for number, proxy in enumerate(console.proxies):
+        try:
+            network_of(proxy)
+        except ValueError:
+            hint = "write the address from which the proxy connects, such as 127.0.0.1, or a network such as 10.0.0.0/8"
+            report(PROXY_ADDRESS, ("console", "proxies", number), f"`{proxy}` is not an address", hint)
+    if console.pins:
+        return
+    pins = "write `pins: {operator: $LUMEN_PIN_OPERATOR}`"
+    if not loopback(console.host):
+        hint = f"{pins}, or delete `host`, so that only this computer can reach it"
         message = f"anyone who can reach {console.host} can control the robot"
         report(OPEN_CONSOLE, ("console", "host"), message, hint)
+    elif console.proxies:
+        hint = f"{pins}, or delete `proxies`, so that only this computer can reach it"
+        report(OPEN_CONSOLE, ("console", "proxies"), "anyone who can reach the proxy can control the robot", hint)

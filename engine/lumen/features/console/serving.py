@@ -16,6 +16,7 @@ from lumen.features.console.access import Access, secret_in
 from lumen.features.console.connections import KnownConnection
 from lumen.features.console.gate import LOOPBACK, Gate
 from lumen.features.console.people import Role
+from lumen.features.console.proxies import TrustedProxies
 from lumen.features.console.site import Site
 from lumen.features.console.watch import Watch
 from lumen.run.reaching import Reached
@@ -28,8 +29,8 @@ class Console:
     """Listens at `address` from the beginning, and serves while it is `run`, until a signal or `end`.
 
     `reach` opens the bus of the project in `root`. `pins` are those of the roles; without any everybody may do
-    everything, so that it has to be on loopback. `hosts` are other names of this machine. Port 0 is any that is free.
-    Raises UsageError.
+    everything, so that it has to be on loopback and behind no proxy. `hosts` are other names of this machine, `proxies`
+    the addresses of trusted proxies. Port 0 is any that is free. Raises UsageError.
     """
 
     def __init__(
@@ -41,11 +42,13 @@ class Console:
         *,
         pins: Mapping[Role, str] | None = None,
         hosts: Iterable[str] = (),
+        proxies: Iterable[str] = (),
     ) -> None:
-        local = is_loopback(host)
-        if not local and not pins:
+        local, trusted = is_loopback(host), tuple(proxies)
+        if not (local and not trusted) and not pins:
+            how = "through a proxy" if local else f"on {host}"
             raise UsageError(
-                f"other machines can reach the console on {host}, but no PINs are set: write `console: "
+                f"other machines can reach the console {how}, but no PINs are set: write `console: "
                 "{pins: {operator: $LUMEN_PIN}}` into lumen.yaml, and the PIN into that environment variable; or leave "
                 "out `--host`"
             )
@@ -53,7 +56,7 @@ class Console:
         shown = f"[{host}]" if ":" in host else host
         self.address = f"http://{shown}:{self._listener.getsockname()[1]}/"
         self.site = Site(Watch(reach, root), Access(pins or {}, secret_in(root) if pins else b""), root)
-        gate = Gate(self.site.app, {host, *hosts, *(LOOPBACK if local else ())})
+        gate = Gate(self.site.app, {host, *hosts, *(LOOPBACK if local else ())}, TrustedProxies(trusted))
         config = uvicorn.Config(
             gate, log_level="warning", access_log=False, lifespan="on", server_header=False, date_header=False,
             proxy_headers=False, ws="none", http=KnownConnection, loop="asyncio", timeout_graceful_shutdown=END_TIMEOUT,

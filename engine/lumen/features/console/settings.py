@@ -11,7 +11,8 @@ class ConsoleSettings:
     """`lumen run` has a console beside it where this is `wanted`.
 
     `pins` names for a role (`show`, `operator`, `author`) the variable of the environment that holds its PIN; `hosts`
-    are other names under which it is reached.
+    are other names under which it is reached. `proxies` are addresses or networks of proxies before it, which say where
+    a request comes from.
     """
 
     wanted: bool = False
@@ -19,3 +20,4 @@ class ConsoleSettings:
     host: str = CONSOLE_HOST
     pins: Mapping[str, str] = field(default_factory=dict)
     hosts: tuple[str, ...] = ()
+    proxies: tuple[str, ...] = ()

@@ -128,10 +128,11 @@ class Site:
         return self.reception.robot(robot).robot
 
     async def _session(self, request: Request) -> Response:
+        encrypted = request.url.scheme == "https"  # a cookie that was set there never travels in the clear
         if request.method == "DELETE":
             self.access.end(request.cookies.get(COOKIE, ""))
             gone = as_json({"role": self.reception.person(request).role.word if not self.access.pins else "nobody"})
-            gone.delete_cookie(COOKIE, httponly=True, samesite="strict")
+            gone.delete_cookie(COOKIE, httponly=True, samesite="strict", secure=encrypted)
             return gone
         data = await self.reception.posted(request)
         pin, name = data.get("pin"), data.get("name") or ""
@@ -147,7 +148,8 @@ class Site:
         shown = "".join(sign for sign in name if sign.isprintable()).strip()
         answer = as_json({"role": role.word, "name": shown})
         cookie = self.access.sign(Person(role, shown))
-        answer.set_cookie(COOKIE, cookie, max_age=int(SESSION_TIME), httponly=True, samesite="strict", path="/")
+        lasts = int(SESSION_TIME)
+        answer.set_cookie(COOKIE, cookie, max_age=lasts, httponly=True, samesite="strict", secure=encrypted)
         return answer
 
 

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from lumen.errors import BusError
+from lumen.errors import BusError, BusUnreachableError
 from lumen.features.console.bus_link import BusLink
 from lumen.features.console.changes import Changes
 from lumen.features.console.entry_clock import ToldPage
@@ -17,6 +17,7 @@ from lumen.features.console.robot_keys import PRESENCE, KeyBook
 from lumen.language.operator_requests import JOURNAL, NOW, STATUS
 from lumen.language.routing_keys import DEFAULT_ALIASES
 from lumen.ports import Message
+from lumen.project.home import home_of
 from lumen.run.reaching import Reached
 
 PERIOD = 0.25
@@ -50,8 +51,8 @@ class Watch:
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._news = set[str]()
         self.link = BusLink(
-            reach, self._patterns, heard=self._heard, answered=self._answered, returned=self._returned,
-            changed=lambda: self._later(self._link_changed),
+            _without_path(reach, root), self._patterns, heard=self._heard, answered=self._answered,
+            returned=self._returned, changed=lambda: self._later(self._link_changed),
         )  # fmt: skip
         self.exchanges = Exchanges(self.link)
 
@@ -173,3 +174,18 @@ class Watch:
         said = await self.exchanges.ask(self.keys.of(view.robot).config, {"command": "status"}, QUESTION_TIMEOUT)
         if isinstance(said, dict):
             view.told(said)
+
+
+def _without_path(reach: Callable[[], Reached], root: Path) -> Callable[[], Reached]:
+    """Reach the same; why that is impossible is told to everybody, so the project's path is left out."""
+
+    def reached() -> Reached:
+        try:
+            return reach()
+        except BusError as error:
+            text = str(error)
+            for path in (home_of(root).absolute(), root.absolute(), root.resolve()):
+                text = text.replace(str(path), "this project")
+            raise BusUnreachableError(text) from None
+
+    return reached
