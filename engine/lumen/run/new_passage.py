@@ -3,6 +3,7 @@
 import os
 import re
 import unicodedata
+from collections.abc import Mapping
 from pathlib import Path
 
 import yaml
@@ -19,15 +20,21 @@ MAX_SAME = 100
 HEADER = "# yaml-language-server: $schema=../schemas/knowledge.schema.json\n\n"
 
 
-def write_passage(root: Path, question: str, answer: str, language: str) -> Path:
-    """Write the passage of a question and its answer, in one language; its file, from the project's folder.
+def write_passage(
+    root: Path, question: str, answer: str, language: str, also: Mapping[str, tuple[str, str]] | None = None
+) -> Path:
+    """Write the passage of a question and its answer; return its file, from the project's folder.
 
-    No file is written over. Raises UsageError where that is no question, no answer or no language, or the folder can't
-    be written.
+    `also` has the question and the answer in other languages. No file is written over. Raises UsageError if that is no
+    question, no answer or no language, or the folder can't be written.
     """
-    question, answer = one_line(question, "question"), one_line(answer, "answer")
-    check_language(language)
-    data = {"questions": {language: [question]}, "answer": {language: answer}}
+    pairs = {language: (question, answer), **(also or {})}
+    questions, answers = dict[str, list[str]](), dict[str, str]()
+    for code, (asked, answered) in pairs.items():
+        check_language(code)
+        questions[code], answers[code] = [one_line(asked, "question")], one_line(answered, "answer")
+    question = questions[language][0]
+    data = {"questions": questions, "answer": answers}
     text = HEADER + yaml.safe_dump(data, allow_unicode=True, sort_keys=False, width=110)
     folder = root / KNOWLEDGE_FOLDER
     try:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from lumen.lint import check_files
+from lumen.project.files import read_files
 from tests.features.console.conftest import Hosted, Shared
 from tests.features.console.pages import Browser, Served, Stream
 from tests.waiting import until
@@ -50,6 +52,44 @@ def test_a_question_becomes_a_passage_of_the_project(copy: Path) -> None:
         refused = served.browser.post("/api/passages", {**passage, "answer": ""})
         assert (refused.status, "`answer`" in refused.data["reason"]) == (400, True)
         assert served.browser.get("/api/day").data["numbers"]["unanswered"] == []
+
+
+def test_a_passage_in_all_languages_makes_no_warning(copy: Path) -> None:
+    with closing(Hosted(copy)), closing(Served(copy)) as served:
+        until(lambda: any(robot["connected"] for robot in served.browser.robots))
+        also = {"id": {"question": "apa itu cinta", "answer": "Pertanyaan."}}
+        passage = {"question": "what is love", "answer": "A question.", "language": "en", "also": also}
+        assert served.browser.post("/api/passages", passage).data == {"file": "knowledge/what-is-love.yaml"}
+        text = (copy / "knowledge" / "what-is-love.yaml").read_text("utf-8")
+        assert "apa itu cinta" in text
+        findings = check_files(copy, read_files(copy))[1]
+        assert [str(one) for one in findings if one.file == "knowledge/what-is-love.yaml"] == []
+        half = {**passage, "also": {"id": {"question": "apa itu cinta"}}}
+        assert "`answer`" in served.browser.post("/api/passages", half).data["reason"]
+        wrong = served.browser.post("/api/passages", {**passage, "also": ["id"]})
+        assert (wrong.status, "`also` must look like" in wrong.data["reason"]) == (400, True)
+
+
+def test_the_day_is_there_without_the_exhibition(copy: Path) -> None:
+    """After a crash it is needed most: visits, entries and why are read from the journal on the disk."""
+    with closing(Hosted(copy)) as hosted:
+        hosted.send("face", {"x": 160, "y": 120})
+        until(lambda: "greet" in hosted.exhibition.configuration)
+        hosted.send("heard", {"result": "what is love", "language": "en"})
+        with closing(Served(copy)) as served:
+            until(lambda: served.browser.get("/api/day").data["numbers"]["asked"])
+            before = served.browser.get("/api/day").data["visits"][0]
+            path = f"/api/entries?from={before['from']}&to={before['to']}"
+            told = served.browser.get(path).data["entries"]
+    with closing(Served(copy)) as served:  # another console, which has never reached it
+        [robot] = served.browser.robots
+        assert (robot["robot"], robot["connected"]) == ("NAO", False)
+        [visit] = served.browser.get("/api/day").data["visits"]
+        assert (visit["from"], visit["began"]) == (before["from"], before["began"])
+        assert served.browser.get(path).data["entries"] == told
+        why = served.browser.get("/api/why?what=greet").data
+        assert "chain" in why, why
+        assert served.browser.get("/api/day.csv").status == 200
 
 
 def test_what_happens_between_visits_has_its_place_in_the_day(copy: Path) -> None:

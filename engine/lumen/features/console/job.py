@@ -19,7 +19,7 @@ from typing import Any
 import orjson
 
 from lumen.errors import LumenError
-from lumen.features.console.job_promises import JOB_TIME, NOTHING
+from lumen.features.console.job_promises import JOB_TIME, MAX_SHOWN, NOTHING
 from lumen.upkeep.garbage import search_rarely
 from lumen.upkeep.judge_process import MAX_MEMORY, AnswerPipe, answering, limit_time
 
@@ -41,6 +41,13 @@ def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose:
         yield orjson.dumps({"date": found.day.isoformat(), "text": day_csv(found)})
     else:
         yield orjson.dumps(found.to_json())
+
+
+def entries(pipe: AnswerPipe, root: Path, robot: str, first: int, last: int) -> Iterator[bytes]:
+    """The entries between two positions, from this machine's files."""
+    from lumen.features.console.kept_days import KeptDays
+
+    yield orjson.dumps(KeptDays(root, robot).entries(first, last, MAX_SHOWN), default=str)
 
 
 def why(pipe: AnswerPipe, root: Path, robot: str, question: str, what: str, at: str | None) -> Iterator[bytes]:
@@ -98,7 +105,7 @@ def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 
 
 JOBS: dict[str, Callable[..., Iterable[bytes]]] = {
-    "day": day, "why": why, "replay": replay, "saying": saying, "shape": shape, "poses": poses
+    "day": day, "entries": entries, "why": why, "replay": replay, "saying": saying, "shape": shape, "poses": poses
 }  # fmt: skip
 
 

@@ -5,13 +5,12 @@ from collections.abc import AsyncIterator
 import orjson
 
 from lumen.features.console.entry_ring import EncodedEntry
+from lumen.features.console.job_promises import MAX_SHOWN
 from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.watch import Watch
 
 MAX_REMOTE = 40_000
 """Entries that are asked of an exhibition for its day, the last ones."""
-MAX_SHOWN = 5_000
-"""Entries of a visit that a page gets."""
 
 
 class JournalSource:

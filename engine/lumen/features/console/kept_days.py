@@ -7,7 +7,8 @@ from typing import Any
 
 from lumen.errors import JournalError
 from lumen.features.console.day import Day, day_of
-from lumen.insight.replay.entries import RecordedEntry, read_entry
+from lumen.insight.replay.entries import RecordedEntry, entry_data, read_entry
+from lumen.insight.replay.journal_clock import JournalClock
 from lumen.journal.journal_file import each_entry
 from lumen.journal.journal_folder import JOURNAL_FOLDER, headers
 from lumen.language.machines import MachineDefinition
@@ -44,6 +45,20 @@ class KeptDays:
         found = day_of(_entries(wanted_files), self._machine, chosen)
         found.dates = sorted({*dates, *found.dates})
         return self._still_open(found)
+
+    def entries(self, first: int, last: int, most: int) -> dict[str, Any]:
+        """Return a page of entries between two positions, at most so many, as an exhibition tells it (`ToldPage`)."""
+        files, clock = sorted(self._files(), key=lambda row: row[1]), JournalClock()
+        begin = max((number for number, row in enumerate(files) if row[1] <= first), default=0)
+        found, epoch = list[dict[str, Any]](), None
+        for entry in _entries([file for file, _, _ in files[begin:]]):
+            if entry.position > last or len(found) >= most:
+                break
+            if entry.position >= first:
+                epoch = clock.epoch if not found else epoch
+                found.append({"position": entry.position, **entry_data(entry)})
+            clock.of(entry)
+        return {"entries": found, "epoch": epoch or None}
 
     def told(self, pages: Iterable[Any], wanted: date | None) -> Day:
         """A day from pages of entries with their positions, as an exhibition tells them."""

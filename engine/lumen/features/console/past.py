@@ -9,6 +9,7 @@ from starlette.responses import Response
 from starlette.routing import Route
 
 from lumen.errors import BusError, UsageError
+from lumen.features.console.entry_clock import ToldPage
 from lumen.features.console.entry_words import told_of
 from lumen.features.console.job_promises import NOTHING
 from lumen.features.console.jobs import Jobs
@@ -55,9 +56,14 @@ class Past:
         view = self._asked(request, Role.SHOW)
         what = request.query_params.get("what", "")[:MAX_QUESTION]
         at = request.query_params.get("at") or None
-        said = await self._ask(view, question(what=what, **({"at": at} if at else {})))
+        try:
+            said = await self._ask(view, question(what=what, **({"at": at} if at else {})))
+        except DeniedError:  # it does not answer: its journal may
+            if not self._is_ours(view):
+                raise
+            said = {"kept": "later"}
         if said.get("kept") == "later" and self._is_ours(view):
-            said = orjson.loads(await self._jobs.do("why", self._home(view), question, what, at))
+            said = orjson.loads(await self._jobs.do("why", self._home(view), question.ask, what, at))
         if said.get("verdict") == "refused":
             raise DeniedError(404, str(said.get("reason")))
         return as_json(said)
@@ -111,7 +117,10 @@ class Past:
         try:
             found = await self._source.entries(view, int(first), int(last))
         except BusError as error:
-            raise DeniedError(503, f"the exhibition did not send its entries: {error}") from None
+            if not self._is_ours(view):
+                raise DeniedError(503, f"the exhibition did not send its entries: {error}") from None
+            said = orjson.loads(await self._jobs.do("entries", self._home(view), int(first), int(last)))
+            found = view.entries.encoded(ToldPage(**said))
         data = b'{"entries":[' + b",".join(entry.data for entry in found) + b"]}"
         return Response(data, headers=NO_STORE, media_type="application/json")
 
@@ -133,7 +142,7 @@ class Past:
             raise DeniedError(400, ELSEWHERE)
         question, answer, language = (str(data.get(key, "")) for key in ("question", "answer", "language"))
         try:
-            file = write_passage(self._jobs.root, question, answer, language)
+            file = write_passage(self._jobs.root, question, answer, language, _others(data.get("also")))
         except UsageError as error:
             raise DeniedError(400, str(error)) from None
         return as_json({"file": file.as_posix()})
@@ -157,8 +166,8 @@ class Past:
         return self._reception.robot(request.query_params.get("robot"))
 
     def _is_ours(self, view: KnownRobot) -> bool:
-        """Whether it is a robot of the project whose folder we know, and the bus is reached."""
-        return self._watch.link.reached is not None and self._watch.keys.is_ours(view.robot)
+        """Whether it is a robot of the project whose folder we know."""
+        return self._watch.keys.is_ours(view.robot)
 
     def _home(self, view: KnownRobot) -> str:
         """Which of the robots of the project whose folder we know; the first where it is none of them."""
@@ -173,3 +182,14 @@ class Past:
         if not isinstance(said, dict):
             raise DeniedError(503, "the exhibition sent an answer that cannot be shown")
         return said
+
+
+def _others(said: Any) -> dict[str, tuple[str, str]]:
+    """The question and the answer in other languages, by their codes. Raises UsageError."""
+    if not isinstance(said, dict | None):
+        raise UsageError('`also` must look like `{"id": {"question": "…", "answer": "…"}}`')
+    found = {}
+    for language, texts in (said or {}).items():
+        one = texts if isinstance(texts, dict) else {}
+        found[str(language)] = str(one.get("question", "")), str(one.get("answer", ""))
+    return found

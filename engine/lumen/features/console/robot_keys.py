@@ -36,8 +36,9 @@ class KeyBook:
         self._routes: Mapping[str, Mapping[str, str]] = {}
         self._heard: Mapping[str, tuple[str, str]] = {}
         self._reached: Reached | None = None
-        self._root, self._told_apart = root, False
-        self.robots: Sequence[str] = ()
+        settings = main_settings(root)
+        self._root, self._told_apart = root, bool(settings and settings.told_apart)
+        self.robots: Sequence[str] = tuple(settings.robots) if settings else ()
         """Those that are there in any case: of the project, else who was reached."""
 
     def use(self, reached: Reached) -> Sequence[str]:
@@ -57,8 +58,8 @@ class KeyBook:
         return [*usual, *told, *(key for (robot, name), key in heard.items() if key != default_key(name, robot))]
 
     def is_ours(self, robot: str) -> bool:
-        """Whether it is one of the project whose folder we know, and which was reached."""
-        return self._reached is not None and robot in self.robots
+        """Whether it is one of the project whose folder we know."""
+        return robot in self.robots
 
     def home(self, robot: str) -> str:
         """What the folder of one of ours is called, empty where lumen.yaml has one `robot:`."""

@@ -121,7 +121,8 @@ class Site:
 
     def _meant(self, robot: object, *, rests: bool) -> str:
         """The robot's name; what rests may go to all, and to one that is not known yet."""
-        if rests and (robot == ALL or (not self.watch.robots and isinstance(robot, str) and robot)):
+        known = self.watch.link.reached is not None and self.watch.robots
+        if rests and (robot == ALL or (not known and isinstance(robot, str) and robot)):
             return str(robot)
         if rests and not robot:
             return ALL

@@ -58,6 +58,8 @@ class Watch:
 
     def start(self) -> None:
         self._loop = asyncio.get_running_loop()
+        for robot in self.keys.robots:  # known before they answer: their journals can be read without them
+            self._know(robot)
         self.link.start()
 
     async def close(self) -> None:

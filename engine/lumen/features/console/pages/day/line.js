@@ -25,9 +25,9 @@ export function Line({ day, bounds: [begin, end], visit, moment, scrub, look }) 
     }}>
       <rect class="road" x="0" y="22" width=${WIDE} height="40" rx="6" />
       ${hours.map((at) => html`<line class="hour" x1=${x(at)} x2=${x(at)} y1="14" y2="70" />`)}
-      ${day.between?.map((one) => html`<rect class="between ${one === visit ? "now" : ""}" x=${x(Date.parse(one.began))} y="38" rx="2" height="8"
+      ${day.between?.map((one) => html`<rect class="between ${one.from === visit?.from ? "now" : ""}" x=${x(Date.parse(one.began))} y="38" rx="2" height="8"
         width=${Math.max(3, x(Date.parse(one.ended)) - x(Date.parse(one.began)))} />`)}
-      ${day.visits.map((one) => html`<rect class="bar ${one === visit ? "now" : ""}" x=${x(Date.parse(one.began))} y="26" rx="3" height="32"
+      ${day.visits.map((one) => html`<rect class="bar ${one.from === visit?.from ? "now" : ""}" x=${x(Date.parse(one.began))} y="26" rx="3" height="32"
         width=${Math.max(3, x(Date.parse(one.ended ?? iso(end))) - x(Date.parse(one.began)))} onClick=${(e) => { e.stopPropagation(); look(one); }} />`)}
       ${day.marks?.map((one) => html`<path class="flag" d="M${x(Date.parse(one.at))} 12 v52 m0 -52 l14 7 l-14 7 z" />`)}
       <line class="moment" x1=${x(moment)} x2=${x(moment)} y1="6" y2="78" /></svg>

@@ -4,7 +4,7 @@ import { JOB, get, listen, live } from "../live.js";
 import { Entry, Why, question } from "../now/entries.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
-import { Part, clock, html, languageName, lineOf, span, t, useEffect, useRedraw, useState } from "../ui.js";
+import { Part, clock, html, languageName, lineOf, span, t, useEffect, useRedraw, useRef, useState } from "../ui.js";
 import { Fork } from "./fork.js";
 import { Line, bounds, stretches } from "./line.js";
 import { Numbers } from "./numbers.js";
@@ -15,7 +15,7 @@ const SOON = 500, AGAIN = 15000; // [ms] after what happened last, and between t
 function Visits({ day, visit, choose }) {
   return html`<${Part} title=${t("day.visits")} kind="visits">
     ${day.visits.length ? html`<ol class="visit-list bounded" reversed tabindex="0" aria-label=${t("day.visits")}>${[...day.visits].reverse().map((one) => html`<li key=${one.from}>
-      <button type="button" aria-current=${one === visit ? "true" : null} onClick=${() => choose(one)}>
+      <button type="button" aria-current=${one.from === visit?.from ? "true" : null} onClick=${() => choose(one)}>
         <b>${t("day.visit", { n: one.n })}</b> <time datetime=${one.began}>${clock(one.began, false)}</time>
         <span>${span(one.seconds ?? 0)}</span><span class="grow">${one.visitor ?? ""}</span><span class="quiet">${one.language ? languageName(one.language) : ""}</span></button></li>`)}</ol>`
       : html`<p class="quiet">${t("day.none")}</p>`}</${Part}>`;
@@ -30,19 +30,21 @@ function nearest(entries, moment) {
 }
 
 function Around({ name, visit, moment, chosen, choose }) {
-  const [entries, set] = useState(null), [failed, fail] = useState(""), [why, ask] = useState(null);
+  const [entries, set] = useState(null), [failed, fail] = useState(""), [why, ask] = useState(null), of = useRef(null);
   useEffect(() => {
-    set(null), fail("");
+    if (of.current !== visit?.from) set(null); // of another visit; one that goes on keeps what is shown
+    of.current = visit?.from;
+    fail("");
     let gone = false;
     if (visit) get("/api/entries", { robot: name, from: visit.from, to: visit.to }).then((found) => gone || set(found.entries), (error) => gone || fail(reasonOf(error)));
     return () => { gone = true; };
-  }, [visit]);
+  }, [visit?.from, visit?.to]);
   const shown = entries ? nearest(entries, moment) : [];
   const now = shown.filter((entry) => Date.parse(entry.at_time) <= moment).at(-1);
   return html`<${Part} title=${t("day.entries")} kind="entries" aside=${html`<b>${visit && !visit.n ? `${t("day.between")}, ` : ""}${t("day.at", { time: clock(new Date(moment).toISOString()) })}</b>`}>
     ${failed && html`<p class="bad" role="alert"><${Quote} text=${failed} /></p>`}${visit && !entries && !failed && html`<p class="quiet">${t("loading")}</p>`}
     <ol class="entry-list bounded" tabindex="0" aria-label=${t("day.entries")}>${shown.map((entry) => html`<${Entry} key=${entry.position} entry=${entry}
-      current=${entry === (chosen ?? now)} onOpen=${choose} />`)}</ol>
+      current=${entry.position === (chosen ?? now)?.position} onOpen=${choose} />`)}</ol>
     ${chosen && html`<div class="chosen"><p><time datetime=${chosen.at_time}>${clock(chosen.at_time)}</time> ${lineOf(chosen)}</p>
       <button type="button" onClick=${() => ask(chosen)}>${t("why")}</button></div>`}
     ${why && html`<${Why} robot=${name} what=${question(why)} at=${why.at_time} text=${lineOf(why)} onClose=${() => ask(null)} />`}</${Part}>`;
@@ -68,7 +70,7 @@ export default function DayPage({ name }) {
     let timer = 0, looked = 0, gone = false;
     const look = () => get("/api/day", { robot: name }, JOB).then((found) => {
       looked = Date.now();
-      if (!gone) set((shown) => (shown?.date === found.date ? { ...shown, numbers: found.numbers, marks: found.marks } : shown));
+      if (!gone) set((shown) => (shown?.date === found.date ? found : shown));
     }, () => {}); // the console is away: what is shown stays
     const leave = date ? () => {} : listen((kind, body) => {
       if (kind !== "entry" || body.robot !== name || !body.text || live.state !== "live") return; // before that comes what was
@@ -79,17 +81,18 @@ export default function DayPage({ name }) {
   }, [date]);
   const scrub = (at) => {
     move(at), mark(null);
-    const parts = stretches(day), inside = parts.filter((one) => Date.parse(one.began) <= at).at(-1) ?? parts[0];
-    if (inside && inside !== visit) choose(inside);
+    const inside = parts.filter((one) => Date.parse(one.began) <= at).at(-1) ?? parts[0];
+    if (inside && inside.from !== visit?.from) choose(inside);
   };
+  const parts = day ? stretches(day) : [], shown = parts.find((one) => one.from === visit?.from) ?? visit; // as it is by now
   if (failed) return html`<h1 class="hidden">${t("day")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;
   if (!day) return html`<p class="notice">${t("loading")}</p>`;
   return html`<div class="page-head"><h1>${t("page.day")}</h1>
       <label><span>${t("day.date")}</span><input type="date" value=${date || day.date} min=${day.dates?.at(0)} max=${day.dates?.at(-1)} onChange=${(e) => pick(e.target.value)} /></label>
       ${may("show") && html`<button type="button" onClick=${() => command(name, "mark")}>${t("day.mark")}</button>`}</div>
-    <${Line} day=${day} bounds=${bounds(day)} visit=${visit} moment=${moment} scrub=${scrub} look=${look} />
-    <div class="day"><${Visits} day=${day} visit=${visit} choose=${look} />
-      <${Around} name=${name} visit=${visit} moment=${moment} chosen=${chosen} choose=${(entry) => { mark(entry); move(Date.parse(entry.at_time)); }} />
+    <${Line} day=${day} bounds=${bounds(day)} visit=${shown} moment=${moment} scrub=${scrub} look=${look} />
+    <div class="day"><${Visits} day=${day} visit=${shown} choose=${look} />
+      <${Around} name=${name} visit=${shown} moment=${moment} chosen=${chosen} choose=${(entry) => { mark(entry); move(Date.parse(entry.at_time)); }} />
       ${may("author") && html`<${Fork} name=${name} entry=${chosen} />`}</div>
     <${Numbers} name=${name} day=${day} />`;
 }

@@ -1,18 +1,34 @@
-// What visitors asked and nobody could answer; each becomes a passage of knowledge/ with one edit.
+// What visitors asked and nobody could answer; each becomes a passage of knowledge/, in the languages of the project.
+import { robotOf } from "../live.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { fixed, html, languageName, t, useEffect, useRef, useState } from "../ui.js";
 
+const LIMIT = 15000; // [ms]
+
+/** The question and the answer in one language; the visitor asked in `own`, so there is a question in that one. */
+function Pair({ code, own, texts, write, first = null }) {
+  const name = languageName(code), field = (what, ref) => html`<label class="grow">
+    <span>${t(`day.passage.${what}`)} (${name})</span><input ref=${ref} lang=${code} value=${texts[what] ?? ""} maxlength="1000"
+      required=${own || Boolean(texts.question || texts.answer)} autocomplete="off"
+      onInput=${(e) => write({ ...texts, [what]: e.target.value })} /></label>`;
+  return html`${!own && field("question", null)}${field("answer", first)}`;
+}
+
 function Row({ name, one, saved }) {
-  const [open, setOpen] = useState(false), [answer, setAnswer] = useState(""), [busy, wait] = useState(false), [wrong, complain] = useState("");
-  const field = useRef(null);
+  const [open, setOpen] = useState(false), [busy, wait] = useState(false), [wrong, complain] = useState("");
+  const [texts, write] = useState({ [one.language]: { question: one.text } }), field = useRef(null);
   useEffect(() => field.current?.focus(), [open]);
+  const languages = [one.language, ...(robotOf(name)?.languages ?? []).filter((code) => code !== one.language)];
   const save = async (submitted) => {
     submitted.preventDefault();
     wait(true), complain("");
+    const { [one.language]: own, ...others } = texts;
+    const also = Object.fromEntries(Object.entries(others).filter(([, pair]) => pair.question || pair.answer));
     try {
-      const body = JSON.stringify({ robot: name, question: one.text, language: one.language, answer });
-      const sent = await fetch("/api/passages", { method: "POST", headers: { "Content-Type": "application/json" }, body, signal: AbortSignal.timeout(15000) });
+      const body = JSON.stringify({ robot: name, ...own, language: one.language, also });
+      const sent = await fetch("/api/passages", { method: "POST", headers: { "Content-Type": "application/json" },
+        body, signal: AbortSignal.timeout(LIMIT) });
       const said = await sent.json().catch(() => ({}));
       if (sent.ok) return saved(said.file);
       complain(said.reason ?? `${sent.status}`);
@@ -21,8 +37,10 @@ function Row({ name, one, saved }) {
   };
   return html`<li><span>${one.text}</span> <span class="quiet">${languageName(one.language)} · ${fixed(one.count)}×</span>
     ${may("author") && html`<button type="button" aria-expanded=${open} onClick=${() => setOpen(!open)}>${t("day.passage")}</button>`}
-    ${open && html`<form class="cue" onSubmit=${save}><label class="grow"><span>${t("day.passage.answer")} (${languageName(one.language)})</span>
-      <input ref=${field} value=${answer} onInput=${(e) => setAnswer(e.target.value)} maxlength="1000" required autocomplete="off" /></label><button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`}
+    ${open && html`<form class="cue" onSubmit=${save}>${languages.map((code, n) => html`<${Pair} key=${code} code=${code} own=${n === 0}
+        texts=${texts[code] ?? {}} write=${(pair) => write({ ...texts, [code]: pair })} first=${n === 0 ? field : null} />`)}
+      ${languages.length > 1 && html`<p class="quiet">${t("day.passage.more")}</p>`}
+      <button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`}
     <p class="bad" role="alert"><${Quote} text=${wrong} /></p></li>`;
 }
 

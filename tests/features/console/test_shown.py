@@ -1,0 +1,155 @@
+"""What the pages of the day, the files and the hall show is whole and of now."""
+
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from selenium.webdriver.common.keys import Keys
+
+from tests.features.console.conftest import Hosted
+from tests.features.console.pages import Served
+from tests.features.console.viewer import Viewer
+from tests.waiting import HANG, until
+
+pytestmark = pytest.mark.slow
+SORRY = 'en: "I am sorry, I cannot wave right now. Goodbye!"'
+LATER = 'en: "I am sorry, I cannot wave right now. See you tomorrow, perhaps!"'
+LOVE = "questions: {en: [what is love], id: [apa itu cinta]}\nanswer: {en: A question., id: Pertanyaan.}\n"
+NO_POSE = """
+delete globalThis.SharedWorker;
+const before = globalThis.fetch;
+globalThis.fetch = (path, ...more) => {
+  const waits = `${path}`.startsWith("/api/poses") && !globalThis.posing;
+  return waits ? new Promise((_, fail) => { globalThis.end = fail; }) : before(path, ...more);
+};
+"""
+"""No pose comes until `posing`."""
+ASKED = """
+const get = Response.prototype.json;
+Response.prototype.json = async function () {
+  const said = await get.call(this);
+  const asked = [{ text: "what is the meaning of life", language: "en", count: 2 }];
+  return said.numbers ? { ...said, numbers: { ...said.numbers, unanswered: asked } } : said;
+};
+"""
+"""A question that nobody has answered is among the numbers of the day."""
+DRAWN = "return document.querySelector('canvas')?.scene?.robot.visible"
+
+
+@pytest.fixture
+def own(copy: Path) -> Iterator[tuple[Hosted, Served]]:
+    """An exhibition that a test may edit, and its console."""
+    with closing(Hosted(copy)) as hosted, closing(Served(copy)) as served:
+        until(lambda: [robot["connected"] for robot in served.browser.robots] == [True], HANG)
+        yield hosted, served
+
+
+def visit(hosted: Hosted, name: str) -> None:
+    hosted.send("face", {"x": 160, "y": 120})
+    until(lambda: "ask_name" in hosted.exhibition.configuration, HANG)
+    hosted.send("heard", {"result": f"my name is {name}", "language": "en"})
+    until(lambda: hosted.exhibition.context["visitor"] == name, HANG)
+
+
+def test_a_visit_that_begins_is_in_the_day_that_is_shown(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
+    hosted, served = own
+    viewer.open(served.console.address, "robot/NAO/day", ready=".day")
+    assert viewer.all(".visit-list li") == []
+    visit(hosted, "Budi")
+    viewer.shows("Budi", ".visit-list li")
+    assert len(viewer.all(".line .bar")) == 1
+
+
+def test_the_day_is_shown_after_a_crash(viewer: Viewer, copy: Path) -> None:
+    with closing(Hosted(copy)) as hosted:
+        visit(hosted, "Budi")
+    with closing(Served(copy)) as served:
+        viewer.open(served.console.address, "robot/NAO/day", ready=".visit-list")
+        viewer.shows("Budi", ".visit-list li")
+        viewer.shows("my name is Budi", ".day .entry-list")
+        viewer.shows("the robot does not answer", ".connection")
+
+
+def test_a_changed_text_is_shown_before_and_after_with_its_line(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
+    hosted, served = own
+    tour = hosted.root / "behaviors" / "tour.yaml"
+    text = tour.read_text("utf-8")
+    line = text[: text.index(SORRY)].count("\n") + 1
+    viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="author")
+    tour.write_text(text.replace(SORRY, LATER), "utf-8")
+    viewer.shows("See you tomorrow, perhaps", ".changes ins")
+    viewer.shows("Goodbye", ".changes del")
+    places = viewer.text(".changes .place")
+    assert places.startswith("behaviors/tour.yaml:")
+    assert abs(int(places.rpartition(":")[2]) - line) <= 1  # of the `say` that the text is in
+    assert "− I am sorry, I cannot wave right now." in viewer.text(".changes")
+
+
+def test_a_roll_back_restores_the_file_and_names_the_newer_one(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
+    hosted, served = own
+    tour = hosted.root / "behaviors" / "tour.yaml"
+    text = tour.read_text("utf-8")
+    viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="author")
+    tour.write_text(text.replace(SORRY, LATER), "utf-8")
+    viewer.shows("See you tomorrow, perhaps", ".changes ins")
+    viewer.click(".saved .strong")
+    viewer.click("dialog .strong")
+    viewer.shows("active", ".saved .badge")
+    until(lambda: LATER in tour.read_text("utf-8") and hosted.exhibition.project.hash, HANG)
+    viewer.click(".saved .actions button:last-child")
+    viewer.click("dialog .strong")
+    viewer.shows("behaviors/tour.yaml is as it was before; the newer version is in .lumen/rolled-back/", ".saved")
+    assert tour.read_text("utf-8") == text
+    (hosted.root / "knowledge" / "love.yaml").write_text(LOVE)
+    viewer.shows("love", ".changes")
+    assert "See you tomorrow" not in viewer.text(".changes")
+
+
+def test_a_robot_is_drawn_only_once_its_pose_is_known(served: Served) -> None:
+    with closing(Viewer(first=NO_POSE)) as viewer:
+        viewer.open(served.console.address, "robot/NAO/see", ready="canvas", see="hall")
+        until(lambda: viewer.run(DRAWN) is not None, HANG)
+        viewer.shows("Waiting for the first pose", ".hall")
+        assert viewer.run(DRAWN) is False
+        viewer.run("globalThis.posing = true; globalThis.end(new Error('again'))")
+        until(lambda: viewer.run(DRAWN), HANG)
+
+
+def test_a_phone_on_its_side_has_rest_beside_the_settings(viewer: Viewer, served: Served) -> None:
+    for language in ("en", "id"):
+        viewer.open(served.console.address, "robot/NAO", ready=".leaf", language=language)
+        viewer.size(844, 390)
+        hit = """
+        const box = document.querySelector(".settings > button").getBoundingClientRect();
+        return [0.05, 0.5, 0.95].map((part) => Boolean(document.elementFromPoint(
+          box.left + part * box.width, box.top + box.height / 2)?.closest(".settings")));
+        """
+        assert viewer.run(hit) == [True, True, True], language
+    viewer.size(1400)
+
+
+def test_the_menu_closes_on_escape_and_gives_the_focus_back(viewer: Viewer, served: Served) -> None:
+    viewer.open(served.console.address, "robot/NAO", ready=".leaf")
+    viewer.click(".settings > button")
+    until(lambda: viewer.text("#settings"), HANG)
+    viewer.type(Keys.ESCAPE)
+    until(lambda: not viewer.text("#settings"), HANG)
+    assert viewer.run("return document.activeElement.matches('.settings > button')")
+    assert viewer.text(".rest-said") == ""
+
+
+def test_an_answer_is_asked_for_in_all_languages_of_the_project(own: tuple[Hosted, Served]) -> None:
+    hosted, served = own
+    with closing(Viewer(first=ASKED)) as viewer:
+        viewer.open(served.console.address, "robot/NAO/day", ready=".unanswered li button", mode="author")
+        viewer.click(".unanswered li button")
+        labels = viewer.text(".unanswered form label").splitlines()
+        assert labels == ["Answer (English)", "Question (Indonesian)", "Answer (Indonesian)"]
+        for field, words in enumerate(("Forty-two.", "apa arti hidup", "Empat puluh dua."), 1):
+            viewer.click(f".unanswered form label:nth-of-type({field}) input")
+            viewer.type(words)
+        viewer.click(".unanswered form button")
+        viewer.shows("saved as knowledge/what-is-the-meaning-of-life.yaml", ".unanswered")
+    text = (hosted.root / "knowledge" / "what-is-the-meaning-of-life.yaml").read_text("utf-8")
+    assert all(words in text for words in ("Forty-two.", "apa arti hidup", "Empat puluh dua."))
