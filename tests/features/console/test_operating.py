@@ -9,7 +9,7 @@ from selenium.webdriver.common.keys import Keys
 from lumen.features.console.people import Role
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served
-from tests.features.console.viewer import Viewer
+from tests.features.console.viewer import PRESSES, Viewer
 from tests.fetched import fetched
 from tests.waiting import HANG, until
 
@@ -53,8 +53,8 @@ states:
         - {guard: "event.data.result == 'rest'", target: stage, approve: {by: operator, within: 3s}}
   stage:
     do: {say: Here I am.}
-    buttons: [{label: Back, event: back, key: b}]
-    on: {back: hall}
+    buttons: [{label: Back, event: back, key: b}, {label: Bow, event: bow}]
+    on: {back: hall, bow: {target: hall, approve: operator}}
 """
 
 
@@ -172,6 +172,10 @@ def test_what_waits_for_go_is_asked_about_and_goes_or_stays(viewer: Viewer, hall
     says(hall, "dance")
     viewer.shows("Waits for your GO", ".approvals")
     viewer.shows("hall → stage", ".approvals")
+    viewer.shows("“dance”", ".approval .visitor-said")
+    viewer.shows("says “Here I am.”", ".approval .would")
+    viewer.shows("Nothing happens until a person decides.", ".approval .countdown")
+    viewer.shows("dance", ".talk .visitor-said")
     assert viewer.driver.execute_async_script("axe.run().then((found) => arguments[0](found.violations))") == []
     assert viewer.text(".leaf .state-name") == "hall"
     viewer.click(".approval .actions button:last-child")
@@ -181,6 +185,46 @@ def test_what_waits_for_go_is_asked_about_and_goes_or_stays(viewer: Viewer, hall
     viewer.click(".approval .go")
     viewer.shows("stage", ".leaf")
     until(lambda: not viewer.all(".approval"), HANG)
+
+
+def test_a_button_that_waits_for_go_is_not_told_as_a_failure(viewer: Viewer, hall: Hosted) -> None:
+    says(hall, "dance")
+    viewer.click(".approval .go")
+    viewer.shows("stage", ".leaf")
+    viewer.click(".declared-list li:nth-child(2) .declared")
+    viewer.shows("Bow: waits for a GO", ".told [data-state=finished]")
+    viewer.shows("Waits for your GO", ".approvals")
+    viewer.click(".approval .go")
+    viewer.shows("hall", ".leaf")
+
+
+@pytest.mark.parametrize(
+    ("press", "opened"), [(".declared-list li:nth-child(3) .declared", "dialog"), (".settings > button", "#settings")]
+)
+def test_escape_that_closes_something_is_no_half_of_rest(viewer: Viewer, hall: Hosted, press: str, opened: str) -> None:
+    viewer.click(press)
+    until(lambda: viewer.text(opened), HANG)
+    presses = viewer.run(PRESSES)
+    viewer.type(Keys.ESCAPE, Keys.ESCAPE)
+    until(lambda: not viewer.text(opened), HANG)
+    assert viewer.run(PRESSES) == presses
+    viewer.escape_twice()
+    viewer.shows("Rests", ".rest-said")
+    viewer.click(".resume")
+    viewer.click("dialog .strong")
+    until(lambda: not viewer.all(".stopped"), HANG)
+
+
+def test_a_text_that_was_not_sent_is_still_there_to_send(viewer: Viewer, hall: Hosted) -> None:
+    viewer.click(".say input")
+    viewer.type("Welcome")
+    viewer.run("globalThis.post = lumen.post; lumen.post = async (fields, tell) => tell('unsent', {});")
+    viewer.type("\n")
+    viewer.shows("NOT SENT", ".told")
+    assert viewer.run("return document.querySelector('.say input').value") == "Welcome"
+    viewer.run("lumen.post = post")
+    viewer.click(".say button")
+    until(lambda: viewer.run("return document.querySelector('.say input').value") == "", HANG)
 
 
 def test_a_time_that_runs_out_decides_and_is_seen_coming(viewer: Viewer, hall: Hosted) -> None:

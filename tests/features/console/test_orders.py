@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from lumen.errors import UsageError
-from lumen.features.console.orders import order_of
+from lumen.features.console.orders import order_of, verdict_outcome
 from lumen.features.console.robot_keys import RobotKeys
 from tests.tables import for_each
 
@@ -45,3 +45,8 @@ def test_a_command_is_a_question_to_the_brain(command: str, fields: dict[str, An
 def test_what_is_no_command_is_refused(command: str, fields: dict[str, Any], message: str) -> None:
     with pytest.raises(UsageError, match=message):
         order_of(command, fields, KEYS, "ada")
+
+
+def test_an_event_that_waits_for_go_is_no_failure() -> None:
+    assert verdict_outcome({"verdict": "done", "taken": False, "waiting": "a1"}) == ""
+    assert verdict_outcome({"verdict": "done", "taken": False}) == "nothing reacts to that event now"

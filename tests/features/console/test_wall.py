@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from lumen.language.events import Event
 from tests.features.console.conftest import Hosted
 from tests.features.console.languages import english_on
 from tests.features.console.pages import Served
@@ -17,7 +18,12 @@ from tests.waiting import HANG, until
 pytestmark = [pytest.mark.slow]
 NAMES = ("NAO", "Ani", "Budi")
 SETTINGS = "name: Mine\nbehavior: mine\nlanguages: [en]\nrobot: {{name: {}, model: nao}}\nhall: hall.xml\n"
-MINE = "states:\n  hall: {do: {say: Good morning}, on: {stop: rests}}\n  rests: {on: {resume: hall}}\n"
+MINE = """
+events: {shown: {}, wait: {}}
+states:
+  hall: {do: {say: Good morning}, on: {stop: rests, shown: {target: rests, approve: operator}, wait: rests}}
+  rests: {on: {resume: hall}}
+"""
 
 
 @pytest.fixture
@@ -76,3 +82,29 @@ def test_the_wall_in_indonesian_shows_no_english(viewer: Viewer, wall: str, widt
     viewer.click("rest-button[robot=Budi] .rest")
     viewer.shows("istirahat, dihentikan oleh", ".tile[aria-label=Budi]")
     assert english_on(viewer) == []
+
+
+def badges(viewer: Viewer) -> dict[str, list[str]]:
+    return {name: viewer.text(f".tile[aria-label={name}] > .badge").splitlines() for name in sorted(NAMES)}
+
+
+def test_a_robot_that_needs_a_person_is_never_green(viewer: Viewer, wall: str, robots: dict[str, Hosted]) -> None:
+    """One has fallen and waits for GO, one waits for Resume and is hot; the window's title and icon say so, too."""
+    viewer.open(wall, ready=".tile:nth-child(3)")
+    assert badges(viewer) == {name: ["runs"] for name in NAMES}
+    assert "⚠" not in viewer.driver.title
+    for event in ("fallen", "shown"):
+        robots["Ani"].exhibition.loop.happen(Event(event))
+    robots["Budi"].exhibition.loop.happen(Event("wait"))
+    wanted = {"Ani": ["has fallen", "waits for your GO"], "Budi": ["waits for Resume"], "NAO": ["runs"]}
+    until(lambda: badges(viewer) == wanted, HANG)
+    assert viewer.run("return document.querySelector('.tile[aria-label=Ani]').dataset.state") == "bad"
+    assert viewer.driver.title == "⚠ Ani: has fallen · Lumen"
+    assert "icon-alarm.svg" in viewer.run("return document.querySelector('link[rel=icon]').href")
+    assert viewer.text(".connection") == "look at the robot"
+    viewer.click(".tile[aria-label=Budi] .resume")
+    viewer.click("dialog .strong")
+    until(lambda: badges(viewer)["Budi"] == ["runs"], HANG)
+    body = {"name": ["HeadYaw", "LKneePitch"], "position": [0.0, 0.0], "temperature": [40, 84]}
+    robots["NAO"].exhibition.loop.bus.publish("avatar.NAO.data.joint", body)
+    until(lambda: badges(viewer)["NAO"] == ["motor is hot"], HANG)

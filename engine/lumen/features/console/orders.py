@@ -52,6 +52,8 @@ def verdict_outcome(answer: Any) -> str | None:
     match answer:
         case {"verdict": "refused"}:
             return str(answer.get("reason") or "it was refused")
+        case {"verdict": "done", "waiting": str()}:  # for a person's GO: it is not taken yet
+            return ""
         case {"verdict": "done", "taken": False}:
             return str(answer.get("reason") or "nothing reacts to that event now")
         case {"verdict": str()}:

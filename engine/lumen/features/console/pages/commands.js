@@ -5,13 +5,14 @@ import { fixed, html, redraw, t, useRedraw } from "./ui.js";
 const LASTS = 5000; // [ms] that good news stays
 const told = [];
 
-/** Send a command; `label` is what people call it. Returns when it is known what became of it. */
-export async function command(robot, name, fields = {}, label = t(`command.${name}`)) {
+/** Send a command; `label` is what people call it, `tell(state)` hears how it stands. Returns when it is over. */
+export async function command(robot, name, fields = {}, label = t(`command.${name}`), tell = () => {}) {
   const mine = { label, state: "sending", answer: {}, key: Math.random() };
   told.push(mine);
   if (told.length > 4) told.shift();
   await lumen.post({ robot, command: name, ...fields }, (state, answer) => {
     Object.assign(mine, { state, answer });
+    tell(state);
     if (state === "finished") setTimeout(() => dismiss(mine), LASTS);
     redraw();
   });
@@ -26,7 +27,8 @@ function dismiss(mine) {
 const SIGNS = { sending: "…", sent: "→", finished: "✓", failed: "✕", unsent: "✕", unknown: "?" };
 
 function sentence({ label, state, answer }) {
-  const told = `${label}: ${t(`told.${state}`, { seconds: fixed(answer.seconds ?? 0, 1) })}`;
+  const waits = state === "finished" && answer.answer?.waiting;
+  const told = `${label}: ${t(waits ? "told.waits" : `told.${state}`, { seconds: fixed(answer.seconds ?? 0, 1) })}`;
   return answer.reason && state !== "finished" ? html`${told}: <${Quote} text=${answer.reason} />` : told;
 }
 

@@ -1,29 +1,38 @@
-// What stands above each page: which robot, whether the page is live, where one may go, and how it is shown.
-import { command } from "./commands.js";
-import { live } from "./live.js";
-import { lostBody, waitsForResume } from "./now/troubles.js";
+// What stands above each page: which robot, whether the page is live, what is wrong, where one may go, and how it is shown.
+import { alarm } from "./alarm.js";
+import { consoleNow, live } from "./live.js";
+import { MILD, alarmsOf, lostBody, waitsForResume } from "./now/troubles.js";
 import { inPageLanguage } from "./quoted.js";
-import { ROLES, askPin, leave, may, mode, show } from "./session.js";
-import { Dialog, LANGUAGES, Since, html, keep, kept, language, redraw, speak, t, useEffect, useRedraw, useState } from "./ui.js";
+import { Resume } from "./resume.js";
+import { ROLES, askPin, leave, mode, show } from "./session.js";
+import { LANGUAGES, Since, html, keep, kept, language, redraw, speak, t, useEffect, useRedraw, useRef, useState } from "./ui.js";
 
 const PAGES = ["", "day", "files", "see"];
 
-function Connection({ robot }) {
-  const state = live.state !== "live" ? live.state : robot?.connected === false ? "robot-away" : robot && lostBody(robot) ? "robot-lost" : "live";
+/** What is wrong with the robots, `[robot, kind, when]` each: another fall is another alarm. What only waits is left out. */
+const wrong = (robots) => robots.flatMap(({ robot, ...more }) => alarmsOf({ robot, ...more })
+  .filter((kind) => !MILD.includes(kind)).map((kind) => [robot, kind, live.alarms.get(`${robot} ${kind}`)?.at_time ?? ""]));
+
+function Connection({ robot, alarms }) {
+  const state = live.state !== "live" ? live.state : robot?.connected === false ? "robot-away" : robot && lostBody(robot) ? "robot-lost" : alarms.length ? "alarm" : "live";
+  const at = state === "robot-away" ? robot.heard : new Date(live.since).toISOString();
   return html`<p class="connection" data-state=${state} role="status"><span class="dot" aria-hidden="true"></span>${t(`connection.${state}`)}
-    ${state === "live" || state === "robot-lost" ? null : html`<span aria-hidden="true"> <${Since} at=${new Date(live.since).toISOString()} skew=${0} /></span>`}</p>`;
+    ${["live", "alarm", "robot-lost"].includes(state) ? null
+      : html`<span aria-hidden="true"> <${Since} at=${at} now=${state === "robot-away" ? consoleNow : Date.now} /></span>`}</p>`;
 }
 
-function Resume({ robot }) {
-  const [asking, ask] = useState(false);
+/** The alarms in the header of a page that does not show them itself; each leads to the page that says what to do. */
+function Alarms({ alarms, name }) {
+  const shown = name !== null && lumen.page !== "" ? alarms : [];
+  return html`<div class="alarms" role="alert">${shown.map(([robot, kind]) => html`<p key=${robot + kind}><b>${robot}: ${t(`alarm.${kind}`)}.</b>
+    <a href="/robot/${encodeURIComponent(robot)}">${t("alarm.open")}</a></p>`)}</div>`;
+}
+
+function Stopped({ robot }) {
   const waits = robot && waitsForResume(robot), by = inPageLanguage(robot?.stopped_by ?? "?");
   if (!robot?.stopped && !waits) return null;
-  const go = () => { ask(false); command(robot.robot, "resume"); };
   return html`<div class="stopped"><p role="status"><strong>${t(waits ? "waits" : "stopped")}</strong> ${t(waits ? "waits.more" : "stopped.by", { by })}</p>
-    ${may("operator") && html`<button type="button" class="resume" onClick=${() => ask(true)}>${t("resume")}</button>`}
-    ${asking && html`<${Dialog} title=${t("resume.ask", { name: robot.robot })} onClose=${() => ask(false)}
-      actions=${html`<button type="button" class="strong" onClick=${go}>${t("resume")}</button>`}>
-      ${!waits && html`<p>${t("resume.by", { by })}</p>`}<p>${t("resume.room")}</p></${Dialog}>`}</div>`;
+    <${Resume} robot=${robot} /></div>`;
 }
 
 function Theme() {
@@ -37,17 +46,30 @@ function Theme() {
     ${["auto", "light", "dark"].map((theme) => html`<option value=${theme} selected=${theme === now}>${t(`theme.${theme}`)}</option>`)}</select></label>`;
 }
 
+/** A sound as an alarm begins: this browser makes it, so each person decides for themselves. */
+function Sound() {
+  const on = kept("lumen.sound") === "on";
+  const set = (wanted) => { keep("lumen.sound", wanted ? "on" : null); if (wanted) alarm.sound(); redraw(); };
+  return html`<label class="check"><input type="checkbox" checked=${on} onChange=${(e) => set(e.target.checked)} /> ${t("sound")}</label>`;
+}
+
 function Settings() {
-  const [open, set] = useState(false);
+  const [open, set] = useState(false), button = useRef(null);
+  useEffect(() => {
+    if (!open) return undefined;
+    const typed = (event) => { if (event.key === "Escape" && !event.repeat) { set(false); button.current.focus(); } };
+    addEventListener("keydown", typed);
+    return () => removeEventListener("keydown", typed);
+  }, [open]);
   const modes = ROLES.slice(1, ROLES.indexOf(live.role ?? "nobody") + 1);
-  return html`<div class="settings"><button type="button" class="plain" aria-expanded=${open} aria-controls="settings" onClick=${() => set(!open)}>
+  return html`<div class="settings"><button type="button" class="plain" ref=${button} aria-expanded=${open} aria-controls="settings" onClick=${() => set(!open)}>
       <span aria-hidden="true">☰</span> <span class="word">${t("settings")}</span></button>
     <div id="settings" hidden=${!open} class="sheet">
       ${modes.length > 1 && html`<label>${t("mode")}<select value=${mode()} onChange=${(e) => show(e.target.value)}>
         ${modes.map((one) => html`<option value=${one} selected=${one === mode()}>${t(`mode.${one}`)}</option>`)}</select></label>`}
       <label>${t("language")}<select value=${language()} onChange=${(e) => speak(e.target.value)}>
         ${Object.entries(LANGUAGES).map(([code, name]) => html`<option value=${code} lang=${code} selected=${code === language()}>${name}</option>`)}</select></label>
-      <${Theme} />
+      <${Theme} /><${Sound} />
       ${live.role === "nobody" ? html`<button type="button" onClick=${askPin}>${t("sign.in")}</button>`
         : html`<button type="button" onClick=${askPin}>${t("sign.other")}</button><button type="button" onClick=${leave}>${t("sign.out")}</button>`}
     </div></div>`;
@@ -67,12 +89,13 @@ export function Head() {
   useRedraw();
   const names = [...live.robots.keys()], name = lumen.robot ?? (names.length === 1 ? names[0] : null);
   const robot = name === null ? null : live.robots.get(name);
+  const alarms = live.state === "live" && live.role !== "nobody" ? wrong(robot ? [robot] : [...live.robots.values()]) : [];
   useEffect(() => {
-    document.title = name ? `${name}: ${t(`page.${lumen.page || "now"}`)} · Lumen` : "Lumen";
+    alarm.show(live.state === "live" ? alarms : null, name ? `${name}: ${t(`page.${lumen.page || "now"}`)} · Lumen` : "Lumen");
     document.getElementById("skip").textContent = t("skip");
     document.querySelector("rest-button[main]").toggleAttribute("several", name === null && names.length > 1);
   });
-  return html`<div class="who"><p class="name">${name ?? "Lumen"}</p><${Connection} robot=${robot} /></div>
+  return html`<div class="who"><p class="name">${name ?? "Lumen"}</p><${Connection} robot=${robot} alarms=${alarms} /></div>
     ${name !== null && live.role !== "nobody" && html`<${Links} name=${name} several=${names.length > 1} />`}
-    <${Settings} /><${Resume} robot=${robot} />`;
+    <${Settings} /><${Alarms} alarms=${alarms} name=${name} /><${Stopped} robot=${robot} />`;
 }

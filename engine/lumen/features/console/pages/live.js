@@ -9,7 +9,10 @@ export const JOB = 250000; // [ms] longer than the console gives a process that 
 
 export const live = {
   state: "connecting", since: Date.now(), role: null, fleet: false, robots: new Map(), entries: [], told: [], commands: [], skew: 0,
+  alarms: new Map(), // the last entry of each alarm of each robot: busy ones don't push it out
 };
+/** Events of a robot's body that people have to see. */
+export const ALARMS = ["fallen", "motors.hot", "battery.low"];
 const seen = new Map(), heard = new Set();
 let stream = null, timer = 0;
 
@@ -27,11 +30,22 @@ export async function get(path, values = {}, limit = QUESTION) {
   return data;
 }
 
-/** What is known of a robot, with `skew`: how far the clock of its exhibition is ahead of this browser's [ms]. */
+/**
+ * What is known of a robot, with `skew`: how far the clock of its exhibition is ahead of this browser's [ms].
+ * Its `now()` is the time of that clock [ms since 1970]; it stops while the robot does not answer.
+ */
 export const robotOf = (name) => live.robots.get(name);
 
+/** Whether what the page shows of a robot is so now, and a command would reach it. */
+export const isHere = (robot) => live.state === "live" && robot.connected !== false;
+
+/** The time of the console's clock [ms since 1970]. */
+export const consoleNow = () => Date.now() + live.skew;
+
 function took(robot) {
-  live.robots.set(robot.robot, { ...robot, skew: live.skew + 1000 * (robot.ahead ?? 0) });
+  const skew = live.skew + 1000 * (robot.ahead ?? 0);
+  const last = () => (live.state !== "live" ? live.since : robot.connected === false && robot.heard ? Date.parse(robot.heard) - live.skew : Date.now());
+  live.robots.set(robot.robot, { ...robot, skew, now: () => last() + skew });
   for (const button of document.querySelectorAll("rest-button")) button.heed?.([...live.robots.values()]);
 }
 
@@ -104,6 +118,7 @@ function take(block, shared = null) {
     if (shared && body.position > last + 1) { connect(); return; }
     seen.set(body.robot, [body.position, body.at_time]);
     add(live.entries, body);
+    if (ALARMS.includes(body.heard)) live.alarms.set(`${body.robot} ${body.heard}`, body);
     if (body.text) add(live.told, body); // of those that people read as many are kept, however many faces come between
   } else if (kind === "now") took(body);
   else if (kind === "command") live.commands = [body, ...live.commands].slice(0, 20);

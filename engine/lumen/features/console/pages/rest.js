@@ -171,9 +171,11 @@
   }
   customElements.define("rest-button", RestButton);
 
+  const CLOSES = "dialog[open], .sheet:not([hidden])"; // what a press of Escape closes
   let escaped = -Infinity;
   addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || event.repeat || forVisitors) return;
+    if (document.querySelector(CLOSES)) { escaped = -Infinity; return; } // it closes that, and asks for no rest
     const main = document.querySelector("rest-button[main]"), at = event.timeStamp; // a busy page hears keys late
     const twice = at - escaped < TWICE;
     escaped = twice ? -Infinity : at;

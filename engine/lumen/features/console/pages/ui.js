@@ -72,18 +72,18 @@ export function span(seconds) {
   return h ? `${h}:${pad(m)}:${pad(s)}` : `${m}:${pad(s)}`;
 }
 
-/** Redraws each half second; used by what counts. */
+/** Redraws each half second; used by what counts. `now` returns the time of the clock that `at` is on [ms since 1970]. */
 export function useSeconds() {
   const [, set] = useState(0);
   useEffect(() => { const timer = setInterval(() => set((n) => n + 1), 500); return () => clearInterval(timer); }, []);
 }
-export function Since({ at, skew }) {
+export function Since({ at, now = Date.now }) {
   useSeconds();
-  return at ? html`<time datetime=${at}>${span((Date.now() + skew - Date.parse(at)) / 1000)}</time>` : null;
+  return at ? html`<time datetime=${at}>${span((now() - Date.parse(at)) / 1000)}</time>` : null;
 }
-export function Until({ at, skew }) {
+export function Until({ at, now = Date.now }) {
   useSeconds();
-  return html`<time datetime=${at}>${span((Date.parse(at) - Date.now() - skew) / 1000 + 0.5)}</time>`;
+  return html`<time datetime=${at}>${span((Date.parse(at) - now()) / 1000 + 0.5)}</time>`;
 }
 
 let ids = 0;
@@ -95,6 +95,9 @@ export function Part({ title, kind = "", aside = null, children }) {
   return html`<section class="part ${kind}" aria-labelledby=${heading}>
     <div class="part-head"><h2 id=${heading}>${title}</h2>${aside}</div>${children}</section>`;
 }
+
+/** Controls that can be used only `when` that is so; else they are grey. */
+export const Usable = ({ when, children }) => html`<fieldset class="bare" disabled=${!when}>${children}</fieldset>`;
 
 /** A dialog that is open as long as it is drawn; Escape and the button close it. Not modal: Rest stays in reach above it. */
 export function Dialog({ title, onClose, children, actions = null }) {

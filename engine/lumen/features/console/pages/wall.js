@@ -1,23 +1,33 @@
-// Several robots: a tile each, with its own Rest.
-import { live } from "./live.js";
-import { Since, html, percent, t, useRedraw } from "./ui.js";
-import { LOW } from "./now/body.js";
-import { innermost } from "./now/states.js";
-import { lostBody } from "./now/troubles.js";
+// Several robots: a tile each, with what is wrong with it and its own Rest.
+import { consoleNow, isHere, live } from "./live.js";
 import { inPageLanguage } from "./quoted.js";
+import { Resume } from "./resume.js";
+import { Since, html, percent, t, useRedraw } from "./ui.js";
+import { innermost } from "./now/states.js";
+import { LOW, MILD, alarmsOf, batteryOf } from "./now/troubles.js";
+
+/** How a robot is, as badges: what is wrong, what it waits for, that it rests; else that it runs. */
+function badges(robot) {
+  const alarms = alarmsOf(robot).map((kind) => [MILD.includes(kind) ? "warn" : kind === "away" || kind === "lost" ? kind : "bad", t(`alarm.${kind}`)]);
+  const rests = robot.stopped && isHere(robot) ? [["stopped", t("tile.stopped", { by: inPageLanguage(robot.stopped_by ?? "?") })]] : [];
+  const all = [...alarms, ...rests];
+  return all.length ? all : [["well", t("tile.well")]];
+}
 
 function Tile({ robot }) {
-  const { robot: name, saying, skew } = robot, link = `/robot/${encodeURIComponent(name)}`;
-  const state = robot.connected === false ? "away" : lostBody(robot) ? "lost" : robot.stopped ? "stopped" : "well";
-  const leaf = innermost(robot.states ?? []);
-  return html`<li class="tile" data-state=${state} aria-label=${name}>
+  const { robot: name, saying } = robot, link = `/robot/${encodeURIComponent(name)}`, battery = batteryOf(robot);
+  const said = badges(robot), leaf = innermost(robot.states ?? []);
+  return html`<li class="tile" data-state=${said[0][0]} aria-label=${name}>
     <div class="tile-head"><h2><a href=${link}>${name}</a></h2><rest-button robot=${name}></rest-button></div>
-    <p class="badge" data-state=${state}>${t(`tile.${state}`, { by: inPageLanguage(robot.stopped_by ?? "?") })}</p>
+    ${said.map(([state, text]) => html`<p class="badge" key=${text} data-state=${state}>${text}</p>`)}
+    ${!isHere(robot) && html`<p class="quiet">${t("last.known")} <${Since} at=${robot.heard} now=${consoleNow} /></p>`}
+    <${Resume} robot=${robot} />
     <p class="where">${leaf.map((one) => one.name).join(" · ") || (robot.configuration ?? []).join(" · ")}
-      ${leaf[0] && html` <span class="quiet"><${Since} at=${leaf[0].since} skew=${skew} /></span>`}</p>
+      ${leaf[0] && html` <span class="quiet"><${Since} at=${leaf[0].since} now=${robot.now} /></span>`}</p>
     <p class="line">${saying ? html`“${saying.text}”` : html`<span class="quiet">${t("says.nothing")}</span>`}</p>
     <dl class="facts"><div><dt>${t("visitor")}</dt><dd>${robot.visitor || t("nobody.here")}</dd></div>
-      <div><dt>${t("battery")}</dt><dd>${robot.battery == null ? t("unknown") : percent(robot.battery)}${robot.battery != null && robot.battery < LOW && html` <span class="badge" data-state="bad">${t("battery.low")}</span>`}</dd></div>
+      <div><dt>${t("battery")}</dt><dd>${battery === null ? t("unknown") : percent(battery)}
+        ${battery !== null && battery < LOW && html` <span class="badge" data-state="bad">${t("battery.low")}</span>`}</dd></div>
       <div><dt>${t("realtime")}</dt><dd>${robot.realtime == null ? t("unknown") : percent(robot.realtime * 100)}</dd></div></dl></li>`;
 }
 

@@ -73,10 +73,11 @@ export default function FilesPage({ name }) {
   if (!files && !failed) return html`<p class="notice">${t("loading")}</p>`;
   if (!files) return html`<h1>${t("page.files")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;
   const report = files.last ?? files, verdict = files.last?.verdict ?? "applied"; // nothing was saved: what runs is active
+  const lines = [...(files.last?.lines ?? []), ...(files.last?.notes ?? [])];
   return html`<h1>${t("page.files")}</h1>
     <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge" data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}>${t(`verdict.${verdict}`)}</span>
         ${" "}<${Quote} text=${files.last?.reason ?? ""} /> <${Quote} text=${report.hint ?? ""} /> ${verdict === "refused" && t("files.goes.on")}</p>
-      ${files.last?.lines?.length > 0 && html`<${InEnglish} /><ul class="lines" lang="en">${files.last.lines.map((line) => html`<li>${line}</li>`)}</ul>`}
+      ${lines.length > 0 && html`<${InEnglish} /><ul class="lines" lang="en">${lines.map((line) => html`<li>${line}</li>`)}</ul>`}
       <p class="quiet"><${Quote} text=${files.reason ?? ""} /></p>${may("author") && html`<${Actions} name=${name} files=${files} />`}</${Part}>
     <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report} mode=${files.mode} /><${Replay} replay=${files.replay} /></div>`;
 }

@@ -1,18 +1,11 @@
 // How the robot and what runs it are: power, heat, distance, time, processes, modules, queues.
-import { Part, Since, clock, fixed, html, percent, t } from "../ui.js";
+import { Part, Since, Usable, clock, fixed, html, percent, t } from "../ui.js";
 import { Quote, inPageLanguage } from "../quoted.js";
+import { consoleNow, isHere } from "../live.js";
 import { Autonomy, Model } from "./approvals.js";
-import { processesOf } from "./troubles.js";
+import { HOT, LOW, batteryOf, greatest, processesOf } from "./troubles.js";
 
-export const LOW = 20; // [%]
-const HOT = 75, SLOW = 0.95; // [°C], of real time
-
-/** The greatest number in a reading, however its joints or sides are called. */
-export function greatest(reading) {
-  if (typeof reading === "number") return reading;
-  const found = Object.entries(reading ?? {}).filter(([, value]) => typeof value === "number").sort((a, b) => b[1] - a[1])[0];
-  return found ?? null;
-}
+const SLOW = 0.95; // of real time
 
 function Fact({ name, value, level = 0, state = "well", words = "", full = null }) {
   return html`<div class="fact" data-state=${state}><dt>${name}</dt><dd><b>${value}</b>${words && html` <span class="badge" data-state=${state === "well" ? "open" : "bad"}>${words}</span>`}
@@ -21,7 +14,7 @@ function Fact({ name, value, level = 0, state = "well", words = "", full = null 
 
 function Senses({ robot }) {
   const { senses = {}, realtime } = robot, hot = greatest(senses.temperatures);
-  const battery = robot.battery ?? senses.battery?.percentage ?? null, sonar = senses.sonar ?? {};
+  const battery = batteryOf(robot), sonar = senses.sonar ?? {};
   const heat = Array.isArray(hot) ? hot[1] : hot;
   const metres = (value) => value == null ? t("unknown") : `${fixed(value, 2)} m`;
   return html`<dl class="body-facts">
@@ -42,13 +35,15 @@ function Processes({ robot }) {
     const gone = one.state !== "here";
     return html`<li key=${one.parts.join()} data-state=${gone ? "bad" : "well"}><span>${one.parts.join(", ")}</span>
       ${robot.connected === false ? html`<span class="badge">${t("unknown")}</span>` : html`<span class="badge" data-state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</span>`}
-      <span class="quiet">${one.word ? `${inPageLanguage(one.word)} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard} skew=${0} /></span></li>`;
+      <span class="quiet">${one.word ? `${inPageLanguage(one.word)} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard} now=${consoleNow} /></span></li>`;
   })}</ul>` : html`<p class="quiet">${t("processes.none")}</p>`}`;
 }
 
 export function Body({ robot }) {
   const reload = robot.last_reload;
-  return html`<${Part} title=${t("body")} kind="body"><${Senses} robot=${robot} /><${Processes} robot=${robot} />
+  return html`<${Part} title=${t("body")} kind="body">
+    ${!isHere(robot) && html`<p><span class="badge" data-state="warn">${t("last.known")}</span></p>`}<${Senses} robot=${robot} /><${Processes} robot=${robot} />
     ${reload && html`<h3>${t("last.reload")}</h3><p><span class="badge" data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>${" "}
-      <span class="quiet">${clock(reload.at)}</span> <${Quote} text=${reload.text} /> ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}<${Autonomy} robot=${robot} /><${Model} robot=${robot} /></${Part}>`;
+      <span class="quiet">${clock(reload.at)}</span> <${Quote} text=${reload.text} /> ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}
+    <${Usable} when=${isHere(robot)}><${Autonomy} robot=${robot} /><${Model} robot=${robot} /></${Usable}></${Part}>`;
 }

@@ -1,11 +1,16 @@
 // The buttons that the behaviour declares for the states it is in; held, asked or pressed at once, as declared.
 import { command } from "../commands.js";
+import { isHere } from "../live.js";
 import { inPageLanguage } from "../quoted.js";
 import { Dialog, Part, html, inLanguage, t, useEffect, useRef, useState } from "../ui.js";
 
 const HELD = 1000; // [ms]
 
-function Button({ robot, button }) {
+/** A button as it can be used now: none while the robot does not answer. */
+const usable = (robot, button) => (isHere(robot) ? button : { ...button, enabled: false, reason: t("robot.silent", { name: robot.robot }) });
+
+function Button({ robot, button: declared }) {
+  const button = usable(robot, declared);
   const [held, hold] = useState(false), [asking, ask] = useState(false), timer = useRef(0);
   const label = inLanguage(button.label);
   const press = () => command(robot.robot, "event", { event: button.event, data: button.data ?? null }, label);

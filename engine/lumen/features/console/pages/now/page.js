@@ -1,7 +1,7 @@
 // Now: where the behaviour is, what it says, what may come, and how the robot is.
-import { robotOf } from "../live.js";
+import { isHere, robotOf } from "../live.js";
 import { may } from "../session.js";
-import { html, t, useRedraw } from "../ui.js";
+import { Usable, html, t, useRedraw } from "../ui.js";
 import { Approvals } from "./approvals.js";
 import { Body } from "./body.js";
 import { Buttons } from "./buttons.js";
@@ -18,7 +18,8 @@ export function NowPage({ name }) {
   const robot = robotOf(name);
   return html`<h1 class="hidden">${t("page.now")}: ${name}</h1>
     <${Troubles} robot=${robot} />
-    <div class="now"><div class="column"><${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} /><${Entries} robot=${robot} /></div>
+    <div class="now" data-stale=${isHere(robot) ? null : "true"}><div class="column"><${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} /><${Entries} robot=${robot} /></div>
       <div class="column"><${States} robot=${robot} /><${Ways} robot=${robot} /></div>
-      <div class="column"><${Body} robot=${robot} />${may("author") && html`<${Cues} robot=${robot} />`}</div></div>`;
+      <div class="column"><${Body} robot=${robot} />
+        ${may("author") && html`<${Usable} when=${isHere(robot)}><${Cues} robot=${robot} /></${Usable}>`}</div></div>`;
 }

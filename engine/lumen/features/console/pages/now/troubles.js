@@ -1,10 +1,11 @@
 // What is wrong with a robot and what helps, above all else on its page: until it is over, or somebody has read it.
-import { get, live } from "../live.js";
+import { ALARMS, consoleNow, get, live } from "../live.js";
 import { Quote } from "../quoted.js";
 import { Since, clock, fixed, html, keep, kept, redraw, t, useEffect, useState } from "../ui.js";
 
 const PART = "robot"; // that moves it, as `lumen run --only robot` says
 const BODY = { "fallen": "trouble.fallen", "battery.low": "trouble.battery", "motors.hot": "trouble.hot" };
+export const LOW = 20, HOT = 75; // [%], [°C]
 const TROUBLES = /^(fallen|battery\.low|motors\.hot|[a-z]+\.lost|error\..*)$/;
 const RECENT = 600000, AGAIN = 3000; // [ms] for how long a fall is new; how often it is asked why nobody answers
 const READ = "lumen.read", MANY = 50; // what somebody has read stays read on the next page: so many
@@ -39,11 +40,29 @@ export const waitsForResume = (robot) => !robot.stopped && (robot.ways ?? []).so
 const shown = (data) => Object.fromEntries(Object.entries(data ?? {}).map(([key, value]) => [key, typeof value === "number" ? fixed(value) : value]));
 
 /** The last time that the robot felt each of what is wrong with it, as far as nobody has read that. */
-function felt(robot) {
-  const last = new Map();
-  for (const entry of live.told) if (entry.robot === robot.robot && entry.heard in BODY) last.set(entry.heard, entry);
-  return [...last.values()].filter((one) => !isRead(one) && Date.now() + robot.skew - Date.parse(one.at_time) < RECENT);
+const felt = (robot) => ALARMS.map((kind) => live.alarms.get(`${robot.robot} ${kind}`)).filter((one) => one && !isRead(one)
+  && Date.now() + robot.skew - Date.parse(one.at_time) < RECENT);
+
+/** The greatest number in a reading, however its joints or sides are called: the number, or its name and the number. */
+export function greatest(reading) {
+  if (typeof reading === "number") return reading;
+  return Object.entries(reading ?? {}).filter(([, value]) => typeof value === "number").sort((a, b) => b[1] - a[1])[0] ?? null;
 }
+export const hottest = (robot) => [greatest(robot.senses?.temperatures)].flat().at(-1);
+export const batteryOf = (robot) => robot.battery ?? robot.senses?.battery?.percentage ?? null;
+
+/** What a person has to see of a robot, the worst first, each a text `alarm.…`; `MILD` ones wait for a person and are no fault. */
+export function alarmsOf(robot) {
+  if (robot.connected === false) return ["away"];
+  const battery = batteryOf(robot), known = new Set(felt(robot).map((one) => one.heard));
+  const found = {
+    "lost": lostBody(robot), "fallen": known.has("fallen"), "hot": known.has("motors.hot") || hottest(robot) > HOT,
+    "battery": known.has("battery.low") || (battery !== null && battery < LOW),
+    "asks": robot.waiting?.length > 0, "waits": waitsForResume(robot),
+  };
+  return Object.keys(found).filter((kind) => found[kind]);
+}
+export const MILD = ["asks", "waits"];
 
 function Away({ robot }) {
   const [why, set] = useState("");
@@ -59,7 +78,7 @@ function Away({ robot }) {
 export function Troubles({ robot }) {
   const lost = robot.connected === false ? null : lostBody(robot), name = robot.robot;
   return html`${robot.connected === false && html`<${Away} robot=${robot} />`}
-    ${lost && html`<div class="notice bad"><p role="alert"><b>${t("trouble.lost", { name })}</b> ${t("trouble.lost.do")}</p><p>${t("heard.ago")} <${Since} at=${lost.heard} skew=${0} /></p></div>`}
+    ${lost && html`<div class="notice bad"><p role="alert"><b>${t("trouble.lost", { name })}</b> ${t("trouble.lost.do")}</p><p>${t("heard.ago")} <${Since} at=${lost.heard} now=${consoleNow} /></p></div>`}
     ${felt(robot).map((one) => html`<div class="notice bad" key=${one.position}><p role="alert"><b>${clock(one.at_time)} ${t(BODY[one.heard], shown(one.data))}</b> ${t(`${BODY[one.heard]}.do`)}</p>
       <button type="button" onClick=${() => haveRead(one)}>${t("trouble.read")}</button></div>`)}`;
 }

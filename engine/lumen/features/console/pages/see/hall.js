@@ -12,7 +12,7 @@ export function Hall({ name, instead }) {
       if (!document.createElement("canvas").getContext("webgl2")) return fail("see.nogl");
       const [{ Scene }, form] = await Promise.all([import("./scene.js"), shape(name)]);
       if (over) return undefined;
-      const scene = new Scene(canvas.current, form);
+      const scene = (canvas.current.scene = new Scene(canvas.current, form)); // tests ask it what is drawn
       const stop = follow(name, (links) => { scene.pose(links); move((n) => n + 1); say(""); }, say);
       end = () => { stop(); scene.close(); };
       return undefined;

@@ -29,6 +29,9 @@ function place(object, [x, y, z], [w, i, j, k]) {
 export class Scene {
   constructor(canvas, { links, stage }) {
     this.canvas = canvas, this.links = new Map(), this.scene = new THREE.Scene();
+    this.robot = new THREE.Group();
+    this.robot.visible = false; // until a pose puts the links where they belong: before that they are a heap
+    this.scene.add(this.robot);
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera = new THREE.PerspectiveCamera(38, 4 / 3, 0.05, 30);
     this.camera.up.set(0, 0, 1);
@@ -60,12 +63,13 @@ export class Scene {
       link.add(mesh);
     }
     this.links.set(name, link);
-    this.scene.add(link);
+    this.robot.add(link);
   }
 
   /** Put the links where a pose says; those that it does not name stay. */
   pose(links) {
     for (const [name, at] of Object.entries(links)) if (this.links.has(name)) place(this.links.get(name), at.slice(0, 3), at.slice(3));
+    this.robot.visible = true;
     this.draw();
   }
 
