@@ -37,7 +37,7 @@ def laid(base: Mapping[str, bytes], sheets: Iterable[Example]) -> dict[str, byte
     """The files of the small project with those of an example laid over them."""
     files = dict(base)
     for sheet in sheets:
-        if sheet.note == INSTALLED:
+        if sheet.language == "python":
             continue
         if sheet.note == "folder":
             files[sheet.file] = Unreadable(b"it is a folder")
@@ -64,11 +64,23 @@ def said(sheets: tuple[Example, ...]) -> list[Diagnostic]:
         return _played(sheets)
     if modules := {sheet.file: sheet.text for sheet in sheets if sheet.note == INSTALLED}:
         return _installed(modules, sheets)
+    if any(sheet.language == "python" for sheet in sheets):
+        return _with_code(sheets)
     before = [sheet._replace(note="") for sheet in sheets if sheet.note == "before"]
     now, found = check_files(BASE, laid(read_files(BASE), [sheet for sheet in sheets if sheet.note != "before"]))
     if before and now and (old := check_files(BASE, laid(read_files(BASE), before))[0]):
         return [*found, *against(old, now)]
     return list(found)
+
+
+def _with_code(sheets: tuple[Example, ...]) -> list[Diagnostic]:
+    """Return the findings of a project with Python files, which lint reads from the disk."""
+    with TemporaryDirectory() as folder:
+        for sheet in sheets:
+            if sheet.language == "python":
+                (Path(folder) / sheet.file).parent.mkdir(exist_ok=True)
+                (Path(folder) / sheet.file).write_text(sheet.text, encoding="utf-8")
+        return list(check_files(Path(folder), laid(read_files(BASE), sheets))[1])
 
 
 def _installed(modules: Mapping[str, str], sheets: tuple[Example, ...]) -> list[Diagnostic]:

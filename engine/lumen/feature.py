@@ -33,6 +33,7 @@ BUILT_IN = (
     "lumen.features.alerts:FEATURE",
     "lumen.features.show:FEATURE",
     "lumen.features.answers:FEATURE",
+    "lumen.features.skills:FEATURE",
     "lumen.features.journal:FEATURE",
     "lumen.features.mcap:FEATURE",
     "lumen.features.reload:FEATURE",
@@ -189,6 +190,9 @@ class VerbRow(NamedTuple):
     that it needs to itself (`lumen.language.body_parts`). One that `moves` the robot is refused while the robot rests.
     If not `cancel`, the performer continues after a stop or after its state was left; in either case the robot does not
     wait for it.
+
+    A verb that a file of a project declares has in `details` what that file says to its performer. Of a loaded project
+    it also has the project's folder, `root`, and the name of its `robot`.
     """
 
     performer: str
@@ -199,6 +203,9 @@ class VerbRow(NamedTuple):
     parts: tuple[str, ...] = ()
     moves: bool = False
     cancel: bool = True
+    details: object = None
+    root: str = ""
+    robot: str = ""
 
 
 RiskName = Literal["cosmetic", "behavior", "motion", "wiring", "restart"]
@@ -394,6 +401,12 @@ class Feature(NamedTuple):
     """
     verbs: Mapping[str, VerbRow] = {}
     """Verbs of the YAML that the robot performs, by their names."""
+    verb_files: Mapping[str, str] = {}
+    """For a folder of a project in which each YAML file declares a verb, the function that makes its `VerbRow`.
+
+    It gets the checked data of a file, its `DocumentReport`, and `name` and `languages` as keywords, and returns None
+    if the file does not describe a usable verb.
+    """
     modules: Mapping[str, ModuleRow] = {}
     robots: Mapping[str, RobotRow] = {}
     functions: Mapping[str, FunctionRow] = {}

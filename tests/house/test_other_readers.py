@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from lumen.project.project_folders import PROJECT_FOLDERS
 from tests import ROOT
+from tests.copying import SHIPPED_FOLDERS
 from tests.fetched import fetched
 from tests.guarded import run_guarded
 from tests.provided import program
@@ -13,7 +13,7 @@ from tests.scanning import matching
 
 FILES = [
     ROOT / "lumen.yaml",
-    *(f for name in PROJECT_FOLDERS if name != "schemas" for f in matching(ROOT / name, "**/*.yaml")),
+    *(f for name in SHIPPED_FOLDERS if name != "schemas" for f in matching(ROOT / name, "**/*.yaml")),
 ]
 READ = """
 const {parseAllDocuments} = require(process.argv[1]), {readFileSync} = require('fs');

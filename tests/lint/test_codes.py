@@ -22,6 +22,7 @@ RAISING = (
     "features/fleet",
     "features/show",
     "features/simulation",
+    "features/skills",
     "lint",
     "project",
     "run/reload",

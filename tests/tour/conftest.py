@@ -5,8 +5,9 @@ import pytest
 
 import lumen
 from lumen.language.projects import Project
-from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
+from lumen.project.project_folders import MAIN_FILE
 from tests import ROOT
+from tests.copying import SHIPPED_FOLDERS
 
 
 @pytest.fixture(scope="session")
@@ -24,6 +25,6 @@ def copy(tmp_path: Path) -> Path:
 def copied(folder: Path) -> Path:
     """The folder, with the shipped exhibition in it."""
     shutil.copy(ROOT / MAIN_FILE, folder)
-    for part in PROJECT_FOLDERS:
+    for part in SHIPPED_FOLDERS:
         shutil.copytree(ROOT / part, folder / part)
     return folder

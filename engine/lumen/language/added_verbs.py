@@ -1,4 +1,4 @@
-"""The verbs that features add: their rows, the schemas of their data in the YAML, and their results."""
+"""The verbs that features and the files of a project add: their rows, the schemas of their data, and their results."""
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
@@ -9,11 +9,19 @@ from lumen.language.commands import BodyCommand, Do
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import RESULT
 
+UNUSABLE = VerbRow("")
+"""The row of a verb whose file is faulty, which is reported there: a behaviour may say anything of the verb."""
+
 
 @cache
 def added_verbs() -> Mapping[str, VerbRow]:
     """Return the verbs of all features by name."""
     return table("verbs")
+
+
+def added_row(command: Do) -> VerbRow | None:
+    """Return the row of a verb: of the project's own, else of a feature; None if there is none."""
+    return command.row or added_verbs().get(command.skill)
 
 
 def argument_schema(row: VerbRow) -> dict[str, Any]:
@@ -22,7 +30,9 @@ def argument_schema(row: VerbRow) -> dict[str, Any]:
 
 
 def written_schema(row: VerbRow) -> dict[str, Any]:
-    """Return the JSON Schema of the verb's data in the YAML: its arguments, or the short form."""
+    """Return the JSON Schema of the verb's data in the YAML: its arguments, or the short form; anything if unusable."""
+    if row == UNUSABLE:
+        return {}
     whole, short = argument_schema(row), short_argument(row)
     about = {"description": row.description} if row.description else {}
     if not row.arguments.get("properties"):
@@ -56,6 +66,8 @@ def given_arguments(row: VerbRow, data: Any) -> Mapping[str, Any]:
 
 def expected_schema(row: VerbRow) -> dict[str, Any]:
     """Return the JSON Schema of some of a verb's arguments, as a story expects them."""
+    if row == UNUSABLE:
+        return {}
     return written_schema(row._replace(arguments={**row.arguments, "required": []})) | _short_form(row)
 
 
@@ -82,7 +94,7 @@ def result_schema(row: VerbRow) -> dict[str, Any]:
 
 def usual_result(command: BodyCommand | None) -> dict[str, Any] | None:
     """Return the data of `done.command.ID` of a command that ends as usual."""
-    row = added_verbs().get(command.skill) if isinstance(command, Do) else None
+    row = added_row(command) if isinstance(command, Do) else None
     result = default_result(row) if row else None
     return {RESULT: result} if result else None
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from lumen.feature import VerbRow
 from lumen.language.sections import Sections
 
 Channel = Literal["all", "walk", "play", "say"]
@@ -186,12 +187,14 @@ class Do:
     """Perform the verb `skill` of a feature; `arguments` are JSON data that fit the schema of its row.
 
     In the YAML a text in them can contain `{{ expression }}`, which a step fills in. `sections` are those of the
-    project for the performer, added when the command goes to the robot; no YAML or message contains them.
+    project for the performer, added when the command goes to the robot; no YAML or message contains them. `row` is that
+    of a verb which a file of the project declares; None for the verb of an installed package.
     """
 
     skill: str
     arguments: Mapping[str, Any] = field(default_factory=dict)
     sections: Sections = field(default_factory=dict, repr=False, compare=False, metadata={"yaml": False})
+    row: VerbRow | None = field(default=None, repr=False, compare=False, metadata={"yaml": False})
 
 
 MotorCommand = Posture | Walk | Move | Look | Leds | Volume | PlaySound | Stop | Rest | Wake

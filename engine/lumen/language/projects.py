@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
+from lumen.feature import VerbRow
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
 from lumen.language.gestures import GestureLibrary
@@ -45,7 +46,8 @@ class Project:
     wherever it runs. `patience` [s] is how long saved files wait for what is under way. `aliases` is whether routes
     have their aliases: None for as long as no other robot is seen on the bus. `knowledge` are the passages by name,
     `questions` what they are tried with, `sayings` what `hears` is tried with. `sections` are what lumen.yaml says of
-    features by the keys of their sections; `section` returns those of one.
+    features by the keys of their sections; `section` returns those of one. `verbs` are those that files of the project
+    declare.
     """
 
     root: str
@@ -78,6 +80,7 @@ class Project:
     told_apart: bool = False
     house: str = ""
     sections: Sections = field(default_factory=dict)
+    verbs: Mapping[str, VerbRow] = field(default_factory=dict)
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
 
     @property

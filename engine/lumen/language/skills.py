@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from lumen.language.added_verbs import added_verbs
+from lumen.language.added_verbs import added_row
 from lumen.language.commands import Do, GoTo, Leds, Look, Move, Track, Walk
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.robots import Body
@@ -31,14 +31,14 @@ def lack_of(command: object, body: Body) -> Lack | None:
             names = ", ".join(f"`{group}`" for group in colours)
             wanted = f"`lights: {{{next(iter(colours))}: […]}}`"
             return Lack(f"{body.name} has no lights {names}", _ADD.format(wanted))
-        case Do(skill) if missing := [part for part in _needed(skill) if body.parts.get(part) == ()]:
+        case Do() if missing := [part for part in _needed(command) if body.parts.get(part) == ()]:
             return Lack(f"{body.name} has no {missing[0]}", f"add joints to `{missing[0]}` under `parts` of its body")
     return None
 
 
-def _needed(skill: str) -> tuple[str, ...]:
-    """Return the parts of the body that a verb of a feature needs."""
-    row = added_verbs().get(skill)
+def _needed(command: Do) -> tuple[str, ...]:
+    """Return the parts of the body that an added verb needs."""
+    row = added_row(command)
     return row.parts if row else ()
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Set
 from typing import Any
 
 from lumen.language.actions import Assign, CancelSend, LogText, PlacedAction, PublishBody, Raise, Send
-from lumen.language.added_verbs import added_verbs, result_schema
+from lumen.language.added_verbs import added_row, result_schema
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.commands import Do
 from lumen.language.controller_events import controller_events
@@ -93,7 +93,7 @@ def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any
 def _result(block: tuple[PlacedAction, ...]) -> Mapping[str, Any] | None:
     """The JSON Schema of what the last action that takes time returns; None if it is no verb with a result."""
     last = next((step.action for step in reversed(block) if not isinstance(step.action, _INSTANT)), None)
-    row = added_verbs().get(last.skill) if isinstance(last, Do) else None
+    row = added_row(last) if isinstance(last, Do) else None
     return result_schema(row) if row and row.result else None
 
 

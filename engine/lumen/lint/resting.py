@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from lumen.language.actions import PlacedAction, nested
-from lumen.language.added_verbs import added_verbs
+from lumen.language.added_verbs import added_row
 from lumen.language.commands import Do, GoTo, Look, Move, Play, Posture, Rest, Wake, Walk
 from lumen.language.diagnostics import WARNING, Code
 from lumen.language.verbs import verb_of
@@ -41,7 +41,7 @@ def _moves(step: PlacedAction) -> bool:
     match step.action:
         case Look() | Move() | Walk() | GoTo() | Play():
             return True
-        case Do(skill):
-            row = added_verbs().get(skill)
+        case Do() as command:
+            row = added_row(command)
             return row is not None and row.moves
     return False

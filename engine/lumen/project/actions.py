@@ -26,7 +26,7 @@ from lumen.language.commands import Do, SaysGestures, VerbCommand
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.durations import duration_hint
 from lumen.language.verbs import Quantity, Verb, verb_named
-from lumen.project.added_verbs import usable_verbs
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.complaints import MISSING_KEY
 from lumen.project.document_report import DocumentReport
 from lumen.project.expressions import Expressions
@@ -37,10 +37,16 @@ ONLY_IN_DO = Code("only-in-do", "statecharts", ERROR, "a verb that waits is used
 
 
 class Actions:
-    """Reads the actions of one document; `units` are the file's."""
+    """Reads the actions of one document; `units` are the file's, `verbs` the project's own."""
 
-    def __init__(self, report: DocumentReport, expressions: Expressions, units: Mapping[str, str]) -> None:
-        self.report, self.expressions = report, expressions
+    def __init__(
+        self,
+        report: DocumentReport,
+        expressions: Expressions,
+        units: Mapping[str, str],
+        verbs: OwnVerbs = NO_VERBS,
+    ) -> None:
+        self.report, self.expressions, self.verbs = report, expressions, verbs
         self.angle = ANGLES.get(units.get("angle", "rad"), 1.0)
         self.length = LENGTHS.get(units.get("length", "m"), 1.0)
 
@@ -84,11 +90,11 @@ class Actions:
             return read(self, data, where)
         if row := verb_named(verb, data):
             return self._command(row, data, where)
-        added = usable_verbs().get(verb)
+        added = self.verbs.all.get(verb)
         return self._do(verb, added, data, where) if added else None
 
     def _do(self, verb: str, row: VerbRow, data: Any, where: NodePath) -> Do | None:
-        """The command of a feature's verb, None (and reported) if a duration or a template can't be read."""
+        """The command of an added verb, None (and reported) if a duration or a template can't be read."""
         sound = True
 
         def read(text: str, below: NodePath) -> str:
@@ -105,7 +111,7 @@ class Actions:
         properties = row.arguments.get("properties", {})
         durations = {(name,) for name, schema in properties.items() if schema.get("format") == "duration"}
         arguments = with_texts(arguments_of(row, data), read)
-        return Do(verb, arguments) if sound else None
+        return Do(verb, arguments, row=self.verbs.rows.get(verb)) if sound else None
 
     def _command(self, row: Verb[Any], data: Any, where: NodePath) -> VerbCommand | None:
         """The command of this row, None (and reported) where a number or a duration can't be read."""

@@ -1,13 +1,14 @@
-"""The verbs that features add: which rows can be used, and how long the verbs take."""
+"""The verbs that features and the files of a project add: which rows can be used, and how long the verbs take."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cache
 
 from lumen.errors import BadCommandError, ExpressionError
 from lumen.expressions import Scope, compile_template, split_template, substituted
 from lumen.expressions.json_schema import JsonSchema
 from lumen.feature import Feature, VerbRow, rows
-from lumen.language.added_verbs import added_verbs, argument_schema
+from lumen.language.added_verbs import added_row, added_verbs, argument_schema
 from lumen.language.body_parts import PARTS
 from lumen.language.commands import Do
 from lumen.language.diagnostics import did_you_mean
@@ -17,8 +18,28 @@ from lumen.language.verbs import is_built_in
 
 @cache
 def usable_verbs() -> Mapping[str, VerbRow]:
-    """Return the verbs that the YAML can use: a faulty row would make its schema unsound."""
+    """Return the verbs of features that the YAML can use: a faulty row would make its schema unsound."""
     return {name: row for name, row in added_verbs().items() if not _fault(name, row)}
+
+
+@dataclass(frozen=True)
+class OwnVerbs:
+    """The verbs that the files of one project declare, by name.
+
+    `hash` is that of the files. Of two with the same hash, what depends on the verbs is made once.
+    """
+
+    rows: Mapping[str, VerbRow] = field(default_factory=dict, compare=False)
+    hash: str = ""
+
+    @property
+    def all(self) -> Mapping[str, VerbRow]:
+        """These and the verbs of features; of two with the same name the feature's."""
+        return {**self.rows, **usable_verbs()}
+
+
+NO_VERBS = OwnVerbs()
+"""Those of a project that declares none, and of files without a project."""
 
 
 def faulty_verbs() -> Iterator[tuple[Feature, str]]:
@@ -31,11 +52,16 @@ def faulty_verbs() -> Iterator[tuple[Feature, str]]:
 def _fault(name: str, row: VerbRow) -> str:
     if is_built_in(name):
         return "a verb of Lumen has that name"
-    for field, schema in (("arguments", argument_schema(row)), ("result", row.result)):
+    for kind, schema in (("arguments", argument_schema(row)), ("result", row.result)):
         if not JsonSchema(schema).is_sound:
-            return f"`{field}` is not a JSON Schema"
+            return f"`{kind}` is not a JSON Schema"
     if unknown := [part for part in row.parts if part not in PARTS]:
         return f"`parts` has `{unknown[0]}`, which is no part of a body: {did_you_mean(unknown[0], PARTS, 'there are')}"
+    return takes_fault(row)
+
+
+def takes_fault(row: VerbRow) -> str:
+    """Return what is wrong with `takes` of a row; empty if nothing is."""
     try:
         computed = _duration(row, row.arguments.get("properties", ()))
     except ExpressionError as error:
@@ -48,7 +74,7 @@ def time_taken(command: Do) -> float:
 
     Raises BadCommandError if no feature here has the verb, or if `takes` of its row gives no duration.
     """
-    if (row := added_verbs().get(command.skill)) is None:
+    if (row := added_row(command)) is None:
         raise BadCommandError(f"no feature here has a verb `{command.skill}`")
     try:
         compute = _duration(row, (*row.arguments.get("properties", ()), *command.arguments))

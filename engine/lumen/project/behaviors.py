@@ -5,13 +5,14 @@ import json
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.shared import SHARED, SharedKey, first_values, shared_schema
 from lumen.project.actions import Actions
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.buttons import buttons
 from lumen.project.common_words import COMMON
 from lumen.project.document_report import DocumentReport
@@ -42,18 +43,20 @@ def build_machine(
     performed: Collection[str] = (),
     languages: Collection[str] = (),
     shipped: bool = False,
+    verbs: OwnVerbs = NO_VERBS,
 ) -> MachineDefinition | None:
     """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
 
     `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out. `words` are the
     words files that it may name, `known` the names of all, those that can't be read among them; `shared` what robots
     have in common, which the behaviours `performed` by one can read. `languages` are those of the project; `common` of
-    the words files is `shipped` if it comes with Lumen.
+    the words files is `shipped` if it comes with Lumen. `verbs` are those that the project declares.
     """
     if not isinstance(data, Mapping) or not data.get("states"):
         return None
     common = shared if name in performed and SHARED not in (data.get("context") or {}) else {}
-    builder = _Builder(data, report, name, words, known or words.keys(), common, languages, shipped)
+    around = _WordsAround(words, known or words.keys(), languages, shipped)
+    builder = _Builder(data, report, name, around, common, verbs)
     return MachineDefinition(**builder.fields())
 
 
@@ -61,6 +64,15 @@ def fingerprint(data: Any) -> str:
     """The hash of plain data; order counts, since candidates are tried in the order written."""
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
+
+
+class _WordsAround(NamedTuple):
+    """The words files that a behaviour may name, as `build_machine` gets them."""
+
+    files: WordFiles
+    known: Collection[str]
+    languages: Collection[str]
+    shipped: bool
 
 
 class _Builder:
@@ -71,20 +83,20 @@ class _Builder:
         data: Mapping[str, Any],
         report: DocumentReport,
         name: str,
-        words: WordFiles,
-        known: Collection[str],
+        words: "_WordsAround",
         shared: Mapping[str, SharedKey],
-        languages: Collection[str],
-        shipped: bool,
+        verbs: OwnVerbs,
     ) -> None:
-        self.data, self.report, self.files, self.shared = data, report, words, shared
+        self.data, self.report, self.files, self.shared = data, report, words.files, shared
         self.outline = BehaviorOutline(data, name, report)
         hears = any("hears" in entry.data for entry in self.outline.entries.values())
-        self.words = known_words(data, report, words, known, languages, shipped=shipped, hears=hears)
+        self.words = known_words(
+            data, report, words.files, words.known, words.languages, shipped=words.shipped, hears=hears
+        )
         self.rounds = Rounds(self.outline, report, data.get("context") or {}, shared=bool(shared))
         names = {*self.outline.entries, *self.outline.aliases}
         self.expressions = Expressions(report, data, self.words, names, self.rounds)
-        self.actions = Actions(report, self.expressions, data.get("units") or {})
+        self.actions = Actions(report, self.expressions, data.get("units") or {}, verbs)
         self.transitions = TransitionReader(report, self.outline, self.actions, self.expressions)
         self.beginnings: dict[str, tuple[str, ...]] = {}
 

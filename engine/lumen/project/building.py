@@ -1,5 +1,6 @@
 """A whole project: all its files built into a `ProjectDraft`, and that into a `Project` where nothing is wrong."""
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
@@ -8,7 +9,12 @@ from typing import TypeVar
 from unicodedata import normalize
 
 from lumen.feature import rows
+from lumen.feature import VerbRow, resolve, table
+from lumen.project.markdown import MARKDOWN_SUFFIX
+from lumen.project.knowledge import build_passage, build_questions
+from lumen.features.fleet.reading import build_fleet
 from lumen.fuzzy.controllers_by_role import by_role
+from lumen.language.added_verbs import UNUSABLE
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
 from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.machines import MachineDefinition
@@ -16,6 +22,9 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.language.robots import Body
 from lumen.language.shared import SharedKeys
+from lumen.language.stories import Story
+from lumen.language.verbs import is_built_in
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.behaviors import build_machine
 from lumen.project.bodies import build_body, build_likes
 from lumen.project.broken_features import resolved
@@ -102,7 +111,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     if found.settings and found.settings.told_apart:
         robots = tuple(found.settings.robots)
         found.behaviors = {name: with_robots(machine, robots) for name, machine in found.behaviors.items()}
-    found.stories = _built(_each(found, "behaviors/stories", build_story))
+    found.stories = _stories(found)
     found.sayings = _built(_each(found, SAYINGS_FOLDER, build_sayings))
     found.knowledge = _built(_each(found, KNOWLEDGE_FOLDER, build_passage))
     found.questions = _built(_each(found, QUESTIONS_FOLDER, build_questions))
@@ -189,6 +198,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         modules=settings.modules,
         aliases=settings.aliases,
         sections=settings.sections,
+        verbs={name: row._replace(root=root, robot=settings.robot) for name, row in found.verbs.rows.items()},
         hash=fingerprint(found.files),
         documents={file: report.document for file, report in found.reports.items()},
     )
@@ -209,7 +219,8 @@ def _wanted(settings: Settings, models: Mapping[str, BuiltFile[Body]]) -> Iterat
 
 
 def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
-    """The behaviours, each with the words files that it names."""
+    """The behaviours, each with the words files that it names; also read the verbs that they can use."""
+    found.verbs = _verbs(found)
     words = _each(found, WORDS_FOLDER, build_words)
     found.words = _built(words)
     known = found.names[WORDS_FOLDER]
@@ -226,11 +237,33 @@ def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
         performed=performed,
         languages=languages,
         shipped=shipped,
+        verbs=found.verbs,
     )
-    behaviors = _each(found, "behaviors", build, around=(contents, shared, performed, languages, shipped))
+    around = (contents, shared, performed, languages, shipped)
+    behaviors = _each(found, "behaviors", build, around=around, verbs=found.verbs)
     if shipped:
         found.reports.pop(COMMON_FILE, None)
     return behaviors
+
+
+def _verbs(found: ProjectDraft) -> OwnVerbs:
+    """The verbs that files of the project declare, in the folders that features read."""
+    languages = found.settings.languages if found.settings else ()
+    verbs: dict[str, VerbRow] = {}
+    contents = hashlib.sha256(repr(languages).encode())
+    for folder, build in table("verb_files").items():
+        if not any(file.startswith(f"{folder}/") for file in found.files):
+            continue  # most projects have none, and need not wait for what reads them
+        built = _built(_each(found, folder, partial(resolve(build), languages=languages), around=languages))
+        verbs |= {name: built.get(name, UNUSABLE) for name in sorted(found.names[folder]) if not is_built_in(name)}
+        for name in sorted(found.names[folder]):
+            contents.update(name.encode() + found.files[f"{folder}/{name}.yaml"])
+    return OwnVerbs(verbs, contents.hexdigest()) if verbs else NO_VERBS
+
+
+def _stories(found: ProjectDraft) -> dict[str, Story]:
+    build = partial(build_story, verbs=found.verbs)
+    return _built(_each(found, "behaviors/stories", build, around=found.verbs, verbs=found.verbs))
 
 
 def _each(
@@ -240,10 +273,11 @@ def _each(
     files: Mapping[str, bytes] | None = None,
     *,
     around: object = None,
+    verbs: OwnVerbs = NO_VERBS,
 ) -> dict[str, BuiltFile[T]]:
     """What the documents of a folder hold, by name: of the project's own files, if not others are given.
 
-    `around` is what else `build` depends on.
+    `around` is what else `build` depends on, `verbs` are those of the project that the documents can contain.
     """
     names, read = set(), dict[str, BuiltFile[T]]()
     files = found.files if files is None else files
@@ -264,7 +298,7 @@ def _each(
             found.say(NOT_READ, file, message, "combine them, or rename one of them")
             continue
         names.add(path.stem)
-        if (each := _read(found, file, content, kind_in(folder), build, around)) is not None:
+        if (each := _read(found, file, content, kind_in(folder), build, around, verbs)) is not None:
             read[path.stem] = each
     found.names[folder] = found.names.get(folder, frozenset()) | names
     return read
@@ -293,14 +327,20 @@ def _folders(found: ProjectDraft) -> None:
 
 
 def _read(
-    found: ProjectDraft, file: str, content: bytes, kind: str, build: Build[T], around: object = None
+    found: ProjectDraft,
+    file: str,
+    content: bytes,
+    kind: str,
+    build: Build[T],
+    around: object = None,
+    verbs: OwnVerbs = NO_VERBS,
 ) -> BuiltFile[T] | None:
     """What one document holds, None where it can't be read at all."""
     if isinstance(content, Unreadable):
         hint = "make it a readable file, or delete it"
         found.say(UNREADABLE_FILE, file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)
         return None
-    read, diagnostics = read_file(file, content, kind, build, around)
+    read, diagnostics = read_file(file, content, kind, build, around, verbs)
     found.loose += diagnostics
     if read is not None:
         found.reports[file] = read.report

@@ -5,6 +5,7 @@ from pathlib import PurePosixPath
 from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
 from lumen.language.diagnostics import Diagnostic
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.document import TOO_LARGE
 from lumen.project.document_report import DocumentReport
 from lumen.project.markdown import MARKDOWN_SUFFIX, parse_markdown
@@ -31,23 +32,25 @@ class BuiltFile(NamedTuple, Generic[T]):
 
 
 def read_file(
-    file: str, content: bytes, kind: str, build: Build[T], around: object = None
+    file: str, content: bytes, kind: str, build: Build[T], around: object = None, verbs: OwnVerbs = NO_VERBS
 ) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
     """What a file holds, None where it can't be read at all, and what is wrong with its text.
 
     Its report is the caller's own, to which more may be said; all else is shared with whoever reads the same.
-    `around` is what else the building depends on.
+    `around` is what else the building depends on, `verbs` are those that the project declares.
     """
-    read, found = memoize(("file", file), (content, around), lambda: _read(file, content, kind, build))
+    read, found = memoize(("file", file), (content, around, verbs), lambda: _read(file, content, kind, build, verbs))
     return read and read._replace(report=read.report.copy()), found
 
 
-def _read(file: str, content: bytes, kind: str, build: Build[T]) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
+def _read(
+    file: str, content: bytes, kind: str, build: Build[T], verbs: OwnVerbs
+) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
     document, found = (parse_markdown if file.endswith(MARKDOWN_SUFFIX) else parse)(file, content)
     if document is None:
         return None, found
     report, name = DocumentReport(document), PurePosixPath(file).stem
-    data = check_schema(document, kind, report)
+    data = check_schema(document, kind, report, verbs)
     return BuiltFile(data, report, unless_too_deep(report, lambda: build(data, report, name=name))), found
 
 

@@ -19,6 +19,7 @@ from lumen.language.robots import Body
 from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
 from lumen.language.words import Words
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.document_report import DocumentReport
 from lumen.project.looks import Looks
 from lumen.project.project_folders import MAIN_FILE, WORDS_FOLDER
@@ -34,6 +35,7 @@ class ProjectDraft:
     behaviours that were reported as broken: behaviour, `types` or `events`, name. `lent` are files that come with Lumen
     and stand where the project has none; `own_motions` those that lie in motions/MODEL/, for this robot alone.
     `words` may hold those that come with Lumen, which have no report: nobody can edit them.
+    `verbs` are those that files of the project declare.
     `settings` is None where lumen.yaml could not be read at all. `root` is the project's folder, for what is needed of
     files that are not read; `looks` is told of each of them. `today` is the day on which somebody looks, None where
     that does not matter.
@@ -51,6 +53,7 @@ class ProjectDraft:
     motions: dict[str, MotionDefinition] = field(default_factory=dict)
     life: dict[str, LifeStyle] = field(default_factory=dict)
     gestures: dict[str, GestureLibrary] = field(default_factory=dict)
+    verbs: OwnVerbs = NO_VERBS
     stories: dict[str, Story] = field(default_factory=dict)
     sayings: dict[str, SayingSet] = field(default_factory=dict)
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)

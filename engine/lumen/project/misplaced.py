@@ -54,6 +54,7 @@ _KINDS: Mapping[str, _Kind] = {
     "life": _Kind("a style of life", frozenset(("sways",)), "blinks"),
     "gestures": _Kind("a library of gestures", frozenset(("gestures",))),
     "body": _Kind("a robot's body", frozenset(("joints", "camera")), "like"),
+    "skill": _Kind("a skill", frozenset(("performed-by",))),
     "fleet": _Kind("a fleet", frozenset(("houses",))),
     "message": _Kind("a message schema", frozenset(("$schema", "properties"))),
 }

@@ -14,6 +14,7 @@ BEHAVIORS, STORIES, WORDS_FOLDER = "behaviors", "behaviors/stories", "behaviors/
 CONTROLLERS = "fuzzy"
 MOTIONS, LIFE_FOLDER, GESTURES_FOLDER = "motions", "motions/life", "motions/gestures"
 MODELS, PASSAGES = "models", "models/passages"
+SKILLS = "skills"
 MESSAGES = "schemas/messages"
 
 
@@ -40,6 +41,7 @@ FOLDERS = (
     ProjectFolder(GESTURES_FOLDER, "gestures"),
     ProjectFolder(MODELS, "body", (".yaml", ".yml", ".xml")),
     ProjectFolder(PASSAGES, "motion"),
+    ProjectFolder(SKILLS, "skill"),
     ProjectFolder(MESSAGES, "message", (".json",)),
 )
 

@@ -3,7 +3,7 @@
 import json
 import re
 from collections.abc import Iterator, Mapping
-from functools import cache, partial
+from functools import lru_cache, partial
 from typing import Any
 
 from lumen.errors import LumenError
@@ -12,7 +12,7 @@ from lumen.feature import VerbRow
 from lumen.language.added_verbs import expected_schema, written_schema
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
-from lumen.project.added_verbs import usable_verbs
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
 from lumen.project.document import TOO_LARGE, Document
 from lumen.project.document_report import DocumentReport
@@ -27,34 +27,36 @@ from lumen.project.torn_texts import quoting, whole_translation
 from lumen.project.yaml_nodes import read_text
 
 MAX_PRUNING_ROUNDS = 20
+MAX_SCHEMAS = 64
+"""The number of schemas that are kept: of each kind of file, once more for each version of a project's own verbs."""
 
 _ASTRAY = (UNKNOWN_KEY, ONE_VERB)
 """What is said of keys that belong below the one above them."""
 
 
-def check_schema(document: Document, kind: str, report: DocumentReport) -> Any:
+def check_schema(document: Document, kind: str, report: DocumentReport, verbs: OwnVerbs = NO_VERBS) -> Any:
     """The document's data without what its schema refuses; each error is reported at its node.
 
     A broken node is taken out with its key, or as an item of its list; one that lacks a required key is taken out
     whole, but never the root: a builder asks for the root's required keys itself. None where nothing is left. The
     report's document becomes the pruned one, so that paths into the returned data have the right places; its `lost`
-    names stand in what was taken out.
+    names stand in what was taken out. `verbs` are those that the project declares.
     """
     said: set[NodePath] = set()
     moved: Mapping[Complaint, str] = {}
     for turn in range(MAX_PRUNING_ROUNDS):
         try:
-            if _schema(kind).fits(report.document.data):
+            if _schema(kind, verbs).fits(report.document.data):
                 return report.document.data
             if misplaced(report.document.data, kind, report):
                 return None
-            found = list(_complaints(_schema(kind), report.document.data))
+            found = list(_complaints(_schema(kind, verbs), report.document.data))
             if not turn:
-                moved = misindented(report.document, found, _key_names(kind), partial(_judged, kind))
+                moved = misindented(report.document, found, _key_names(kind, verbs), partial(_judged, kind, verbs))
         except RecursionError:
             report(TOO_LARGE, (), "the file is nested too deeply to be read", hint="use fewer levels")
             return None
-        doomed = _judge(found, report, said, moved, _key_names(kind))
+        doomed = _judge(found, report, said, moved, _key_names(kind, verbs))
         if () in doomed:
             return None
         if not doomed:
@@ -67,14 +69,14 @@ def check_schema(document: Document, kind: str, report: DocumentReport) -> Any:
 def misfits(kind: str, text: str) -> int | None:
     """The number of findings of the schema of that kind in a text that is only tried; None if it is not YAML."""
     try:
-        found = _judged(kind, text)
+        found = _judged(kind, NO_VERBS, text)
     except RecursionError:
         return None
     return None if found is None else len(found)
 
 
-def load_schema(kind: str) -> Any:
-    """Return the JSON Schema of a kind of file, as data, with what features add to it."""
+def load_schema(kind: str, verbs: OwnVerbs = NO_VERBS) -> Any:
+    """Return the JSON Schema of a kind of file, as data, with what features and the project's own `verbs` add to it."""
     file = schema_folder() / f"{kind}.schema.json"
     try:
         schema = json.loads(file.read_bytes())
@@ -85,13 +87,13 @@ def load_schema(kind: str) -> Any:
         return with_sections(schema)
     if kind == "body":
         add_bases(schema)
-    if verbs := usable_verbs():
-        _add_verbs(schema, kind, verbs)
+    if added := verbs.all:
+        _add_verbs(schema, kind, added)
     return schema
 
 
 def _add_verbs(schema: Any, kind: str, verbs: Mapping[str, VerbRow]) -> None:
-    """Add the verbs of features to the schema of behaviours or of stories."""
+    """Add verbs to the schema of behaviours or of stories."""
     if kind == "behavior":
         schema["$defs"]["action"]["properties"] |= {name: written_schema(row) for name, row in verbs.items()}
     elif kind == "story":
@@ -102,7 +104,7 @@ def _add_verbs(schema: Any, kind: str, verbs: Mapping[str, VerbRow]) -> None:
 
 
 def _performance(row: VerbRow) -> dict[str, Any]:
-    """How the recording robot performs a verb of a feature in a story."""
+    """How the recording robot performs an added verb in a story."""
     result = {"description": "What it returns.", **row.result, "type": "object"}
     return {
         "description": "`fails`, `hangs`, a duration, or how long it takes and what it returns",
@@ -114,9 +116,9 @@ def _performance(row: VerbRow) -> dict[str, Any]:
 
 
 def _did(verbs: Mapping[str, VerbRow]) -> dict[str, Any]:
-    """A verb of a feature in an expectation."""
+    """An added verb in an expectation."""
     return {
-        "description": "A verb of an installed package that it finished since then; maybe with some of its arguments.",
+        "description": "A skill or a package's verb that it finished since then; maybe with some of its arguments.",
         "type": ["string", "object"],
         "if": {"type": "string"},
         "then": {"enum": list(verbs)},
@@ -134,7 +136,7 @@ def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:
 
 def schema_faults(schema: Any) -> list[Complaint]:
     """What is wrong with a JSON Schema itself."""
-    return _faults(_schema("message"), schema)
+    return _faults(_schema("message", NO_VERBS), schema)
 
 
 def _faults(schema: JsonSchema, data: Any) -> list[Complaint]:
@@ -144,9 +146,9 @@ def _faults(schema: JsonSchema, data: Any) -> list[Complaint]:
         return [Complaint(TOO_LARGE, (), "this is nested too deeply to be read", "use fewer levels", (), ())]
 
 
-@cache
-def _schema(kind: str) -> JsonSchema:
-    return JsonSchema(load_schema(kind))
+@lru_cache(maxsize=MAX_SCHEMAS)
+def _schema(kind: str, verbs: OwnVerbs) -> JsonSchema:
+    return JsonSchema(load_schema(kind, verbs))
 
 
 def _complaints(schema: JsonSchema, data: Any) -> Iterator[Complaint]:
@@ -154,17 +156,18 @@ def _complaints(schema: JsonSchema, data: Any) -> Iterator[Complaint]:
         yield from complaints(error, schema.schema)
 
 
-@cache
-def _key_names(kind: str) -> KeyNames:
-    return key_names(_schema(kind).schema)
+@lru_cache(maxsize=MAX_SCHEMAS)
+def _key_names(kind: str, verbs: OwnVerbs) -> KeyNames:
+    return key_names(_schema(kind, verbs).schema)
 
 
-def _judged(kind: str, text: str) -> list[Complaint] | None:
+def _judged(kind: str, verbs: OwnVerbs, text: str) -> list[Complaint] | None:
     """What the schema of that kind refuses in a text; None if it is not YAML."""
     document = read_text(text)
     if not document:
         return None
-    return [] if _schema(kind).fits(document.data) else list(_complaints(_schema(kind), document.data))
+    schema = _schema(kind, verbs)
+    return [] if schema.fits(document.data) else list(_complaints(schema, document.data))
 
 
 def _judge(

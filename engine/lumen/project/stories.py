@@ -26,7 +26,7 @@ from lumen.language.stories import (
     Visitor,
     VisitorAction,
 )
-from lumen.project.added_verbs import usable_verbs
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.document_report import DocumentReport
 from lumen.project.numbers import NOT_A_NUMBER
 from lumen.project.properties import build_properties, unbound_conditions
@@ -38,7 +38,7 @@ DEFAULT_WITHIN = 30.0
 """How long an expectation waits where it does not say [s]."""
 
 
-def build_story(data: Any, report: DocumentReport, *, name: str) -> Story | None:
+def build_story(data: Any, report: DocumentReport, *, name: str, verbs: OwnVerbs = NO_VERBS) -> Story | None:
     """The story in the data of `behaviors/stories/NAME.yaml`, None where it has no steps."""
     if not isinstance(data, Mapping) or not data.get("steps"):
         return None
@@ -46,7 +46,7 @@ def build_story(data: Any, report: DocumentReport, *, name: str) -> Story | None
     return Story(
         name=name,
         title=data.get("title", name),
-        steps=tuple(StoryStep(action, where) for where, row in rows if (action := _action(row, report, where))),
+        steps=tuple(StoryStep(action, where) for where, row in rows if (action := _action(row, report, where, verbs))),
         behavior=data.get("behavior", ""),
         language=data.get("language", ""),
         clock=_moment(data["at"], report, ("at",)) if "at" in data else None,
@@ -86,7 +86,7 @@ def _performance(how: str, report: DocumentReport, where: NodePath) -> str | flo
     return length
 
 
-def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> VisitorAction | None:
+def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath, verbs: OwnVerbs) -> VisitorAction | None:
     [(verb, body)] = row.items()
     match verb:
         case "visitor":
@@ -111,7 +111,7 @@ def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath) -> 
             time = _moment(body, report, (*where, verb))
             return None if time is None else AwaitTime(time)
         case "expect":
-            return _expect(body, report, (*where, verb))
+            return _expect(body, report, (*where, verb), verbs)
     return None
 
 
@@ -146,17 +146,17 @@ def _visitor(body: Any, report: DocumentReport, where: NodePath) -> VisitorActio
     return Arrive(Visitor(**{key: float(value) for key, value in body.items()}))
 
 
-def _did(data: Any) -> dict[str, Mapping[str, Any]]:
-    """The verb of a feature in `did: blink`, `did: {blink: 3}` or `did: {blink: {times: 3}}`, and its arguments."""
+def _did(data: Any, verbs: OwnVerbs) -> dict[str, Mapping[str, Any]]:
+    """The added verb in `did: blink`, `did: {blink: 3}` or `did: {blink: {times: 3}}`, and its arguments."""
     if isinstance(data, str):
         return {data: {}}
-    return {verb: given_arguments(usable_verbs()[verb], given) for verb, given in data.items()}
+    return {verb: given_arguments(verbs.all[verb], given) for verb, given in data.items()}
 
 
-def _expect(body: Mapping[str, Any], report: DocumentReport, where: NodePath) -> Expect:
+def _expect(body: Mapping[str, Any], report: DocumentReport, where: NodePath, verbs: OwnVerbs) -> Expect:
     states, published = body.get("state", ()), body.get("published")
     message = published if isinstance(published, Mapping) else {"route": published}
-    did = _did(body.get("did", {}))
+    did = _did(body.get("did", {}), verbs)
     within = duration(body, "within", report, where)
     return Expect(
         states=(states,) if isinstance(states, str) else tuple(states),

@@ -12,7 +12,7 @@ from typing import Any, Generic, TypeVar, get_args
 
 from lumen.errors import BadCommandError
 from lumen.feature import VerbRow
-from lumen.language.added_verbs import added_verbs, argument_schema, arguments_of
+from lumen.language.added_verbs import added_row, added_verbs, argument_schema, arguments_of
 from lumen.language.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
 from lumen.language.commands import (
     Channel,
@@ -231,12 +231,12 @@ def _record(p: CommandParameters) -> Record:
 
 
 def added_verb(command: Do) -> VerbRow:
-    """Return the row of a feature's verb. Raises BadCommandError if no feature here has it."""
-    verbs = added_verbs()
-    if command.skill not in verbs:
+    """Return the row of an added verb. Raises BadCommandError if neither a feature nor the project has it."""
+    if (row := added_row(command)) is None:
+        verbs = added_verbs()
         hint = did_you_mean(command.skill, verbs, "the installed features have") if verbs else "install its package"
         raise BadCommandError(f"no feature here has a verb `{shown(command.skill)}`: {hint}")
-    return verbs[command.skill]
+    return row
 
 
 def check_arguments(command: Do) -> None:
@@ -251,7 +251,8 @@ def _do(p: CommandParameters) -> Do:
     if not isinstance(arguments, Mapping | None):
         raise BadCommandError("the `arguments` of `do` must be an object with names and values")
     skill = p.text("skill")
-    command = Do(skill, arguments_of(added_verb(Do(skill)), arguments or {}), p.project.sections)
+    command = Do(skill, {}, p.project.sections, p.project.verbs.get(skill))
+    command = replace(command, arguments=arguments_of(added_verb(command), arguments or {}))
     check_arguments(command)
     return command
 
@@ -436,14 +437,14 @@ _BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMA
 
 def row_of(command: RobotCommand) -> CommandRow[Any]:
     """The row of a command."""
-    return _row_of_added(command.skill) if isinstance(command, Do) else _BY_COMMAND[type(command)]
+    return _row_of_added(command) if isinstance(command, Do) else _BY_COMMAND[type(command)]
 
 
-def _row_of_added(name: str) -> CommandRow[Do]:
-    verb = added_verbs().get(name)
+def _row_of_added(command: Do) -> CommandRow[Do]:
+    verb = added_row(command)
     if verb is None:
-        return replace(_DO, verb=name)
-    return replace(_DO, verb=name, parts=owns(*verb.parts), duration=time_taken, moves=verb.moves)
+        return replace(_DO, verb=command.skill)
+    return replace(_DO, verb=command.skill, parts=owns(*verb.parts), duration=time_taken, moves=verb.moves)
 
 
 def check_command(command: RobotCommand, body: Body) -> None:

@@ -126,7 +126,7 @@ class Performer:
                 else:
                     self.navigator.start(id, place, now)
             case Do():
-                self._begin(id, replace(wanted, sections=project.sections), now)
+                self._begin(id, replace(wanted, sections=project.sections, row=project.verbs.get(wanted.skill)), now)
             case Ask():
                 raise TypeError("a robot can't perform a question")
             case _:

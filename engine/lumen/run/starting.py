@@ -84,7 +84,7 @@ def start_project(folder: Path, like: str, action: str, robot: str = "") -> None
     shipped = shipped_root()
     if like == "tour":
         shutil.copy(shipped / MAIN_FILE, folder)
-        for name in PROJECT_FOLDERS:
+        for name in (name for name in PROJECT_FOLDERS if (shipped / name).is_dir()):
             shutil.copytree(shipped / name, folder / name, dirs_exist_ok=True)
     else:
         ignored = shutil.ignore_patterns(".lumen", "__pycache__")

@@ -1,6 +1,7 @@
 """Actions as functions of a context: compiled once, so that a step does not look at their kind again."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, TypeAlias
 
 from lumen.expressions import Scope, compile_expression, compile_guard, compile_template
@@ -89,8 +90,8 @@ def compile_command(action: SayText | VerbCommand) -> CommandFactory:
         case GoTo(to) if "{{" in to:
             place = compile_template(to)
             return lambda context: GoTo(place(context.scope()))
-        case Do(skill, arguments) if is_template(action):
-            return _do(skill, arguments)
+        case Do() if is_template(action):
+            return _do(action)
         case _:
             return lambda context: action
 
@@ -174,10 +175,10 @@ def _say(texts: Mapping[str, tuple[Template, ...]], gestures: SaysGestures) -> C
     return say
 
 
-def _do(skill: str, arguments: Mapping[str, Any]) -> CommandFactory:
+def _do(command: Do) -> CommandFactory:
     def do(context: ActionContext) -> BodyCommand:
         scope = context.scope()
-        return Do(skill, with_texts(arguments, lambda text, _: compile_template(text)(scope)))
+        return replace(command, arguments=with_texts(command.arguments, lambda text, _: compile_template(text)(scope)))
 
     return do
 

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from lumen.project.project_folders import PROJECT_FOLDERS
 from tests import ROOT
+from tests.copying import SHIPPED_FOLDERS
 from tests.features.editor.client import Client
 from tests.fetched import fetched
 from tests.provided import program
@@ -49,7 +49,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the shipped project; the first line of each file names its schema."""
     root = tmp_path_factory.mktemp("editor").resolve()
     shutil.copy(ROOT / "lumen.yaml", root)
-    for folder in PROJECT_FOLDERS:
+    for folder in SHIPPED_FOLDERS:
         shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("*.obj", "*.png"))
     return root
 

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from lumen.project.project_folders import PROJECT_FOLDERS
 from tests import ROOT
+from tests.copying import SHIPPED_FOLDERS
 from tests.features.editor.client import Client
 from tests.tables import for_each
 
@@ -22,7 +22,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("editor") / "hall and stand"
     root.mkdir()
     shutil.copy(ROOT / "lumen.yaml", root)
-    for folder in PROJECT_FOLDERS:
+    for folder in SHIPPED_FOLDERS:
         shutil.copytree(ROOT / folder, root / folder)
     return root
 

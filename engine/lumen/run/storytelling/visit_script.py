@@ -1,6 +1,6 @@
 """What happened in a recorded visit, as what somebody does in a story, each at its time."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -22,7 +22,6 @@ from lumen.language.stories import (
     VisitorAction,
 )
 from lumen.language.verbs import VERBS
-from lumen.project.added_verbs import usable_verbs
 from lumen.run.visitor import APPROACH_DISTANCE, SPEECH_ROUTE, VISITOR_SPEED
 from lumen.statechart.command_ids import result_of
 
@@ -53,10 +52,11 @@ def script(visit: RecordedVisit, project: Project, *, faces: bool) -> list[Timed
     return list(_anchored(sorted(found, key=lambda row: row.at), visit))
 
 
-def broken(visit: RecordedVisit, *, hanging: bool, lasting: bool) -> dict[str, str | float]:
+def broken(visit: RecordedVisit, verbs: Collection[str], *, hanging: bool, lasting: bool) -> dict[str, str | float]:
     """What the robot did badly, or otherwise than usual, as `robot:` of a story says it: verbs that always failed.
 
-    With `hanging` also those that never ended, with `lasting` how long it spoke each time [s].
+    `verbs` are those that features and the project add. With `hanging` also those that never ended, with `lasting` how
+    long it spoke each time [s].
     """
     begun = dict[str, tuple[str, float]]()
     kinds = dict[str, list[tuple[str, float]]]()
@@ -80,7 +80,7 @@ def broken(visit: RecordedVisit, *, hanging: bool, lasting: bool) -> dict[str, s
             found[kind] = min(took)  # what waits for another one ends later
     if hanging:
         found |= {kind: "hangs" for kind, _ in begun.values() if kind not in kinds}
-    return {kind: how for kind, how in found.items() if kind in COMMANDED or kind in usable_verbs()}
+    return {kind: how for kind, how in found.items() if kind in COMMANDED or kind in verbs}
 
 
 def results(visit: RecordedVisit) -> dict[str, Mapping[str, Any]]:

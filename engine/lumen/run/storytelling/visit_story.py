@@ -14,6 +14,7 @@ from lumen.insight.replay.visits import RecordedVisit
 from lumen.language.hours import WEEKDAYS, Schedule
 from lumen.language.projects import Project
 from lumen.language.stories import Expect, SetAutonomy, Story, StoryPause, StoryStep, VisitorAction
+from lumen.project.added_verbs import usable_verbs
 from lumen.run.approvals import marked_transitions
 from lumen.run.loop import TICK_PERIOD
 from lumen.run.storytelling.rendition import Rendition, TickNotes, played, told
@@ -77,7 +78,7 @@ def visit_story(
         acts: Sequence[TimedAction] = [
             row._replace(action=_without(row.action, renamed)) for row in script(visit, project, faces=way.faces)
         ]
-        robot = broken(visit, hanging=way.hanging, lasting=way.lasting)
+        robot = broken(visit, {*usable_verbs(), *project.verbs}, hanging=way.hanging, lasting=way.lasting)
         steps = (*approved, *_draft(acts, visit, clocked=way.clocked))
         draft = replace(blank, robot=robot, results=results(visit), steps=steps)
         if not draft.steps or draft in tried:

@@ -1,0 +1,202 @@
+"""A manifest of a skill, `skills/NAME.yaml`, from its checked data to the row of its verb."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import PurePosixPath
+from typing import Any, Literal
+
+from lumen.expressions import split_template
+from lumen.feature import VerbRow
+from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
+from lumen.language.durations import duration_hint, seconds
+from lumen.language.verbs import is_built_in
+from lumen.project.added_verbs import takes_fault, usable_verbs
+from lumen.project.document_report import DocumentReport
+from lumen.project.messages import examine
+from lumen.project.schema import faults
+from lumen.project.units import BAD_DURATION
+
+SKILL_NAME = Code("skill-name", "skills", ERROR, "the name of a skill is taken, or can't be that of a verb")
+SKILL_SCHEMA = Code("skill-schema", "skills", ERROR, "`in` or `out` of a skill can't be used as the schema of a verb")
+SKILL_DEFAULT = Code("skill-default", "skills", ERROR, "a default of a skill does not fit its own schema")
+SKILL_TAKES = Code("skill-takes", "skills", ERROR, "`takes` of a skill can't be computed from its arguments")
+SKILL_FILE = Code("skill-file", "skills", ERROR, "the program of a skill is missing, or outside the project")
+
+PERFORMER = "lumen.features.skills.performer"
+DEFAULT_MEMORY = 512
+"""The memory that a skill's program may use if its manifest has no `memory` [MB]."""
+
+_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_UNUSABLE = {"$ref": "write the definition in its place", "$defs": "write each definition where it is used"}
+
+ProgramKind = Literal["python", "command", "module"]
+
+
+@dataclass(frozen=True)
+class Skill:
+    """The part of a manifest that its performer needs.
+
+    `target` is the path of a Python file, a command with its arguments, or the name of a module. A `warm` program
+    starts with the exhibition. `memory` is what it may use [MB].
+    """
+
+    kind: ProgramKind
+    target: tuple[str, ...]
+    warm: bool = False
+    memory: float = DEFAULT_MEMORY
+
+
+def build_skill(data: Any, report: DocumentReport, *, name: str, languages: Sequence[str] = ()) -> VerbRow | None:
+    """Return the row of the verb that the data of `skills/NAME.yaml` describe, None if it can't be used.
+
+    Its description is that of the first of the project's `languages` in which there is one.
+    """
+    if not isinstance(data, Mapping):
+        return None
+    before = len(report.diagnostics)
+    _check_name(name, report)
+    skill = _performed(data.get("performed-by"), data, report)
+    arguments = _schema(data, "in", languages, report)
+    result = _schema(data, "out", languages, report)
+    parts = data.get("parts", ())
+    row = VerbRow(
+        performer=PERFORMER,
+        description=_text(data.get("description", ""), languages),
+        arguments=arguments,
+        result=result,
+        takes=str(data.get("takes", "0s")),
+        parts=(parts,) if isinstance(parts, str) else tuple(parts),
+        moves=bool(data.get("moves", False)),
+        cancel=bool(data.get("cancel", True)),
+        details=skill,
+    )
+    if len(report.diagnostics) == before:
+        _check_takes(row, report)
+    return row if skill and len(report.diagnostics) == before else None
+
+
+def _check_name(name: str, report: DocumentReport) -> None:
+    if is_built_in(name) or name == "if":
+        report(SKILL_NAME, (), f"Lumen has a verb `{name}` already", "give the file another name")
+    elif name in usable_verbs():
+        message = f"an installed package has a verb `{name}` already"
+        report(SKILL_NAME, (), message, "give the file another name, or uninstall the package")
+    elif not _NAME.fullmatch(name):
+        plain = re.sub(r"[^a-z0-9_]+", "_", name.lower()).strip("_0123456789")
+        example = f", such as `{plain}.yaml`" if plain else ""
+        message = f"`{name}` can't be the name of a verb"
+        report(SKILL_NAME, (), message, f"use small letters, digits and `_` in the name of the file{example}")
+
+
+def _performed(said: Any, data: Mapping[str, Any], report: DocumentReport) -> Skill | None:
+    if not isinstance(said, Mapping) or not said:
+        return None
+    way, target = next(iter(said.items()))
+    where = ("performed-by", way)
+    if way == "python":
+        path = PurePosixPath(target)
+        if path.is_absolute() or ".." in path.parts or path.suffix != ".py":
+            hint = "write the path of a `.py` file inside the project, such as `skills/spray.py`"
+            report(SKILL_FILE, where, f"`{target}` is no Python file of this project", hint)
+            return None
+        target = path.as_posix()
+    targets = (target,) if isinstance(target, str) else tuple(target)
+    return Skill(way, targets, bool(data.get("warm", False)), float(data.get("memory", DEFAULT_MEMORY)))
+
+
+def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report: DocumentReport) -> Mapping[str, Any]:
+    """The JSON Schema under `in` or `out`, empty (and reported) if it can't be that of a verb."""
+    if not isinstance(schema := data.get(key), Mapping):
+        return {}
+    plain: Mapping[str, Any] = _with_texts(schema, languages)
+    if plain.get("type", "object") != "object":
+        message = f"`{key}` must describe an object with names and values, not `{plain['type']}`"
+        report(SKILL_SCHEMA, (key, "type"), message, "write `type: object`, or leave it out")
+        return {}
+    for path in _unusable(plain):
+        message = f"a skill can't use `{path[-1]}`: its schema becomes a part of another one"
+        report(SKILL_SCHEMA, (key, *path), message, _UNUSABLE[str(path[-1])], key=True)
+        return {}
+    if not examine(plain, report, (key,)):
+        return {}
+    properties = plain.get("properties", {})
+    for i, name in enumerate(plain.get("required", ())):
+        if name not in properties:
+            hint = did_you_mean(name, properties, "`properties` has") if properties else "list it under `properties`"
+            report(SKILL_SCHEMA, (key, "required", i), f"`{name}` is required, and not described", hint)
+    for name, inner in properties.items():
+        _check_default(inner, (key, "properties", name, "default"), report)
+    return plain
+
+
+def _check_default(schema: Any, where: NodePath, report: DocumentReport) -> None:
+    if not isinstance(schema, Mapping) or "default" not in schema:
+        return
+    default = schema["default"]
+    for fault in faults({"default": default}, {"properties": {"default": schema}})[:1]:
+        report(SKILL_DEFAULT, where, f"this default does not fit: {fault.message}", fault.hint)
+        return
+    if schema.get("format") == "duration" and seconds(default) is None:
+        report(BAD_DURATION, where, f"`{default}` is not a duration", duration_hint(default))
+
+
+def _unusable(schema: Any, path: NodePath = ()) -> Iterator[NodePath]:
+    """Iterate over the paths of keywords that can't be used in a schema within another one."""
+    if isinstance(schema, Mapping):
+        for key, inner in schema.items():
+            if key in _UNUSABLE and path[-1:] != ("properties",):
+                yield (*path, key)
+            elif key not in ("default", "const", "enum", "examples"):
+                yield from _unusable(inner, (*path, key))
+    elif isinstance(schema, list):
+        for i, inner in enumerate(schema):
+            yield from _unusable(inner, (*path, i))
+
+
+def _check_takes(row: VerbRow, report: DocumentReport) -> None:
+    """Report `takes` if it is no duration, or if its expressions use something else than arguments."""
+    properties = row.arguments.get("properties", {})
+    if fault := takes_fault(row):
+        if "{{" in row.takes:
+            report(SKILL_TAKES, ("takes",), fault, "write a duration, maybe with expressions of the arguments")
+        else:
+            report(BAD_DURATION, ("takes",), f"`{row.takes}` is not a duration", duration_hint(row.takes))
+        return
+    sources = [part.source for part in split_template(row.takes) if not isinstance(part, str)]
+    for source in sources:
+        if (name := source.strip()).isidentifier() and name not in properties:
+            hint = did_you_mean(name, properties, "its arguments are") if properties else "add it to `in`"
+            report(SKILL_TAKES, ("takes",), f"`{name}` is no argument of this skill", hint)
+            return
+    given = {name: inner.get("default") for name, inner in properties.items() if isinstance(inner, Mapping)}
+    missing = [name for name, value in given.items() if value is None and name not in row.arguments.get("required", ())]
+    for name in missing:
+        if any(re.search(rf"(?<![\w.]){re.escape(name)}\b", source) for source in sources):
+            message = f"`takes` needs `{name}`, which can be left out"
+            report(SKILL_TAKES, ("takes",), message, f"give `{name}` a `default`, or list it under `required`")
+            return
+
+
+def _with_texts(schema: Any, languages: Sequence[str]) -> Any:
+    """The schema with each description in one language."""
+    if isinstance(schema, list):
+        return [_with_texts(inner, languages) for inner in schema]
+    if not isinstance(schema, Mapping):
+        return schema
+    plain: dict[str, Any] = {}
+    for key, inner in schema.items():
+        if key == "description" and isinstance(inner, Mapping) and inner:
+            plain[key] = _text(inner, languages)
+        elif key == "properties" and isinstance(inner, Mapping):
+            plain[key] = {name: _with_texts(one, languages) for name, one in inner.items()}
+        else:
+            plain[key] = inner if key in ("default", "const", "enum", "examples") else _with_texts(inner, languages)
+    return plain
+
+
+def _text(said: Any, languages: Sequence[str]) -> str:
+    """The text in the first language in which there is one."""
+    if not isinstance(said, Mapping):
+        return str(said)
+    return str(next((said[language] for language in languages if language in said), next(iter(said.values()))))

@@ -1,0 +1,1 @@
+"""Skills: manifests, the programs that perform them, and what happens if these misbehave."""
