@@ -314,7 +314,7 @@ class PerformsVerbs(Protocol):
 class Hall(Protocol):
     """A world in which visitors can be placed; a robot with these methods is its own hall.
 
-    `FeelsTouch`, `HearsVisitors` and `HasCharger` are abilities that only some halls have.
+    `FeelsTouch`, `HearsVisitors`, `PretendsSkills` and `HasCharger` are abilities that only some halls have.
     """
 
     def place(self, visitor: Visitor | None) -> None:
@@ -341,6 +341,15 @@ class HearsVisitors(Protocol):
 
     def sound(self) -> None:
         """Let the visitor be heard: a robot that hears from where may look there."""
+        ...
+
+
+@runtime_checkable
+class PretendsSkills(Protocol):
+    """A hall whose robot performs the verbs of features and projects without their code, as a story says."""
+
+    def set_skills(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
+        """Have verbs end so from now on: with a result, or by `fails` or `hangs`."""
         ...
 
 

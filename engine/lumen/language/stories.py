@@ -94,6 +94,13 @@ class AnswerQuestion:
 
 
 @dataclass(frozen=True, slots=True)
+class SetSkills:
+    """`skills: {NAME: RESULT}`: a skill returns that from now on; if it is a text, it `fails` or `hangs`."""
+
+    ends: Mapping[str, Mapping[str, Any] | str]
+
+
+@dataclass(frozen=True, slots=True)
 class StoryPause:
     """`wait: DURATION` [s]."""
 
@@ -141,6 +148,7 @@ VisitorAction = (
     | SetAutonomy
     | SendMessage
     | AnswerQuestion
+    | SetSkills
     | StoryPause
     | AwaitTime
     | Expect

@@ -9,7 +9,7 @@ from typing import Any
 from lumen.errors import LumenError
 from lumen.expressions.json_schema import JsonSchema
 from lumen.feature import VerbRow
-from lumen.language.added_verbs import expected_schema, written_schema
+from lumen.language.added_verbs import UNUSABLE, expected_schema, written_schema
 from lumen.language.diagnostics import NodePath
 from lumen.language.text_lines import lines_of
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
@@ -100,7 +100,10 @@ def _add_verbs(schema: Any, kind: str, verbs: Mapping[str, VerbRow]) -> None:
         robot = schema["properties"]["robot"]
         robot["propertyNames"]["enum"] += verbs
         robot["properties"] = {name: _performance(row) for name, row in verbs.items()}
-        schema["$defs"]["step"]["properties"]["expect"]["properties"]["did"] = _did(verbs)
+        steps = schema["$defs"]["step"]["properties"]
+        steps["expect"]["properties"]["did"] = _did(verbs)
+        ends = {name: _end(schema, row) for name, row in verbs.items()}
+        steps["skills"] = {**steps["skills"], "additionalProperties": False, "properties": ends}
 
 
 def _performance(row: VerbRow) -> dict[str, Any]:
@@ -113,6 +116,14 @@ def _performance(row: VerbRow) -> dict[str, Any]:
         "additionalProperties": False,
         "properties": {"takes": {"$ref": "#/$defs/duration"}, "result": result},
     }
+
+
+def _end(schema: Any, row: VerbRow) -> dict[str, Any]:
+    """How an added verb ends in a story."""
+    if row == UNUSABLE:
+        return {}
+    result = {"additionalProperties": False, **row.result, "type": "object"}
+    return {**schema["$defs"]["end"], "description": row.description or "A result, `fails` or `hangs`.", "else": result}
 
 
 def _did(verbs: Mapping[str, VerbRow]) -> dict[str, Any]:

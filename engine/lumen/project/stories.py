@@ -18,6 +18,7 @@ from lumen.language.stories import (
     Press,
     SendMessage,
     SetAutonomy,
+    SetSkills,
     Speak,
     Story,
     StoryPause,
@@ -102,6 +103,8 @@ def _action(row: Mapping[str, Any], report: DocumentReport, where: NodePath, ver
         case "answers":
             said = isinstance(body, str)
             return AnswerQuestion(body) if said else AnswerQuestion(event=body["raise"], data=body.get("data", {}))
+        case "skills":
+            return SetSkills(body)
         case "operator":
             return _operator(body)
         case "wait":

@@ -105,7 +105,7 @@ class RecordingRobot(ExecutingRobot):
         self.body = body
         self.performed: list[tuple[float, RobotCommand]] = []
         self.time = 0.0
-        self._behaves, self._results = behaves or {}, results or {}
+        self._behaves, self._results = dict(behaves or {}), dict(results or {})
         self._angles = dict(body.postures["Stand"])
         self._pressed: set[str] = set()
         self._plugged = False
@@ -200,6 +200,15 @@ class RecordingRobot(ExecutingRobot):
             yaw, pitch = centring(_face_of(self._visitor), self.body.camera)
             head = self.body.roles.head_angles(self._angles)
             self._life.heard(yaw - head[0], pitch - head[1], self.time)
+
+    def set_skills(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
+        for name, end in ends.items():
+            if isinstance(end, str):
+                self._behaves[name] = end
+            else:
+                if isinstance(self._behaves.get(name), str):
+                    del self._behaves[name]
+                self._results[name] = end
 
     def plug(self, plugged: bool) -> None:
         self._plugged = plugged

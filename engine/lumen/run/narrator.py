@@ -1,7 +1,7 @@
 """What happens in an exhibition, in words: who, what, and why."""
 
-from collections.abc import Callable
-from typing import Protocol
+from collections.abc import Callable, Mapping
+from typing import Any, Protocol
 
 from lumen.language.commands import Ask, BodyCommand, Command, Log, Publish, Say, Start, Tell
 from lumen.language.counts import counted
@@ -16,6 +16,7 @@ from lumen.language.stories import (
     Press,
     SendMessage,
     SetAutonomy,
+    SetSkills,
     Speak,
     TouchSensor,
     VisitorAction,
@@ -168,10 +169,17 @@ class Narrator(Observer):
                 self.line("operator", f"presses “{label}”")
             case SendMessage(route):
                 self.line("story", f"a module sends `{route}`")
+            case SetSkills(ends):
+                self.line("story", "; ".join(_skill_end(name, end) for name, end in ends.items()))
             case AnswerQuestion(text, event):
                 self.line(
                     "story", f"the module `answers` says “{text}”" if text else f"the module `answers` raises `{event}`"
                 )
+
+
+def _skill_end(name: str, end: Mapping[str, Any] | str) -> str:
+    said = end if isinstance(end, str) else f"returns {', '.join(f'{key} {value}' for key, value in end.items())}"
+    return f"`{name}` {said} from now on"
 
 
 def _base(words: str) -> str:

@@ -24,6 +24,7 @@ from lumen.language.stories import (
     Press,
     SendMessage,
     SetAutonomy,
+    SetSkills,
     Speak,
     Story,
     StoryPause,
@@ -227,6 +228,8 @@ class StoryPlayer(Observer):
                 self._walker.speak(text, language)
             case TouchSensor(sensor, pressed):
                 self._walker.touch(sensor, pressed)
+            case SetSkills(ends):
+                self._walker.set_skills(ends)
             case Happen(name, data):
                 self._exhibition.happen(Event(name, data, now, cause=Cause("person", sender=VISITOR)))
             case Press(label):

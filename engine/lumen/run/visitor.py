@@ -1,13 +1,15 @@
 """A visitor who walks up, speaks, touches and leaves: what modules and people do in a real hall."""
 
 import logging
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from lumen.errors import UsageError
 from lumen.language.causes import VISITOR, MessageOrigin
 from lumen.language.projects import Project
 from lumen.language.stories import Visitor
-from lumen.ports import Bus, FeelsTouch, Hall, HearsVisitors
+from lumen.ports import Bus, FeelsTouch, Hall, HearsVisitors, PretendsSkills
 from lumen.run.sending import send
 
 _log = logging.getLogger(__name__)
@@ -69,6 +71,12 @@ class VisitorActor:
         if not isinstance(self._hall, FeelsTouch):
             raise UsageError(f"a visitor can't touch this robot: `{type(self._hall).__name__}` has no method `touch`")
         self._hall.touch(sensor, pressed)
+
+    def set_skills(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
+        """Have skills end so from now on. Raises UsageError if this robot can't pretend."""
+        if not isinstance(self._hall, PretendsSkills):
+            raise UsageError("this robot performs skills itself: play a story with `skills:` on the recording robot")
+        self._hall.set_skills(ends)
 
     def tick(self, now: float) -> None:
         dt, self._last = now - self._last, now

@@ -125,7 +125,7 @@ def test_a_broken_manifest_is_the_only_finding(tmp_path: Path) -> None:
         ("type: string,", "type: text,", "wrong-value"),
         ("performed-by: {python: skills/spray.py}", "moves: true", "missing-key"),
         ("skills/spray.py", "../spray.py", "skill-file"),
-        ("skills/spray.py", "skills/sprai.py", "skill-file"),
+        ("skills/spray.py", "skills/sprai.py", "skill-program"),
     ],
 )
 def test_nothing_else_is_reported_of_what_uses_a_skill_with_a_faulty_manifest(

@@ -21,7 +21,7 @@ SKILL_NAME = Code("skill-name", "skills", ERROR, "the name of a skill is taken, 
 SKILL_SCHEMA = Code("skill-schema", "skills", ERROR, "`in` or `out` of a skill can't be used as the schema of a verb")
 SKILL_DEFAULT = Code("skill-default", "skills", ERROR, "a default of a skill does not fit its own schema")
 SKILL_TAKES = Code("skill-takes", "skills", ERROR, "`takes` of a skill can't be computed from its arguments")
-SKILL_FILE = Code("skill-file", "skills", ERROR, "the program of a skill is missing, or outside the project")
+SKILL_FILE = Code("skill-file", "skills", ERROR, "the Python file of a skill is outside the project, or no Python file")
 
 PERFORMER = "lumen.features.skills.performer"
 DEFAULT_MEMORY = 512

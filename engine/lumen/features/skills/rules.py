@@ -2,13 +2,14 @@
 
 from pathlib import PurePosixPath
 
-from lumen.features.skills.manifest import SKILL_FILE, Skill
+from lumen.features.skills.manifest import Skill
 from lumen.features.skills.python_file import code_faults
-from lumen.language.diagnostics import ERROR, Code, Diagnostic, Place, did_you_mean
+from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place, did_you_mean
 from lumen.project.draft import ProjectDraft
 from lumen.upkeep.regular_files import MEGABYTE
 
-SKILL_CODE = Code("skill-code", "skills", ERROR, "the Python code of a skill does not fit its manifest")
+SKILL_CODE = Code("skill-code", "skills", WARNING, "the Python code of a skill does not fit its manifest")
+SKILL_PROGRAM = Code("skill-program", "skills", WARNING, "a file of a skill's program is missing, or can't be read")
 
 MAX_CODE_BYTES = 4 * MEGABYTE
 
@@ -37,7 +38,7 @@ def _python(draft: ProjectDraft, name: str, file: str) -> None:
             content = opened.read(MAX_CODE_BYTES)
     except OSError as error:
         message = f"`{file}` can't be read: {(error.strerror or 'the system refuses').lower()}"
-        draft.report("skills", name)(SKILL_FILE, ("performed-by", "python"), message, "make it a readable file")
+        draft.report("skills", name)(SKILL_PROGRAM, ("performed-by", "python"), message, "make it a readable file")
         return
     for fault in code_faults(content, file, name, draft.verbs.rows[name].arguments):
         place = Place(file, fault.line, fault.column, fault.line, fault.end_column)
@@ -56,4 +57,4 @@ def _missing(draft: ProjectDraft, name: str, file: str, where: tuple[str | int, 
     path = PurePosixPath(file)
     there = [f"{path.parent}/{each.name}" for each in sorted((draft.root / file).parent.glob(f"*{path.suffix}"))]
     hint = did_you_mean(file, there, "there are") if there else "write this file"
-    draft.report("skills", name)(SKILL_FILE, where, f"there is no file {file}", hint)
+    draft.report("skills", name)(SKILL_PROGRAM, where, f"there is no file {file}", hint)

@@ -17,6 +17,7 @@ from lumen.language.stories import (
     Press,
     SendMessage,
     SetAutonomy,
+    SetSkills,
     Speak,
     Story,
     StoryPause,
@@ -78,6 +79,8 @@ def _step(action: VisitorAction) -> tuple[str, Any]:
             return "message", {"route": route, "body": body}
         case AnswerQuestion(text, event, data):
             return "answers", text or {"raise": event, **({"data": dict(data)} if data else {})}
+        case SetSkills(ends):
+            return "skills", {name: end if isinstance(end, str) else dict(end) for name, end in ends.items()}
         case StoryPause(seconds):
             return "wait", f"{seconds:g}s"
         case AwaitTime(schedule):
