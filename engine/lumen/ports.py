@@ -5,6 +5,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import count
+from math import inf
 from os import urandom
 from threading import Event as Signal
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar, runtime_checkable
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+from lumen.feature import VerbRow
 from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.language.commands import Do, MotorCommand, Say
 from lumen.language.events import Event
@@ -177,6 +179,16 @@ class SkillCall(Protocol):
         """Whether the call should end: the robot does not wait for it any more."""
         ...
 
+    @property
+    def row(self) -> VerbRow:
+        """The row of the verb."""
+        ...
+
+    @property
+    def now(self) -> float:
+        """The time by the robot's clock [s]."""
+        ...
+
     def section(self, kind: type[Settings]) -> Settings:
         """Return the settings of this type from lumen.yaml, as `Project.section` does.
 
@@ -187,6 +199,18 @@ class SkillCall(Protocol):
 
     def wait(self, seconds: float) -> bool:
         """Wait that long by the robot's clock; return False, at once, if the call is or gets cancelled."""
+        ...
+
+    def wait_for(self, ready: Callable[[], bool], seconds: float = inf, within: float = inf) -> bool:
+        """Wait until the call is cancelled or `ready` returns True, which is what this returns.
+
+        It ends after so many `seconds` of the robot's clock, and `within` so many of real time. `ready` is called when
+        the wait begins, and after each call of `wake`.
+        """
+        ...
+
+    def wake(self) -> None:
+        """Have a wait look at its `ready` again, from any thread."""
         ...
 
 

@@ -50,11 +50,12 @@ def test_each_reason_for_a_closed_list_is_about_one_that_exists(files: list[Sour
 
 def test_every_thread_is_watched() -> None:
     """A thread that a fault ends is begun again, or told of: `lumen.upkeep.threads`; the records' is a desk for one,
-    and whoever waits for a picture of a film gets the fault that drawing it had.
+    whoever waits for a picture of a film gets the fault that drawing it had, and the thread that reads the orders for
+    a skill ends its process.
     """
     made = {
         str(file.relative_to(ROOT / PACKAGE))
         for file in matching(ROOT / PACKAGE, "**/*.py")
         if re.search(r"threading\.Thread\(|ThreadPoolExecutor\(", file.read_text("utf-8"))
     }
-    assert made == {"upkeep/threads.py", "run/reload/records.py", "features/simulation/filming/film.py"}
+    assert made == {"upkeep/threads.py", "run/reload/records.py", "features/simulation/filming/film.py", "skills.py"}

@@ -45,6 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("-v", "--verbose", action="store_true", help="print everything that happens in each story")
     add("--coverage", action="store_true", help="list the states and transitions that were never used")
     add("--fail-under", metavar="N", type=float, help="fail if less than N %% is covered (implies --coverage)")
+    add("--real-skills", action="store_true", help="run the programs of skills instead of only letting their time pass")
     add("--explore", action="store_true", help="search the behaviour for dead ends instead of playing the stories")
     add("--behavior", metavar="NAME", help="with --explore: a behaviour other than the one that lumen.yaml names")
     add(
@@ -79,7 +80,8 @@ def run(options: argparse.Namespace) -> int:
             for story in stories:
                 tell(len(rehearsals), len(stories), f"stories, {story.name}")
                 observers = [coverage.of(story.behavior or project.behavior)] if coverage else []
-                rehearsals.append(rehearse(project, story, observers=observers, whole=options.verbose))
+                how = {"whole": options.verbose, "real_skills": options.real_skills}
+                rehearsals.append(rehearse(project, story, observers=observers, **how))
                 if live:
                     _print(text.story(rehearsals[-1], coloured=coloured()))
                 if options.exitfirst and rehearsals[-1].failed:

@@ -24,6 +24,7 @@ from lumen.robot.cues import CueNotifier
 from lumen.robot.executor import Activity, ExecutingRobot, Executor
 from lumen.robot.life_layer import LifeLayer
 from lumen.robot.silent_recording import SilentRecording
+from lumen.robot.skill_runner import SkillRunner
 
 TORSO_HEIGHT = 0.333
 """Where the torso of a standing robot is above the floor [m]: NAO's; this robot has no model to ask."""
@@ -91,9 +92,10 @@ class _Walking(_Lasting):
 class RecordingRobot(ExecutingRobot):
     """Every command takes as long as the real one would: a motion its duration, speech 0.4 s and 0.06 s a character.
 
-    `behaves` maps a verb to `fails`, `hangs` or another duration [s], `results` a verb of a feature to its result (else
-    it is made of the defaults of its schema). `performed` lists (time [s], command) in the order begun. `advance` is
-    its passing of time; the head goes where commands say, so that faces move in its camera.
+    `behaves` maps a verb to `fails`, `hangs` or another duration [s], `results` an added verb to its result (else it is
+    made of the defaults of its schema). With a `runner` other added verbs are performed by their code. `performed`
+    lists (time [s], command) in the order begun. `advance` is its passing of time; the head goes where commands say,
+    so that faces move in its camera.
     """
 
     def __init__(
@@ -101,6 +103,7 @@ class RecordingRobot(ExecutingRobot):
         body: Body,
         behaves: Mapping[str, str | float] | None = None,
         results: Mapping[str, Mapping[str, Any]] | None = None,
+        runner: SkillRunner | None = None,
     ) -> None:
         self.body = body
         self.performed: list[tuple[float, RobotCommand]] = []
@@ -118,7 +121,8 @@ class RecordingRobot(ExecutingRobot):
             TACTILE: self._tactile,
             BATTERY: self._battery,
         }
-        self._executor = Executor(self._begin, lambda command: parts_of(command, body), self._begin)
+        self._executor = Executor(self._begin, lambda command: parts_of(command, body), self._skill)
+        self._runner = runner
         self._part = part_of(body)
         self._life = LifeLayer(body)
         self._bounds = CommandBounds(body)
@@ -172,7 +176,8 @@ class RecordingRobot(ExecutingRobot):
         return Battery(self.time, 100, plugged=self._plugged, charging=False)
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        if self._runner:
+            self._runner.close()
 
     def place(self, visitor: Visitor | None) -> None:
         self._visitor = visitor
@@ -215,6 +220,12 @@ class RecordingRobot(ExecutingRobot):
 
     def _notice(self, event: Event) -> None:
         self._noticed.append(event)
+
+    def _skill(self, command: Do, now: float) -> Activity:
+        if self._runner is None or command.skill in self._behaves or command.skill in self._results:
+            return self._begin(command, now)
+        self.performed.append((now, command))
+        return self._runner.begin(command, now)
 
     def _begin(self, command: RobotCommand, now: float) -> Activity:
         command = self._bounds.fit(command)

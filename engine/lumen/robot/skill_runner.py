@@ -2,8 +2,9 @@
 
 import json
 import logging
-from collections.abc import Mapping
-from threading import Condition
+from collections.abc import Callable, Mapping
+from math import inf
+from threading import TIMEOUT_MAX, Condition
 from typing import Any, TypeVar
 
 from lumen.errors import RobotError, RobotFailedError, RobotRefusedError
@@ -17,14 +18,22 @@ from lumen.robot.command_table import added_verb
 from lumen.upkeep.threads import WatchedThread
 
 Settings = TypeVar("Settings")
+LOCKSTEP_PATIENCE = 30.0
+"""How long a performer may compute while the robot's time stands still [s]."""
+
 _log = logging.getLogger(__name__)
 
 
 class SkillRunner:
-    """Begins performers; one that has not returned after it was cancelled is not begun again until it has."""
+    """Begins performers; one that has not returned after it was cancelled is not begun again until it has.
 
-    def __init__(self) -> None:
+    With `lockstep` the robot's time stands still while a performer computes, as a story with real code needs: an
+    `advance` returns only when each performer waits for a time that has not come, or has ended.
+    """
+
+    def __init__(self, *, lockstep: bool = False) -> None:
         self._calls: list[RunningSkill] = []
+        self._lockstep = lockstep
 
     def begin(self, command: Do, now: float) -> "RunningSkill":
         """Begin a verb at `now` [s]. Raises RobotError if no feature has it, or if its last call does not end."""
@@ -32,7 +41,7 @@ class SkillRunner:
         self._calls = [call for call in self._calls if call.thread.is_alive()]
         if any(call.skill == command.skill and call.cancelled for call in self._calls):
             raise RobotRefusedError(f"`{command.skill}` was cancelled and has not ended yet: try again later")
-        call = RunningSkill(command, verb, now)
+        call = RunningSkill(command, verb, now, lockstep=self._lockstep)
         self._calls.append(call)
         call.thread.start()
         return call
@@ -46,12 +55,13 @@ class SkillRunner:
 class RunningSkill:
     """A verb under way: an activity for the robot, a `SkillCall` for the performer."""
 
-    def __init__(self, command: Do, verb: VerbRow, now: float) -> None:
-        self.skill, self.arguments = command.skill, command.arguments
+    def __init__(self, command: Do, verb: VerbRow, now: float, *, lockstep: bool = False) -> None:
+        self.skill, self.arguments, self.row = command.skill, command.arguments, verb
         self.cancelled = False
         self.result: Mapping[str, Any] = {}
         self.thread = WatchedThread(f"lumen-skill-{command.skill}", self._run)
-        self._verb, self._sections, self._now = verb, command.sections, now
+        self._sections, self._now, self._lockstep = command.sections, now, lockstep
+        self._until: float | None = None
         self._left = self._over = False
         self._failure = ""
         self._changed = Condition()
@@ -60,7 +70,13 @@ class RunningSkill:
         """Let the performer live until `now` [s]; return True once it has ended or was cancelled."""
         with self._changed:
             self._now = now
-            self._changed.notify_all()
+            if self._until is not None and now >= self._until:
+                self._changed.notify_all()
+            if self._lockstep and not self._changed.wait_for(self._settled, LOCKSTEP_PATIENCE):
+                self._left = self.cancelled = True
+                self._changed.notify_all()
+                limit = f"{LOCKSTEP_PATIENCE:g} s"
+                raise RobotFailedError(f"`{self.skill}` computed for {limit} without an answer or a `wait`")
             if self._left:
                 return True
             if failure := self._failure or self.thread.lost:
@@ -70,7 +86,7 @@ class RunningSkill:
     def cancel(self) -> None:
         """Have the robot wait for it no more, and the performer end early if its row does not forbid that."""
         self._left = True
-        if self._verb.cancel:
+        if self.row.cancel:
             self.end()
 
     def end(self) -> None:
@@ -79,18 +95,39 @@ class RunningSkill:
             self.cancelled = True
             self._changed.notify_all()
 
+    @property
+    def now(self) -> float:
+        return self._now
+
     def section(self, kind: type[Settings]) -> Settings:
         return section_of(self._sections, kind)
 
     def wait(self, seconds: float) -> bool:
+        self.wait_for(lambda: False, seconds)
+        return not self.cancelled
+
+    def wait_for(self, ready: Callable[[], bool], seconds: float = inf, within: float = inf) -> bool:
         with self._changed:
-            until = self._now + seconds
-            self._changed.wait_for(lambda: self.cancelled or self._now >= until)
-            return not self.cancelled
+            self._until = until = self._now + seconds
+            if self._lockstep:
+                self._changed.notify_all()
+            real = min(within, TIMEOUT_MAX)
+            self._changed.wait_for(lambda: self.cancelled or self._now >= until or ready(), real)
+            self._until = None
+            return ready()
+
+    def wake(self) -> None:
+        with self._changed:
+            self._changed.notify_all()
+
+    def _settled(self) -> bool:
+        """Whether the performer has ended, or waits for a time to come."""
+        waits = self._until is not None and self._now < self._until < inf
+        return waits or self._over or self._left or bool(self.thread.lost)
 
     def _run(self) -> None:
         try:
-            performer: SkillPerformer = resolve(self._verb.performer)
+            performer: SkillPerformer = resolve(self.row.performer)
             result, failure = self._checked(performer.perform(self)), ""
         except RobotError as error:
             result, failure = {}, str(error)
@@ -99,6 +136,7 @@ class RunningSkill:
             result, failure = {}, f"`{self.skill}` failed: {error!r}"
         with self._changed:
             self.result, self._failure, self._over = result, failure, True
+            self._changed.notify_all()
 
     def _checked(self, returned: Any) -> Mapping[str, Any]:
         """Return a result as the journal keeps it. Raises RobotFailedError if it does not fit the schema of the row."""
@@ -108,6 +146,6 @@ class RunningSkill:
             raise RobotFailedError(f"`{self.skill}` returned something that is not JSON data: {error}") from error
         if not isinstance(result, dict):
             raise RobotFailedError(f"`{self.skill}` returned {result!r}: return an object with names and values")
-        for fault in faults(result, self._verb.result):
+        for fault in faults(result, self.row.result):
             raise RobotFailedError(f"`{self.skill}` returned something wrong: {fault.message}")
-        return whole_result(self._verb, result)
+        return whole_result(self.row, result)

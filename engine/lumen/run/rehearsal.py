@@ -65,6 +65,7 @@ def rehearse(
     observers: Iterable[Observer] = (),
     hooks: Iterable[Callable[[float], None]] = (),
     whole: bool = False,
+    real_skills: bool = False,
 ) -> Rehearsal:
     """Play the story to its end, or to its failure; `chosen` is another robot than the recording one.
 
@@ -72,11 +73,21 @@ def rehearse(
     `observers` watch, `hooks` are called at each tick with its time [s]; ticks in which nothing happens are passed
     over. A behaviour that never comes to rest fails the story, as does whatever else the engine logs as an error; its
     warnings stand in the trace, which begins where the story does with `whole`.
+    With `real_skills` the recording robot performs skills by their code.
     """
-    setup = chosen or set_up("recording", project, "max", story)
+    setup = chosen or set_up("recording", project, "max", story, real_skills=real_skills)
     trace = RehearsalTrace(setup.clock.now, lambda: services.project.machine, None if whole else REMEMBERED)
     alone = chosen is None
-    plan = Plan(project, setup, story=story, narrator=trace, silent=alone, leaps=alone, before=tuple(hooks))
+    plan = Plan(
+        project,
+        setup,
+        story=story,
+        narrator=trace,
+        silent=alone,
+        leaps=alone,
+        before=tuple(hooks),
+        options={"real_skills": real_skills},
+    )
     services = compose(plan)
     node, player = services.node, services[VisitorPart].player
     services.behavior.loop.observers += observers

@@ -45,13 +45,15 @@ class Setup:
 class RobotRequest:
     """A request for a robot.
 
-    `speed` is one of `SPEEDS`. `options` are those of the robot's row that were given, by their names.
+    `speed` is one of `SPEEDS`. `options` are those of the robot's row that were given, by their names. With `real_skills`
+    a recording robot performs added verbs by their code.
     """
 
     project: Project
     speed: str
     story: Story | None = None
     options: Mapping[str, str] = field(default_factory=dict)
+    real_skills: bool = False
 
     @property
     def pace(self) -> float | None:
@@ -65,14 +67,18 @@ def set_up(
     speed: str,
     story: Story | None = None,
     options: Mapping[str, str] = NO_OPTIONS,
+    *,
+    real_skills: bool = False,
 ) -> Setup:
     """Return the robot of that name, on its feet; `options` are those of its row that were given.
+
+    With `real_skills` the recording robot performs added verbs by their code.
 
     Raises UsageError if there is no such robot here, or if it does not go with what was asked; LumenError with the name
     of the installed package if the robot's own code is faulty.
     """
     row = _row(kind, options)
-    return _alone(kind, row, RobotRequest(project, speed, story, options))
+    return _alone(kind, row, RobotRequest(project, speed, story, options, real_skills))
 
 
 def set_up_house(

@@ -29,7 +29,10 @@ def failure_of(root: Path, steps: str) -> str:
     [
         ("[{visitor: arrives}, {expect: {state: sprayed, context: {litres: 0.1}}}]", ""),
         ("[{skills: {spray: {litres: 0.5}}}, {visitor: arrives}, {expect: {context: {litres: 0.5}}}]", ""),
-        ("[{skills: {spray: fails}}, {visitor: arrives}, {expect: {state: sprayed}}]", ": an error ended the `do` of `spraying`"),
+        (
+            "[{skills: {spray: fails}}, {visitor: arrives}, {expect: {state: sprayed}}]",
+            ": an error ended the `do` of `spraying`",
+        ),
         ("[{skills: {spray: hangs}}, {visitor: arrives}, {expect: {state: sprayed, within: 5s}}]", "state `sprayed`"),
         (
             "[{skills: {spray: hangs}}, {skills: {spray: {}}}, {visitor: arrives}, {expect: {state: sprayed}}]",
@@ -72,3 +75,14 @@ def test_a_run_is_replayed_and_explained_without_the_code(tmp_path: Path, capsys
     assert "1 the same" in capsys.readouterr().out
     assert main(["story", "--project", str(root), "-o", str(tmp_path / "visit.yaml")]) == 0
     assert "robot: {spray: {result: {litres: 0.1}}}" in (tmp_path / "visit.yaml").read_text("utf-8")
+
+
+@pytest.mark.process
+def test_real_skills_run_in_the_time_of_the_story(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    root = project_in(tmp_path, {STORY: ("context: {litres: 0.1}", "context: {litres: 0.2}")})
+    assert main(["test", str(root), "--real-skills", "--verbose"]) == 0
+    lines = [line.split(maxsplit=2) for line in capsys.readouterr().out.splitlines() if ":" in line[:8]]
+    assert ["0:00.2", "robot", "does spray with duration 3s, nozzle left"] in lines
+    assert ["0:00.2", "spray", "spraying with the left nozzle"] in lines
+    assert ["0:03.2", "state", "sprayed  (done)"] in lines
+    assert main(["test", str(root)]) == 1

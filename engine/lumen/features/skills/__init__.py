@@ -1,9 +1,13 @@
 """Skills: verbs of a project's own, each a manifest `skills/NAME.yaml` and a program that performs it."""
 
-from lumen.feature import Feature
+from lumen.feature import Feature, PartRow, Phase
 
 FEATURE = Feature(
     name="skills",
+    parts=(
+        PartRow("skills", Phase.WORLD, "lumen.features.skills.part:skills", "whole", after="robot"),
+        PartRow("hosted skills", Phase.WORLD, "lumen.features.skills.part:skills", "role:robot", after="hosted robot"),
+    ),
     verb_files={"skills": "lumen.features.skills.manifest:build_skill"},
     codes=("lumen.features.skills.manifest",),
     rules=("lumen.features.skills.rules:check",),

@@ -1,0 +1,76 @@
+"""The part of an exhibition that keeps the workshop of its robot's skills."""
+
+import threading
+from collections.abc import Callable
+
+from lumen.errors import BusError
+from lumen.features.skills.workshop import Workshop, open_workshop
+from lumen.language.projects import Project
+from lumen.ports import Bus, PretendsSkills
+from lumen.robot.robot_routes import publish_on
+from lumen.run.parts.part import Part
+from lumen.run.services import Services
+from lumen.upkeep.threads import WatchedThread
+
+LOOK_PERIOD = 0.5
+"""The pause between two looks at the code of skills [s]."""
+TROUBLE_ROUTE, TROUBLE_TTL = "trouble", 10.0
+REAL_SKILLS = "real_skills"
+"""The option of a plan whose story runs the code of skills."""
+
+
+class SkillsPart(Part):
+    """Keeps the processes of skills, and starts those of `warm` ones; the robot's calls find them here."""
+
+    name = "skills"
+    patient = True
+
+    def __init__(self, project: Project, bus: Bus, tell: Callable[[str, str], None]) -> None:
+        self._bus, self._tell = bus, tell
+        self.workshop = Workshop(project, bus, tell, self._report)
+        self._close = open_workshop(self.workshop)
+        self._ending = threading.Event()
+        self._thread = WatchedThread("lumen-skills", self._look)
+        self._begun = False
+
+    def begin(self, now: float) -> None:
+        self._begun = True
+        self._look_after(self.workshop.project)
+
+    def use(self, project: Project) -> None:
+        self.workshop.use(project)
+        self._look_after(project)
+
+    def _look_after(self, project: Project) -> None:
+        """Begin to look after code, in a project that has skills."""
+        if self._begun and project.verbs and not self._thread.started:
+            self._thread.start()
+
+    def close(self) -> None:
+        self._ending.set()
+        self._close()
+        if self._thread.started:
+            self._thread.join(1.0)
+
+    def _look(self) -> None:
+        """Look after the code of skills until the end."""
+        while not self._ending.is_set():
+            self.workshop.look()
+            self._ending.wait(LOOK_PERIOD)
+
+    def _report(self, skill: str, text: str) -> None:
+        self._tell(skill, text)
+        try:
+            body = {"module": f"skill {skill}", "text": text[:500]}
+            publish_on(self._bus, self.workshop.project, TROUBLE_ROUTE, body, ttl=TROUBLE_TTL)
+        except BusError:
+            pass  # the line above is printed in any case
+
+
+def skills(services: Services) -> SkillsPart | None:
+    """Make the part; None in a story and on a recording robot, which pretend what skills do."""
+    plan = services.plan
+    pretends = plan.story is not None or isinstance(services.setup.hall, PretendsSkills)
+    if pretends and not plan.options.get(REAL_SKILLS):
+        return None
+    return SkillsPart(services.project, services.bus, services.narrator.line)

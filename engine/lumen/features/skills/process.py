@@ -1,0 +1,297 @@
+"""The process of a skill: a program under limits that performs one call at a time, by lines of JSON."""
+
+import json
+import os
+import resource
+import select
+import signal
+import subprocess
+import threading
+import time
+import uuid
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import closing, suppress
+from pathlib import Path
+from typing import IO, Any
+
+from lumen.errors import RobotFailedError
+from lumen.upkeep.regular_files import MEGABYTE
+from lumen.upkeep.threads import WatchedThread
+
+GRACE = 0.5
+"""How long a program has to end a call that was cancelled, or itself, before it is killed [s]."""
+MAX_OUTPUT_BYTES = 1 * MEGABYTE
+"""What a program may print for one call, answers included."""
+MAX_UNREAD_MESSAGES = 1_000
+MAX_PRINTED_LINES = 40
+"""The printed lines that are shown within `PRINT_PERIOD`; further ones are counted."""
+PRINT_PERIOD = 1.0
+MAX_PRINTED_CHARACTERS = 300
+WRITE_PATIENCE = 1.0
+"""How long a program may leave its input unread [s]."""
+DRAIN = 0.05
+"""How long to wait for what a program printed last [s]."""
+HEADROOM = 4
+"""The multiple of `memory` that the system lets a program reserve; what it really uses is measured."""
+
+_MARK = "LUMEN_SKILL"
+"""The environment variable by which the children of a program are found, whatever they did to get away."""
+_ENDS, _NEWS = ("result", "error"), ("wait", "progress", "say", "publish", "loaded")
+
+
+class SkillProcess:
+    """A program, started in `folder` with a process group of its own; `tell` shows a line that it printed.
+
+    `memory` is what it may use [MB]. `ended` says why it is gone, and is empty as long as it is not. Raises
+    RobotFailedError if it can't be started.
+    """
+
+    def __init__(
+        self, skill: str, command: Sequence[str], folder: str, memory: float, tell: Callable[[str], None]
+    ) -> None:
+        self.skill, self.ended, self.last_line = skill, "", ""
+        self._memory, self._tell = memory * MEGABYTE, tell
+        self._mark = uuid.uuid4().hex
+        self._messages: deque[Mapping[str, Any]] = deque()
+        self._changed = threading.Condition()
+        self._wake: Callable[[], None] = lambda: None
+        self._call = self._output = self._printed = self._hidden = 0
+        self._since = 0.0
+        self._over = False
+        self._killing = threading.Lock()
+        environment = {**os.environ, _MARK: self._mark, "PYTHONUNBUFFERED": "1"}
+        try:
+            self._popen = subprocess.Popen(
+                command,
+                cwd=folder,
+                env=environment,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                start_new_session=True,
+            )
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or str(error)
+            message = f"the program of `{skill}` can't be started: {command[0]}: {reason.lower()}"
+            raise RobotFailedError(message) from None
+        self._input = self._stream(self._popen.stdin).fileno()
+        os.set_blocking(self._input, False)
+        with suppress(OSError, ValueError):
+            most = int(self._memory * HEADROOM)
+            resource.prlimit(self._popen.pid, resource.RLIMIT_DATA, (most, most))
+            resource.prlimit(self._popen.pid, resource.RLIMIT_CORE, (0, 0))
+        self._thread = WatchedThread(f"lumen-program-{skill}", self._read)
+        self._thread.start()
+
+    @property
+    def pid(self) -> int:
+        return self._popen.pid
+
+    @property
+    def alive(self) -> bool:
+        return not self.ended
+
+    def begin(self, skill: str, arguments: Mapping[str, Any], wake: Callable[[], None]) -> None:
+        """Have it perform a call; `wake` is called on another thread when there are messages of it."""
+        with self._changed:
+            self._call += 1
+            self._messages.clear()
+            self._output, self._wake, self._over = 0, wake, False
+        self.send({"call": self._call, "skill": skill, "arguments": dict(arguments)})
+
+    def expect(self, wake: Callable[[], None]) -> None:
+        """Have `wake` called when there are messages, before the first call."""
+        with self._changed:
+            self._wake = wake
+            here = bool(self._messages)
+        if here:
+            wake()
+
+    def send(self, message: Mapping[str, Any]) -> None:
+        """Send a message; one that has ended gets none. Raises RobotFailedError if it does not read its input."""
+        line = json.dumps(message, ensure_ascii=False).encode() + b"\n"
+        deadline = time.monotonic() + WRITE_PATIENCE
+        while line:
+            try:
+                line = line[os.write(self._input, line) :]
+            except BlockingIOError:
+                left = deadline - time.monotonic()
+                if left <= 0 or not _ready((self._input,), select.POLLOUT, left):
+                    raise RobotFailedError(f"the program of `{self.skill}` does not read its input") from None
+            except (OSError, ValueError):
+                return  # it has ended, which the other thread reports
+
+    def order(self, **message: Any) -> None:
+        """Send a message about the call."""
+        self.send({"call": self._call, **message})
+
+    def has_news(self) -> bool:
+        return bool(self._messages)
+
+    def take(self) -> list[Mapping[str, Any]]:
+        """Return the messages of the call that came since, at last one with `result`, `error` or `ended`."""
+        with self._changed:
+            taken = list(self._messages)
+            self._messages.clear()
+        return taken
+
+    def await_end(self, timeout: float) -> bool:
+        """Wait until the call has ended; return whether it has, within `timeout` [s] of real time."""
+        with self._changed:
+            return self._changed.wait_for(lambda: self._over or bool(self.ended), timeout)
+
+    def used_memory(self) -> float:
+        """Return the memory that the program and its children use, as a multiple of what they may."""
+        pages = sum(_pages(pid) for pid in _family(self._popen.pid))
+        return pages * resource.getpagesize() / self._memory
+
+    def close(self) -> None:
+        """End it: by closing its input, and by force if it does not end within `GRACE`."""
+        with suppress(OSError, ValueError):
+            self._stream(self._popen.stdin).close()
+        with self._changed:
+            self._changed.wait_for(lambda: bool(self.ended), GRACE)
+        self.kill()
+
+    def kill(self, reason: str = "") -> None:
+        """End it and all its children at once; `reason` is what `ended` says, if it has not ended before."""
+        with self._changed:
+            self.ended = self.ended or reason or "it was ended"
+        with self._killing:
+            with suppress(OSError):
+                os.killpg(self._popen.pid, signal.SIGKILL)
+            for pid in _marked(self._mark):
+                with suppress(OSError):
+                    os.kill(pid, signal.SIGKILL)
+            with suppress(subprocess.TimeoutExpired):
+                self._popen.wait(GRACE)
+
+    def _read(self) -> None:
+        """Read what it prints until it has ended; this thread waits, and costs nothing, while it prints nothing."""
+        with closing(self._stream(self._popen.stdout)) as answers, closing(self._stream(self._popen.stderr)) as prints:
+            takers = {answers.fileno(): _Lines(self._line), prints.fileno(): _Lines(self._print)}
+            while answers.fileno() in takers and not self.ended:
+                self._take(takers)
+            if prints.fileno() in takers:  # what it wrote before it closed its standard output
+                self._take({prints.fileno(): takers[prints.fileno()]}, DRAIN)
+        if not self.ended:
+            self.kill(self._exit())
+        self._put({"ended": self.ended})
+
+    def _take(self, takers: "dict[int, _Lines]", timeout: float | None = None) -> None:
+        """Wait for output, at most `timeout` [s], and have it taken; a closed stream is removed from `takers`."""
+        for stream in _ready(takers, select.POLLIN, timeout):
+            content = os.read(stream, 65_536)
+            self._output += len(content)
+            takers[stream].take(content)
+            if not content:
+                del takers[stream]
+            elif self._output > MAX_OUTPUT_BYTES:
+                self.kill(f"it printed more than {MAX_OUTPUT_BYTES // MEGABYTE} MB during a call")
+
+    def _stream(self, stream: IO[bytes] | None) -> IO[bytes]:
+        assert stream
+        return stream
+
+    def _exit(self) -> str:
+        """Return how a program ended that closed its standard output."""
+        try:
+            code = self._popen.wait(GRACE)
+        except subprocess.TimeoutExpired:
+            return "it closed its standard output without an answer"
+        last = f" after the line `{self.last_line.strip()}`" if self.last_line else ""
+        if code < 0:
+            return f"it was ended by {signal.Signals(-code).name}{last}"
+        return f"it ended with exit code {code}{last}"
+
+    def _line(self, line: str) -> None:
+        """Take a line of its standard output: a message, or something that it prints."""
+        try:
+            message = json.loads(line) if line.startswith("{") else None
+        except (ValueError, RecursionError):
+            message = None
+        kind = next((key for key in (*_ENDS, *_NEWS) if isinstance(message, dict) and key in message), "")
+        if not kind or message is None:
+            return self._print(line)
+        if message.get("call", self._call) != self._call or (self._over and kind != "loaded"):
+            return self._print(f"an answer came after the end of its call, and is ignored: {line}")
+        self._put(message, over=kind in _ENDS)
+
+    def _put(self, message: Mapping[str, Any], *, over: bool = False) -> None:
+        with self._changed:
+            self._over = self._over or over
+            if len(self._messages) < MAX_UNREAD_MESSAGES or over or "ended" in message:
+                self._messages.append(message)
+            self._changed.notify_all()
+            wake = self._wake
+        wake()
+
+    def _print(self, line: str) -> None:
+        if not (text := line.rstrip()):
+            return
+        self.last_line = text[:MAX_PRINTED_CHARACTERS]
+        now = time.monotonic()
+        if now - self._since > PRINT_PERIOD:
+            if self._hidden:
+                self._tell(f"… and {self._hidden} more lines")
+            self._since, self._printed, self._hidden = now, 0, 0
+        if self._printed < MAX_PRINTED_LINES:
+            self._printed += 1
+            self._tell(self.last_line)
+        else:
+            self._hidden += 1
+
+
+class _Lines:
+    """Splits what comes of a stream into lines."""
+
+    def __init__(self, take: Callable[[str], None]) -> None:
+        self._line, self._rest = take, b""
+
+    def take(self, content: bytes) -> None:
+        """Take more of the stream; nothing means that it has ended."""
+        *lines, self._rest = (self._rest + content).split(b"\n")
+        if not content:
+            lines, self._rest = [*lines, self._rest], b""
+        for line in lines:
+            self._line(line.decode("utf-8", "replace"))
+
+
+def _ready(streams: Iterable[int], event: int, timeout: float | None) -> list[int]:
+    """Return the streams that can be read or written, after at most `timeout` [s]; None waits for ever."""
+    poll = select.poll()
+    for stream in streams:
+        poll.register(stream, event)
+    return [stream for stream, _ in poll.poll(None if timeout is None else timeout * 1_000)]
+
+
+def _pages(pid: int) -> int:
+    """Return the memory of a process, in pages; 0 if it has ended, or where the system does not tell."""
+    try:
+        return int(Path(f"/proc/{pid}/statm").read_bytes().split()[1])
+    except (OSError, ValueError, IndexError):
+        return 0
+
+
+def _family(pid: int) -> list[int]:
+    """Return a process and its children, and theirs."""
+    found, waiting = list[int](), [pid]
+    while waiting:
+        found.append(waiting.pop())
+        with suppress(OSError, ValueError):
+            children = Path(f"/proc/{found[-1]}/task/{found[-1]}/children").read_bytes()
+            waiting += [int(child) for child in children.split()]
+    return found
+
+
+def _marked(mark: str) -> list[int]:
+    """Return the processes that have a program's mark in their environment."""
+    wanted, found = f"{_MARK}={mark}".encode(), list[int]()
+    with suppress(OSError):
+        for name in os.listdir("/proc"):
+            if name.isdecimal():
+                with suppress(OSError):
+                    if wanted in Path(f"/proc/{name}/environ").read_bytes().split(b"\0"):
+                        found.append(int(name))
+    return found

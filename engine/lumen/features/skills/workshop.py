@@ -1,0 +1,311 @@
+"""The workshop of a robot: the processes of its skills, lent to one call after another, and restarted if they end."""
+
+import hashlib
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+import lumen
+from lumen.errors import RobotFailedError, RobotRefusedError
+from lumen.feature import VerbRow
+from lumen.features.skills.manifest import Skill
+from lumen.features.skills.process import SkillProcess
+from lumen.features.skills.python_file import syntax_fault
+from lumen.language.projects import Project
+from lumen.ports import Bus, SkillCall
+from lumen.upkeep.backoff import Backoff
+from lumen.upkeep.threads import WatchedThread
+
+MAX_PROCESSES = 4
+"""The calls of one skill that can be under way at the same time."""
+FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
+"""The pause before a program that crashed is started again, the first and the longest [s]."""
+LOADING = 20.0
+"""How long the code of a skill may take to load [s]."""
+MAX_CODE_BYTES = 4_000_000
+
+_CHILD = "import sys; sys.path.append({engine!r}); from lumen.skills import serve; serve()"
+_ENGINE = str(Path(lumen.__file__).parents[1])
+
+
+class _Code(NamedTuple):
+    """The code of a program: when its files were changed, its hash, and for a Python file its text."""
+
+    stamp: tuple[tuple[str, int, int], ...]
+    hash: str
+    source: str = ""
+
+
+@dataclass
+class _Bench:
+    """The processes of one skill."""
+
+    row: VerbRow
+    code: _Code | None = None
+    refused: tuple[tuple[str, int, int], ...] = ()
+    idle: list[SkillProcess] = field(default_factory=list)
+    busy: list[SkillProcess] = field(default_factory=list)
+    backoff: Backoff = field(default_factory=lambda: Backoff(FIRST_PAUSE, LONGEST_PAUSE))
+    again: float = 0.0
+
+    @property
+    def skill(self) -> Skill:
+        assert isinstance(self.row.details, Skill)
+        return self.row.details
+
+
+class Workshop:
+    """Lends processes to calls of the skills of a `project`.
+
+    `tell` shows a line about a skill, `report` a trouble of one, which other processes and the console show as well.
+    """
+
+    def __init__(
+        self, project: Project, bus: Bus, tell: Callable[[str, str], None], report: Callable[[str, str], None]
+    ) -> None:
+        self.project, self.bus, self.tell, self.report = project, bus, tell, report
+        self._root = Path(project.root)
+        self._lock = threading.RLock()
+        self._benches: dict[str, _Bench] = {}
+        self._closed = False
+        self.use(project)
+
+    def use(self, project: Project) -> None:
+        """Use the skills of this project from now on; a call of one that it lacks is ended."""
+        with self._lock:
+            self.project = project
+            gone = [self._benches.pop(name) for name in [*self._benches] if name not in project.verbs]
+            for name, row in project.verbs.items():
+                bench = self._benches.setdefault(name, _Bench(row))
+                if bench.row.details != row.details:
+                    self._retire(bench)
+                bench.row = row
+        for bench in gone:
+            self._retire(bench)
+            for process in bench.busy:
+                process.kill("the skill was removed")
+
+    def warm(self) -> None:
+        """Start the programs of the skills that are `warm`."""
+        for name, bench in list(self._benches.items()):
+            if bench.skill.warm and bench.skill.kind != "module" and not (bench.idle or bench.busy):
+                try:
+                    self._refresh(name, bench)
+                    process = self._started(name, bench)
+                except RobotFailedError as error:
+                    self.report(name, str(error))
+                else:
+                    with self._lock:
+                        bench.idle.append(process)
+
+    def look(self) -> None:
+        """Look whether code was changed: faults in it are reported, and the old code stays."""
+        for name, bench in list(self._benches.items()):
+            if bench.code and bench.skill.kind != "module":
+                self._refresh(name, bench)
+        self.warm()
+
+    def hashes(self) -> dict[str, str]:
+        """Return the hash of each skill's code, as it would be used now."""
+        found = {}
+        for name, bench in self._benches.items():
+            if bench.skill.kind != "module":
+                code = bench.code or _read(self._root, bench.skill)
+                found[name] = code.hash
+        return found
+
+    def processes(self, name: str) -> list[SkillProcess]:
+        """Return the processes of a skill that have not ended."""
+        with self._lock:
+            bench = self._benches.get(name)
+            return [one for one in (*bench.idle, *bench.busy) if one.alive] if bench else []
+
+    def is_busy(self, name: str) -> bool:
+        """Return whether a call of a skill is under way."""
+        return name in self._benches and bool(self._benches[name].busy)
+
+    @contextmanager
+    def lent(self, call: SkillCall) -> Iterator[SkillProcess]:
+        """Lend a process to a call; it is kept for the next one unless it has ended.
+
+        Raises RobotError if there is none.
+        """
+        name = call.skill
+        with self._lock:
+            if (bench := self._benches.get(name)) is None or self._closed:
+                raise RobotRefusedError(f"the project has no skill `{name}` any more")
+            if len(bench.busy) >= MAX_PROCESSES:
+                raise RobotRefusedError(f"{MAX_PROCESSES} calls of `{name}` are under way already")
+        self._refresh(name, bench)
+        self._pause(call, bench)
+        with self._lock:
+            process = next((one for one in bench.idle if one.alive), None)
+            bench.idle = [one for one in bench.idle if one.alive and one is not process]
+        process = process or self._started(name, bench)
+        code = bench.code
+        with self._lock:
+            bench.busy.append(process)
+        try:
+            yield process
+        finally:
+            with self._lock:
+                bench.busy.remove(process)
+                keep = process.alive and not bench.idle and bench.code is code and not self._closed
+                if keep and self._benches.get(name) is bench:
+                    bench.idle.append(process)
+                elif process.alive:
+                    _in_background(process.close)
+
+    def crashed(self, name: str) -> None:
+        """Count a program that ended by itself or was killed: the next one is started after a pause."""
+        with self._lock:
+            if bench := self._benches.get(name):
+                bench.again = time.monotonic() + bench.backoff.next()
+
+    def worked(self, name: str) -> None:
+        """A call was performed: the next pause is the first again."""
+        with self._lock:
+            if bench := self._benches.get(name):
+                bench.backoff.reset()
+
+    def close(self) -> None:
+        """End all programs."""
+        with self._lock:
+            self._closed = True
+            processes = [one for bench in self._benches.values() for one in (*bench.idle, *bench.busy)]
+            for bench in self._benches.values():
+                bench.idle = []
+        for process in processes:
+            process.kill("the exhibition ended")
+
+    def _pause(self, call: SkillCall, bench: _Bench) -> None:
+        """Wait until a program that crashed may be started again. Raises RobotRefusedError if the call is cancelled."""
+        left = bench.again - time.monotonic()
+        if left > 0 and not any(one.alive for one in bench.idle):
+            self.tell(call.skill, f"its program is started again in {left:.1f} s")
+            while left > 0 and not call.cancelled:
+                call.wait_for(lambda: False, within=left)
+                left = bench.again - time.monotonic()
+            if call.cancelled:
+                raise RobotRefusedError(f"`{call.skill}` was cancelled")
+
+    def _refresh(self, name: str, bench: _Bench) -> None:
+        """Use the code as it is on the disk now, unless Python can't read it."""
+        skill = bench.skill
+        stamp = _stamp(self._root, skill)
+        if stamp == bench.refused or (bench.code and bench.code.stamp == stamp):
+            return
+        code = _read(self._root, skill)
+        if skill.kind == "python" and (fault := syntax_fault(code.source.encode(), skill.target[0])):
+            bench.refused = stamp
+            kept = "; the code before stays in use" if bench.code else ""
+            place = f"{skill.target[0]}:{fault.line}:{fault.column}"
+            self.report(name, f"{place} {fault.message}{kept}")
+            if bench.code is None:
+                raise RobotFailedError(f"{place} {fault.message}")
+            return
+        with self._lock:
+            bench.refused = ()
+            changed, bench.code = bench.code is not None and bench.code.hash != code.hash, code
+            if changed:
+                bench.again = 0.0
+                bench.backoff.reset()
+                self._retire(bench)
+        if changed:
+            self.tell(name, f"uses its new code, {code.hash[:12]}")
+
+    def _retire(self, bench: _Bench) -> None:
+        """End the processes that no call uses."""
+        retired, bench.idle = bench.idle, []
+        for process in retired:
+            _in_background(process.close)
+
+    def _started(self, name: str, bench: _Bench) -> SkillProcess:
+        """Start a program. Raises RobotFailedError if that fails, or if its code can't be loaded."""
+        skill, code = bench.skill, bench.code
+        if skill.kind == "command":
+            return SkillProcess(name, skill.target, str(self._root), skill.memory, lambda line: self.tell(name, line))
+        file = self._root / skill.target[0]
+        if code is None or not code.source:
+            raise RobotFailedError(f"there is no code for `{name}`: {skill.target[0]} is missing or empty")
+        command = [sys.executable, "-c", _CHILD.format(engine=_ENGINE)]
+        process = SkillProcess(name, command, str(self._root), skill.memory, lambda line: self.tell(name, line))
+        loaded = threading.Event()
+        process.expect(loaded.set)
+        process.send({"load": code.source, "file": str(file)})
+        loaded.wait(LOADING)
+        match process.take():
+            case [{"loaded": True}]:
+                return process
+            case [{"loaded": False, "error": str(reason)}, *_]:
+                process.kill()
+            case [{"ended": str(reason)}, *_]:
+                pass
+            case _:
+                reason = f"its code took more than {LOADING:g} s to load"
+                process.kill()
+        self.crashed(name)
+        raise RobotFailedError(f"`{name}` can't be loaded: {reason}")
+
+
+def _in_background(work: Callable[[], None]) -> None:
+    WatchedThread("lumen-skill-end", work).start()
+
+
+def _files(root: Path, skill: Skill) -> list[Path]:
+    """Return the files of a program in the project: those beside a Python file can be modules that it imports."""
+    if skill.kind == "python":
+        own = root / skill.target[0]
+        return sorted({own, *own.parent.glob("*.py")})
+    return [path for word in skill.target if (path := root / word).is_file()]
+
+
+def _stamp(root: Path, skill: Skill) -> tuple[tuple[str, int, int], ...]:
+    found = []
+    for path in _files(root, skill):
+        with suppress(OSError):
+            status = os.stat(path)
+            found.append((str(path), status.st_mtime_ns, status.st_size))
+    return tuple(found)
+
+
+def _read(root: Path, skill: Skill) -> _Code:
+    stamp, digest, source = _stamp(root, skill), hashlib.sha256(repr(skill.target).encode()), ""
+    for path, *_ in stamp:
+        with suppress(OSError):
+            with open(path, "rb") as file:
+                content = file.read(MAX_CODE_BYTES)
+            digest.update(content)
+            if skill.kind == "python" and path == str(root / skill.target[0]):
+                source = content.decode("utf-8", "replace")
+    return _Code(stamp, digest.hexdigest(), source)
+
+
+_open: dict[tuple[str, str], Workshop] = {}
+_opening = threading.Lock()
+
+
+def open_workshop(workshop: Workshop) -> Callable[[], None]:
+    """Let calls find the workshop by their project's folder and robot; return the function that closes it."""
+    key = (workshop.project.root, workshop.project.robot)
+
+    def close() -> None:
+        with _opening:
+            if _open.get(key) is workshop:
+                del _open[key]
+        workshop.close()
+
+    with _opening:
+        _open[key] = workshop
+    return close
+
+
+def workshop_of(row: VerbRow) -> Workshop | None:
+    """Return the open workshop of a skill's project and robot; None in a story, and outside of an exhibition."""
+    return _open.get((row.root, row.robot))

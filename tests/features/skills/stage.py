@@ -1,0 +1,91 @@
+"""A robot's executor with the workshop of a project's skills, whose clock is real or stands still."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from lumen.bus.memory import MemoryBus
+from lumen.features.skills.workshop import Workshop, open_workshop
+from lumen.language.commands import Do
+from lumen.language.events import RESULT, Event
+from lumen.project import load
+from lumen.project.added_verbs import usable_verbs
+from lumen.robot.command_table import parts_of
+from lumen.robot.executor import Executor
+from lumen.robot.skill_runner import SkillRunner
+from tests.exhibits import BODY
+from tests.robots.test_executor import Fake
+from tests.waiting import threads, until
+
+
+class Stage:
+    """`told` are the lines about skills, `reported` their troubles; `start` begins a skill, `end` waits for its end."""
+
+    def __init__(self, root: Path) -> None:
+        self.root, self.project, self.bus = root, load(root), MemoryBus()
+        self.told: list[str] = []
+        self.reported: list[str] = []
+        self.events: dict[str, Event] = {}
+        self.workshop = Workshop(
+            self.project, self.bus, lambda _, line: self.told.append(line), lambda _, line: self.reported.append(line)
+        )
+        self.runner = SkillRunner()
+        self.executor = Executor(lambda c, now: Fake(c, now, 0.0), lambda c: parts_of(c, BODY), self.runner.begin)
+        self.began = time.monotonic()
+        self._count = 0
+
+    def start(self, skill: str, **arguments: Any) -> str:
+        """Begin a skill; return its id."""
+        self._count += 1
+        id = f"d{self._count}"
+        row = self.project.verbs.get(skill) or usable_verbs().get(skill)
+        self.executor.start(id, Do(skill, arguments, row=row))
+        self.tick()
+        return id
+
+    def tick(self) -> None:
+        for event in self.executor.advance(time.monotonic() - self.began):
+            self.events[event.name.rpartition(".")[2]] = event
+
+    def end(self, id: str) -> Any:
+        """Wait for the end of a command; return its result, the reason why it failed, or `cancelled`."""
+        self.until(lambda: id in self.events)
+        event = self.events[id]
+        data = event.data or {}
+        return data.get(RESULT, {}) if event.name.startswith("done") else data.get("reason", "cancelled")
+
+    def perform(self, skill: str, **arguments: Any) -> Any:
+        return self.end(self.start(skill, **arguments))
+
+    def until(self, condition: Callable[[], object]) -> None:
+        """Let the robot live until the condition holds."""
+
+        def holds() -> object:
+            self.tick()
+            return condition()
+
+        until(holds, shown=lambda: "\n".join((*self.told, *self.reported)))
+
+    def until_told(self, text: str) -> None:
+        self.until(lambda: any(text in line for line in (*self.told, *self.reported)))
+
+    def write(self, file: str, text: str) -> None:
+        """Save a file at once, so that nothing reads a half of it."""
+        draft = self.root / f"{file}.new"
+        draft.parent.mkdir(exist_ok=True)
+        draft.write_text(text, "utf-8")
+        draft.rename(self.root / file)
+
+
+@contextmanager
+def stage(root: Path) -> Iterator[Stage]:
+    made = Stage(root)
+    close = open_workshop(made.workshop)
+    try:
+        yield made
+    finally:
+        made.runner.close()
+        close()
+        until(lambda: not (threads("lumen-skill-") or threads("lumen-program-")))
