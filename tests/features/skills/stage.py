@@ -10,6 +10,7 @@ from lumen.bus.memory import MemoryBus
 from lumen.features.skills.workshop import Workshop, open_workshop
 from lumen.language.commands import Do
 from lumen.language.events import RESULT, Event
+from lumen.ports import Bus
 from lumen.project import load
 from lumen.project.added_verbs import usable_verbs
 from lumen.robot.command_table import parts_of
@@ -23,8 +24,8 @@ from tests.waiting import threads, until
 class Stage:
     """`told` are the lines about skills, `reported` their troubles; `start` begins a skill, `end` waits for its end."""
 
-    def __init__(self, root: Path) -> None:
-        self.root, self.project, self.bus = root, load(root), MemoryBus()
+    def __init__(self, root: Path, bus: Bus | None = None) -> None:
+        self.root, self.project, self.bus = root, load(root), bus or MemoryBus()
         self.told: list[str] = []
         self.reported: list[str] = []
         self.events: dict[str, Event] = {}
@@ -80,8 +81,8 @@ class Stage:
 
 
 @contextmanager
-def stage(root: Path) -> Iterator[Stage]:
-    made = Stage(root)
+def stage(root: Path, bus: Bus | None = None) -> Iterator[Stage]:
+    made = Stage(root, bus)
     close = open_workshop(made.workshop)
     try:
         yield made

@@ -5,9 +5,11 @@ from collections.abc import Callable
 
 from lumen.errors import BusError
 from lumen.features.skills.workshop import Workshop, open_workshop
+from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Bus, PretendsSkills
 from lumen.robot.robot_routes import publish_on
+from lumen.run.live_behavior import LiveBehavior
 from lumen.run.parts.part import Part
 from lumen.run.services import Services
 from lumen.upkeep.threads import WatchedThread
@@ -15,6 +17,7 @@ from lumen.upkeep.threads import WatchedThread
 LOOK_PERIOD = 0.5
 """The pause between two looks at the code of skills [s]."""
 TROUBLE_ROUTE, TROUBLE_TTL = "trouble", 10.0
+FAILED = "error.execution"
 REAL_SKILLS = "real_skills"
 """The option of a plan whose story runs the code of skills."""
 
@@ -25,9 +28,15 @@ class SkillsPart(Part):
     name = "skills"
     patient = True
 
-    def __init__(self, project: Project, bus: Bus, tell: Callable[[str, str], None]) -> None:
-        self._bus, self._tell = bus, tell
-        self.workshop = Workshop(project, bus, tell, self._report)
+    def __init__(
+        self,
+        project: Project,
+        bus: Bus,
+        tell: Callable[[str, str], None],
+        happen: Callable[[Event], None] = lambda event: None,
+    ) -> None:
+        self._bus, self._tell, self._happen = bus, tell, happen
+        self.workshop = Workshop(project, bus, tell, self._report, self._failed)
         self._close = open_workshop(self.workshop)
         self._ending = threading.Event()
         self._thread = WatchedThread("lumen-skills", self._look)
@@ -58,6 +67,10 @@ class SkillsPart(Part):
             self.workshop.look()
             self._ending.wait(LOOK_PERIOD)
 
+    def _failed(self, skill: str, reason: str) -> None:
+        """Let the behaviour hear of it, beside the `onError` of a `do` that waited for it."""
+        self._happen(Event(FAILED, {"skill": skill, "reason": reason}))
+
     def _report(self, skill: str, text: str) -> None:
         self._tell(skill, text)
         try:
@@ -73,4 +86,6 @@ def skills(services: Services) -> SkillsPart | None:
     pretends = plan.story is not None or isinstance(services.setup.hall, PretendsSkills)
     if pretends and not plan.options.get(REAL_SKILLS):
         return None
-    return SkillsPart(services.project, services.bus, services.narrator.line)
+    if (behavior := services.get(LiveBehavior)) is None:
+        return SkillsPart(services.project, services.bus, services.narrator.line)
+    return SkillsPart(services.project, services.bus, services.narrator.line, lambda event: behavior.loop.happen(event))

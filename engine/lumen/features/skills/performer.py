@@ -6,6 +6,7 @@ from typing import Any
 
 from lumen.errors import BusError, RobotFailedError
 from lumen.features.skills.manifest import Skill
+from lumen.features.skills.module_call import ModuleCall
 from lumen.features.skills.process import GRACE, SkillProcess
 from lumen.features.skills.workshop import Workshop, workshop_of
 from lumen.language.added_verbs import default_result
@@ -32,14 +33,18 @@ def perform(call: SkillCall) -> Mapping[str, Any]:
     if workshop is None or not isinstance(skill, Skill):
         call.wait(time_taken(Do(call.skill, call.arguments, row=call.row)))
         return default_result(call.row)
-    with workshop.lent(call) as process:
-        return _Performance(call, workshop, process).run()
+    try:
+        with workshop.lent(call) as process:
+            return _Performance(call, workshop, process).run()
+    except RobotFailedError as error:
+        workshop.failed(call.skill, str(error))
+        raise
 
 
 class _Performance:
     """One call, performed by a process."""
 
-    def __init__(self, call: SkillCall, workshop: Workshop, process: SkillProcess) -> None:
+    def __init__(self, call: SkillCall, workshop: Workshop, process: SkillProcess | ModuleCall) -> None:
         self._call, self._workshop, self._process = call, workshop, process
         self._due, self._sent = inf, 0
 
@@ -55,8 +60,8 @@ class _Performance:
             if call.now >= self._due:
                 self._due = inf
                 process.order(go=True)
-            if process.alive and (used := process.used_memory()) > 1.0:
-                raise RobotFailedError(self._killed(f"it used {used:.1f} times the memory that it may"))
+            if fault := process.fault:
+                raise RobotFailedError(self._killed(fault))
         self._end()
         return {}
 
@@ -123,6 +128,7 @@ class _Performance:
         """Kill the program; return what is reported of it."""
         self._process.kill(reason)
         self._workshop.crashed(self._call.skill)
-        message = f"the program of `{self._call.skill}` was killed: {reason}"
+        done = "was killed" if isinstance(self._process, SkillProcess) else "is given up"
+        message = f"{self._process.title} {done}: {reason}"
         self._workshop.report(self._call.skill, message)
         return message

@@ -51,6 +51,7 @@ class SkillProcess:
         self, skill: str, command: Sequence[str], folder: str, memory: float, tell: Callable[[str], None]
     ) -> None:
         self.skill, self.ended, self.last_line = skill, "", ""
+        self.title = f"the program of `{skill}`"
         self._memory, self._tell = memory * MEGABYTE, tell
         self._mark = uuid.uuid4().hex
         self._messages: deque[Mapping[str, Any]] = deque()
@@ -141,10 +142,13 @@ class SkillProcess:
         with self._changed:
             return self._changed.wait_for(lambda: self._over or bool(self.ended), timeout)
 
-    def used_memory(self) -> float:
-        """Return the memory that the program and its children use, as a multiple of what they may."""
-        pages = sum(_pages(pid) for pid in _family(self._popen.pid))
-        return pages * resource.getpagesize() / self._memory
+    @property
+    def fault(self) -> str:
+        """Why it has to be ended now: it and its children use too much memory. Empty if it need not."""
+        if self.ended:
+            return ""
+        used = sum(_pages(pid) for pid in _family(self._popen.pid)) * resource.getpagesize() / self._memory
+        return f"it used {used:.1f} times the memory that it may" if used > 1.0 else ""
 
     def close(self) -> None:
         """End it: by closing its input, and by force if it does not end within `GRACE`."""

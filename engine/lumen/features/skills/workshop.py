@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
@@ -15,6 +15,7 @@ import lumen
 from lumen.errors import RobotFailedError, RobotRefusedError
 from lumen.feature import VerbRow
 from lumen.features.skills.manifest import Skill
+from lumen.features.skills.module_call import ModuleAnswers, ModuleCall
 from lumen.features.skills.process import SkillProcess
 from lumen.features.skills.python_file import syntax_fault
 from lumen.language.projects import Project
@@ -64,13 +65,20 @@ class Workshop:
     """Lends processes to calls of the skills of a `project`.
 
     `tell` shows a line about a skill, `report` a trouble of one, which other processes and the console show as well.
+    `failed` is called with a skill and the reason why a call of it failed, on the thread of that call.
     """
 
     def __init__(
-        self, project: Project, bus: Bus, tell: Callable[[str, str], None], report: Callable[[str, str], None]
+        self,
+        project: Project,
+        bus: Bus,
+        tell: Callable[[str, str], None],
+        report: Callable[[str, str], None],
+        failed: Callable[[str, str], None] = lambda skill, reason: None,
     ) -> None:
-        self.project, self.bus, self.tell, self.report = project, bus, tell, report
+        self.project, self.bus, self.tell, self.report, self.failed = project, bus, tell, report, failed
         self._root = Path(project.root)
+        self._answers = ModuleAnswers(project, bus)
         self._lock = threading.RLock()
         self._benches: dict[str, _Bench] = {}
         self._closed = False
@@ -131,12 +139,17 @@ class Workshop:
         return name in self._benches and bool(self._benches[name].busy)
 
     @contextmanager
-    def lent(self, call: SkillCall) -> Iterator[SkillProcess]:
-        """Lend a process to a call; it is kept for the next one unless it has ended.
+    def lent(self, call: SkillCall) -> Iterator[SkillProcess | ModuleCall]:
+        """Lend a process, or a module, to a call; a process is kept for the next one unless it has ended.
 
         Raises RobotError if there is none.
         """
         name = call.skill
+        match call.row.details:
+            case Skill("module", (module,)):
+                with closing(ModuleCall(self.project, self.bus, module, self._answers)) as remote:
+                    yield remote
+                return
         with self._lock:
             if (bench := self._benches.get(name)) is None or self._closed:
                 raise RobotRefusedError(f"the project has no skill `{name}` any more")
@@ -183,6 +196,7 @@ class Workshop:
                 bench.idle = []
         for process in processes:
             process.kill("the exhibition ended")
+        self._answers.close()
 
     def _pause(self, call: SkillCall, bench: _Bench) -> None:
         """Wait until a program that crashed may be started again. Raises RobotRefusedError if the call is cancelled."""

@@ -1,0 +1,76 @@
+"""Skills in a whole exhibition: performed by a robot of one's own, reloaded, and refused while a person holds it."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.language.events import Event
+from lumen.lint import check_files
+from lumen.project.files import read_files
+from lumen.run.exhibition import Exhibition
+from tests.features.skills.changing import BEHAVIOR, CODE, MANIFEST, project_in
+from tests.seams.test_joints import Obedient
+from tests.waiting import threads, until
+
+pytestmark = pytest.mark.process
+
+SHORT = {BEHAVIOR: ("duration: 3s", "duration: 50ms")}
+
+
+def live(exhibition: Exhibition, condition: Callable[[], object]) -> None:
+    """Let an exhibition live until a condition holds."""
+
+    def holds() -> object:
+        exhibition.tick()
+        return condition()
+
+    until(holds, shown=lambda: (exhibition.configuration, exhibition.context))
+
+
+def meet(exhibition: Exhibition) -> None:
+    exhibition.loop.happen(Event("face", {}, exhibition.now))
+
+
+def test_a_robot_of_ones_own_performs_a_skill_and_the_behaviour_gets_its_result(tmp_path: Path) -> None:
+    root = project_in(tmp_path, SHORT)
+    with lumen.open(root, robot=Obedient()) as exhibition:
+        meet(exhibition)
+        live(exhibition, lambda: "sprayed" in exhibition.configuration)
+        assert exhibition.context == {"litres": 0.2}
+    until(lambda: not threads("lumen-program-"))
+
+
+def test_a_failing_skill_is_an_error_of_the_do_and_the_exhibition_lives_on(tmp_path: Path) -> None:
+    root = project_in(tmp_path, {**SHORT, CODE: ("    print", "    1 / 0\n    print")})
+    seen: list[Event] = []
+    with lumen.open(root, robot=Obedient()) as exhibition:
+        exhibition.observe(lambda step: seen.append(step.event) if step.event else None)
+        meet(exhibition)
+        live(exhibition, lambda: "error.execution" in [event.name for event in seen])
+        live(exhibition, lambda: "waiting" in exhibition.configuration)
+        reason = "`spray` failed: spray.py:6: ZeroDivisionError: division by zero"
+        (failed,) = [event for event in seen if event.name == "error.execution"]
+        assert failed.data == {"skill": "spray", "reason": reason}
+        assert [event.data for event in seen if event.name.startswith("error.command")] == [{"reason": reason}]
+
+
+def test_a_left_state_ends_its_skill(tmp_path: Path) -> None:
+    root = project_in(tmp_path, {BEHAVIOR: ("onError: waiting", "onError: waiting\n    on: {touched: waiting}")})
+    with lumen.open(root, robot=Obedient()) as exhibition:
+        meet(exhibition)
+        live(exhibition, lambda: threads("lumen-program-spray"))
+        exhibition.loop.happen(Event("touched", {}, exhibition.now))
+        live(exhibition, lambda: not threads("lumen-skill-spray"))
+        assert "waiting" in exhibition.configuration
+
+
+def test_a_project_of_a_bundle_has_manifests_and_no_code(tmp_path: Path) -> None:
+    files = read_files(project_in(tmp_path))
+    assert MANIFEST in files
+    assert CODE not in files
+    (tmp_path / "house").mkdir()
+    project, found = check_files(tmp_path / "house", files)
+    assert project is not None
+    assert [each.code for each in found] == ["skill-program"]
