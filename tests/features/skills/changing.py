@@ -12,6 +12,7 @@ from tests.copying import copied_project
 HERE = ROOT / "tests/features/skills"
 
 MANIFEST, CODE, BEHAVIOR = "skills/spray.yaml", "skills/spray.py", "behaviors/fog.yaml"
+STORY = "behaviors/stories/visitor.yaml"
 
 
 def project_in(folder: Path, changes: Mapping[str, tuple[str, str]] | None = None) -> Path:

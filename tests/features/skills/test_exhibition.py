@@ -10,7 +10,7 @@ from lumen.language.events import Event
 from lumen.lint import check_files
 from lumen.project.files import read_files
 from lumen.run.exhibition import Exhibition
-from tests.features.skills.changing import BEHAVIOR, CODE, MANIFEST, project_in
+from tests.features.skills.changing import BEHAVIOR, CODE, MANIFEST, STORY, project_in
 from tests.seams.test_joints import Obedient
 from tests.waiting import threads, until
 
@@ -74,3 +74,27 @@ def test_a_project_of_a_bundle_has_manifests_and_no_code(tmp_path: Path) -> None
     project, found = check_files(tmp_path / "house", files)
     assert project is not None
     assert [each.code for each in found] == ["skill-program"]
+
+
+def edit(root: Path, file: str, old: str, new: str) -> None:
+    text = (root / file).read_text("utf-8")
+    assert old in text
+    (root / file).write_text(text.replace(old, new), "utf-8")
+
+
+def test_a_changed_manifest_is_used_after_a_reload_and_the_program_of_a_removed_skill_ends(tmp_path: Path) -> None:
+    story = ("did: {spray: 3s}, context: {litres: 0.1}", "within: 5s")
+    root = project_in(tmp_path, {BEHAVIOR: ("{duration: 3s, nozzle: left}", "50ms"), STORY: story})
+    with lumen.open(root, robot=Obedient()) as exhibition:
+        meet(exhibition)
+        live(exhibition, lambda: "sprayed" in exhibition.configuration)
+        edit(root, MANIFEST, "default: left", "default: right")
+        report = exhibition.reload()
+        assert (report.verdict, report.changes[-1].sentence) == ("applied", "skill `spray` changed")
+        assert exhibition.project.verbs["spray"].arguments["properties"]["nozzle"]["default"] == "right"
+        assert len(threads("lumen-program-spray")) == 1
+        edit(root, BEHAVIOR, "do: {spray: 50ms}", "do: {wait: 1s}")
+        edit(root, BEHAVIOR, "event.data.litres", "3")
+        (root / MANIFEST).unlink()
+        assert exhibition.reload().verdict == "applied"
+        live(exhibition, lambda: not threads("lumen-program-spray"))

@@ -5,6 +5,7 @@ from dataclasses import fields, replace
 from itertools import groupby
 from typing import Any
 
+from lumen.feature import VerbRow
 from lumen.insight.changes.change import Change, Risk
 from lumen.insight.changes.entries import entry_changes
 from lumen.insight.changes.formatting import code, how_many
@@ -62,6 +63,8 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
         {name: (name, machine) for name, machine in new.behaviors.items()},
         lambda before, after: machine_changes(after[0], before[1], after[1]),
     )  # fmt: skip
+    skills = "skill", "skill", Risk.BEHAVIOR, "skills/{}.yaml"
+    yield from entry_changes(*skills, *map(_manifests, (old, new)))
     yield from entry_changes(
         "controller", "controller", Risk.MOTION, "fuzzy/{}.yaml", old.controllers, new.controllers, controller_changes
     )
@@ -86,6 +89,11 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
     yield from entry_changes("story", "story", Risk.COSMETIC, "behaviors/stories/{}.yaml", old.stories, new.stories)
     tried = "file of sayings", Risk.COSMETIC, "behaviors/sayings/{}.yaml"
     yield from entry_changes("sayings", *tried, old.sayings, new.sayings)
+
+
+def _manifests(project: Project) -> dict[str, VerbRow]:
+    """The verbs that the files of a project declare, wherever it lies and whichever robot performs them."""
+    return {name: row._replace(root="", robot="") for name, row in project.verbs.items()}
 
 
 def _settings(old: Project, new: Project) -> Iterator[Change]:
