@@ -41,7 +41,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))  # for tests/rabbitmq.py
 NOT_RUN = ("drawing", "measured", "recorded")
 """Why a block of text is not compared."""
-PROJECT = ("lumen.yaml", "behaviors", "knowledge", "fuzzy", "motions", "models", "schemas", "examples")
+PROJECT = ("lumen.yaml", "behaviors", "functions", "knowledge", "fuzzy", "motions", "models", "schemas", "examples")
 BEFORE = r"(?:^<!-- \$ (?P<before>.+?) -->\n+)?(?:^<!-- run: (?P<words>.+?) -->\n+)?"
 BLOCK = re.compile(rf"(?m){BEFORE}^```(?P<language>\w+)[^\n]*\n(?P<text>[\s\S]*?)^```$")
 NUMBER = re.compile(r"\d+(?:,\d{3})*(?:\.\d+)?")

@@ -1,4 +1,4 @@
-"""`lumen test`: the stories of a project, played on the recording robot, and its sayings."""
+"""`lumen test`: the stories of a project, played on the recording robot, its sayings, and examples of functions."""
 
 import argparse
 import sys
@@ -13,6 +13,7 @@ from lumen.cli.terminal import coloured
 from lumen.cli.verdicts import render, text, verdict_formats
 from lumen.cli.writing import write_file
 from lumen.errors import UsageError
+from lumen.insight.explaining.function_examples import tried_examples
 from lumen.insight.explaining.sayings import tried as tried_sayings
 from lumen.insight.exploration import MAX_CONFIGURATIONS
 from lumen.language.diagnostics import did_you_mean
@@ -27,7 +28,7 @@ from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored, explored
 from lumen.run.kept_explorations import KeptExplorations
 from lumen.run.rehearsal import Rehearsal, rehearse
-from lumen.run.verdict import JudgedSaying, Verdict
+from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -90,9 +91,10 @@ def run(options: argparse.Namespace) -> int:
     trials = _tried(project) if project.questions and not names and not options.explore else ()
     halted = options.exitfirst and any(rehearsal.failed for rehearsal in rehearsals)
     judged = () if halted else _judged(project, sayings)
+    examples = () if halted or names or options.explore else _examples(project)
     took = time.perf_counter() - began
     verdict = Verdict(
-        project.name, tuple(rehearsals), coverage, options.fail_under or 0.0, walked, took, trials, judged
+        project.name, tuple(rehearsals), coverage, options.fail_under or 0.0, walked, took, trials, judged, examples
     )
     if live:
         _print("\n".join(text.conclusion(verdict, coloured=coloured())))
@@ -118,11 +120,13 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _chosen(project: Project, names: list[str]) -> tuple[list[Story], list[SayingSet]]:
-    """The stories and the files of sayings of these names, each once."""
-    if not (project.stories or project.sayings):
+    """The stories and the files of sayings of these names, each once; all if there are no names."""
+    if not (project.stories or project.sayings or any(each.examples for each in project.functions.values())):
         raise UsageError(
             "the project has no stories and no sayings: write a story in behaviors/stories/, as docs/stories.md shows"
         )
+    if not (names or project.stories or project.sayings):
+        return [], []
     stories, sayings = zip(*(tests_of(project, name) for name in names or ["*"]), strict=True)
     return (
         list({story.name: story for each in stories for story in each}.values()),
@@ -134,6 +138,11 @@ def _judged(project: Project, sets: list[SayingSet]) -> tuple[JudgedSaying, ...]
     return tuple(
         JudgedSaying(one, project.place(one.file, one.saying.where)) for one in tried_sayings(sets, project.behaviors)
     )
+
+
+def _examples(project: Project) -> tuple[JudgedExample, ...]:
+    found = tried_examples(project.functions.values())
+    return tuple(JudgedExample(one, project.place(one.file, one.example.where)) for one in found)
 
 
 def _tried(project: Project) -> tuple[QuestionTrial, ...]:

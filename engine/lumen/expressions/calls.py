@@ -4,6 +4,8 @@ from collections.abc import Collection
 
 from lumen.errors import ExpressionError
 from lumen.expressions.expression_findings import (
+    IMPURE_FUNCTION,
+    MISPLACED_DRAW,
     UNKNOWN_ANSWERS,
     UNKNOWN_FUNCTION,
     UNKNOWN_PHRASE,
@@ -13,10 +15,18 @@ from lumen.expressions.expression_findings import (
     Declarations,
     ExpressionFindings,
 )
-from lumen.expressions.function_table import Function, all_functions, example_of, fault_of, functions
+from lumen.expressions.function_table import (
+    Function,
+    all_functions,
+    drawing_functions,
+    example_of,
+    fault_of,
+    functions,
+)
+from lumen.expressions.own_functions import OwnFunction
 from lumen.expressions.patterns import compile_pattern
-from lumen.expressions.tree import ExpressionNode, FunctionCall, Literal
-from lumen.language.diagnostics import Code, did_you_mean, mean
+from lumen.expressions.tree import ExpressionNode, FunctionCall, Literal, walk
+from lumen.language.diagnostics import Code, did_you_mean, mean, nearest
 
 _INSTEAD = {
     "len": "size", "length": "size", "count": "size", "lowerAscii": "lower", "toLower": "lower", "strip": "trim",
@@ -25,12 +35,21 @@ _INSTEAD = {
 }  # fmt: skip
 
 
-def function_of(node: FunctionCall, findings: ExpressionFindings) -> Function | None:
-    """The function that is called, None where there is none of that name; a wrong number of arguments is reported."""
-    function = all_functions().get(node.function)
+def function_of(
+    node: FunctionCall, around: Declarations, findings: ExpressionFindings
+) -> Function | OwnFunction | None:
+    """Return the called function, or None without a function of that name; report a wrong number of arguments."""
+    function: Function | OwnFunction | None = all_functions().get(node.function)
+    if function is None and node.function in around.functions:
+        function = around.functions[node.function]
+        if function is None:  # its file is broken, which is reported there
+            return None
     if function is None:
         similar = _INSTEAD.get(node.function)
-        hint = mean(node.function, similar) if similar else did_you_mean(node.function, functions(), "there are")
+        own = around.functions
+        hint = did_you_mean(node.function, (*functions(), *own), "there are")
+        if similar and not nearest(node.function, own):
+            hint = mean(node.function, similar)
         findings.report(UNKNOWN_FUNCTION, node, f"there is no function `{node.function}`", hint, node.named)
         return None
     if fault := fault_of(node.function):
@@ -41,10 +60,34 @@ def function_of(node: FunctionCall, findings: ExpressionFindings) -> Function | 
     if wanted != given:
         arguments = f"{wanted or 'no'} argument{'s' * (wanted != 1)}"
         message = f"`{node.function}` takes {arguments}, and {given or 'none'} {'is' if given == 1 else 'are'} given"
-        example = example_of(node.function) or ", ".join(sorted(kinds)[0] for kinds in function.parameters)
+        if isinstance(function, OwnFunction):
+            example = ", ".join(function.parameters)
+        else:
+            example = example_of(node.function) or ", ".join(sorted(kinds)[0] for kinds in function.parameters)
         usage = f"write `{node.function}({example})`"
         findings.report(WRONG_ARGUMENT_COUNT, node, message, usage, node.named)
     return function
+
+
+def check_purity(node: FunctionCall, around: Declarations, findings: ExpressionFindings) -> None:
+    """Report a call that has no place in a function of the project, and a value drawn for an argument of one.
+
+    The function's expression may name an argument several times, and each time would draw another value.
+    """
+    function = all_functions().get(node.function)
+    if around.pure and function and (function.scoped or node.function in drawing_functions()):
+        message = f"`{node.function}` reads something other than the arguments"
+        hint = f"add an argument to `args`, and pass `{node.function}({example_of(node.function)})` in each call"
+        if node.function in drawing_functions():
+            hint = "draw the value in `assign`, and pass the key of the context as an argument"
+        findings.report(IMPURE_FUNCTION, node, message, hint, node.named)
+    if node.function in around.functions:
+        inside = (inner for argument in node.arguments for inner, _ in walk(argument))
+        drawn = next((n for n in inside if isinstance(n, FunctionCall) and n.function in drawing_functions()), None)
+        if drawn:
+            message = f"`{drawn.function}` can't be an argument of `{node.function}`, which may use it more than once"
+            hint = "assign the value to a key of `context` first, and pass that key"
+            findings.report(MISPLACED_DRAW, drawn, message, hint, drawn.named)
 
 
 def check_names(node: FunctionCall, around: Declarations, findings: ExpressionFindings) -> None:

@@ -1,13 +1,15 @@
 """What is wrong with an expression before it runs: unknown names, and kinds that can never go together."""
 
 from collections.abc import Collection, Mapping
+from types import MappingProxyType
 from typing import Any
 
 from lumen.errors import ExpressionError
-from lumen.expressions.calls import check_names, function_of
+from lumen.expressions.calls import check_names, check_purity, function_of
 from lumen.expressions.expression_findings import (
     CODES_OF_COMPILE_ERRORS,
     EXPRESSION_SYNTAX,
+    IMPURE_FUNCTION,
     TYPE_MISMATCH,
     UNGUARDED_FIELD,
     UNKNOWN_CONTEXT_KEY,
@@ -22,7 +24,9 @@ from lumen.expressions.expression_findings import (
 from lumen.expressions.facts import KnownFacts, facts, prefixes
 from lumen.expressions.function_table import functions
 from lumen.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT
+from lumen.expressions.own_functions import OwnFunction, OwnFunctions
 from lumen.expressions.parser import parse_expression
+from lumen.expressions.printer import unparse
 from lumen.expressions.scope import ROOTS
 from lumen.expressions.tree import (
     Binary,
@@ -72,6 +76,11 @@ def check_tree(
     return sorted(checker.findings.found, key=lambda finding: finding.offset)
 
 
+def kinds_of(tree: ExpressionNode, around: Declarations) -> frozenset[str]:
+    """Return the kinds that the value of a tree can have."""
+    return _Checker(around).type(tree, KnownFacts()).kinds
+
+
 def check_expression(
     source: str,
     *,
@@ -82,6 +91,7 @@ def check_expression(
     states: Collection[str] | None = None,
     lists: Mapping[str, Any] | None = None,
     variables: Mapping[str, Any] | None = None,
+    functions: OwnFunctions = MappingProxyType({}),
     expected: Mapping[str, Any] | None = None,
 ) -> list[ExpressionFinding]:
     """Everything wrong with an expression, in the order it stands; never raises, whatever the source.
@@ -89,13 +99,15 @@ def check_expression(
     `context` maps its keys to JSON Schemas; `events` maps the events that can arrive here to those of their data
     (None: of any kind), and is None where any event can. `phrases`, `answers` and `states` are the names there are,
     None where that is not known; `lists` and `variables` (which stand for entries of lists) map names to JSON
-    Schemas. `expected` is the schema that the value has to fit: `{"type": "boolean"}` for a guard.
+    Schemas. `functions` are those of the project. `expected` is the schema of the value: `{"type": "boolean"}` for a
+    guard.
     """
     try:
         tree = parse_expression(source)
     except ExpressionError as error:
         return [ExpressionFinding(EXPRESSION_SYNTAX, error.offset, 1, error.message, error.hint)]
-    return check_tree(tree, Declarations(context, events, phrases, answers, states, lists, variables or {}), expected)
+    around = Declarations(context, events, phrases, answers, states, lists, variables or {}, functions)
+    return check_tree(tree, around, expected)
 
 
 class _Checker:
@@ -140,6 +152,8 @@ class _Checker:
 
     def name(self, node: Identifier, known: KnownFacts) -> ValueType:
         around = self.around
+        if around.pure:
+            return self.argument(node)
         if node.name == "context":
             properties = around.context
             return ANY if properties is None else ValueType(frozenset((MAP,)), ({"properties": properties},))
@@ -157,11 +171,26 @@ class _Checker:
             hint = f"did you mean `context.{node.name}`?"
         elif around.lists and node.name in around.lists and not nearest(node.name, around.variables):
             hint = f"did you mean `lists.{node.name}`?"
-        elif node.name in functions():
+        elif node.name in functions() or node.name in around.functions:
             hint = f"write `{node.name}(…)`"
         else:
             hint += f"; put a text in quotes: '{node.name}'"
         self.report(UNKNOWN_NAME, node, f"there is no name `{node.name}`", hint)
+        return ANY
+
+    def argument(self, node: Identifier) -> ValueType:
+        """The type of a name in a function of the project, which is one of its arguments."""
+        arguments = self.around.variables
+        if node.name in arguments:
+            return type_of_schema(arguments[node.name])
+        if node.name in ROOTS:
+            hint = "add an argument to `args`, and pass the value in each call"
+            self.report(IMPURE_FUNCTION, node, f"a function can't read `{node.name}`", hint)
+            return ANY
+        hint = did_you_mean(node.name, arguments, "the arguments are") if arguments else "declare it in `args`"
+        if not nearest(node.name, arguments):
+            hint += f"; put a text in quotes: '{node.name}'"
+        self.report(UNKNOWN_NAME, node, f"there is no argument `{node.name}`", hint)
         return ANY
 
     def event(self, known: KnownFacts) -> ValueType:
@@ -249,17 +278,30 @@ class _Checker:
         self.report(TYPE_MISMATCH, node, message, hint)
 
     def call(self, node: FunctionCall, known: KnownFacts) -> ValueType:
-        function = function_of(node, self.findings)
+        function = function_of(node, self.around, self.findings)
         if function is None:
             for argument in node.arguments:
                 self.type(argument, known)
             return ANY
         if node.function == "has" and len(node.arguments) == 1:
             return self.has(node, known)
+        check_purity(node, self.around, self.findings)
+        if isinstance(function, OwnFunction):
+            self.arguments(node, function, known)
+            return ValueType(function.returns)
         for argument, kinds in zip(node.arguments, function.parameters, strict=False):
             self.expect(argument, self.type(argument, known), kinds, f"by `{node.function}`")
         check_names(node, self.around, self.findings)
         return ValueType(function.returns)
+
+    def arguments(self, node: FunctionCall, function: OwnFunction, known: KnownFacts) -> None:
+        """Check what is passed to a function of the project, whose parameters have names."""
+        for argument, (name, kinds) in zip(node.arguments, function.parameters.items(), strict=False):
+            found = self.type(argument, known).kinds
+            if not found & kinds:
+                what = f"`{unparse(argument)}` is {in_words(found)}"
+                message = f"{what}, but `{name}` of `{node.function}` must be {in_words(kinds)}"
+                self.report(TYPE_MISMATCH, argument, message)
 
     def has(self, node: FunctionCall, known: KnownFacts) -> ValueType:
         target = node.arguments[0]

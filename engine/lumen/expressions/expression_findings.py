@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from lumen.expressions.kinds import KIND_DESCRIPTIONS
+from lumen.expressions.own_functions import OwnFunctions
 from lumen.expressions.tree import ExpressionNode
 from lumen.language.diagnostics import ERROR, Code
 
@@ -17,6 +18,9 @@ UNKNOWN_FIELD = Code(
 UNKNOWN_STATE = Code("unknown-state", "references", ERROR, "the named state does not exist")
 EXPRESSION_SYNTAX = Code("expression-syntax", "expressions", ERROR, "an expression can't be read")
 TYPE_MISMATCH = Code("type-mismatch", "expressions", ERROR, "an expression combines values of incompatible types")
+IMPURE_FUNCTION = Code(
+    "impure-function", "expressions", ERROR, "a function of the project reads something other than its arguments"
+)
 MISPLACED_DRAW = Code("misplaced-draw", "expressions", ERROR, "`shuffle` or `pick` is used outside `assign`")
 UNGUARDED_FIELD = Code(
     "unguarded-field", "expressions", ERROR, "an expression reads a field that some of its events do not have"
@@ -53,7 +57,8 @@ class Declarations:
     """What is declared around an expression; None where that is not known.
 
     `context` and `events` hold JSON Schemas, of the keys and of the events' data (None: of any kind); so do `lists`,
-    and the `variables` that stand for entries of lists.
+    and the `variables`, which are entries of lists. `functions` are those of the project. `pure` are declarations of a
+    function itself: it reads nothing but its arguments, which are the `variables`.
     """
 
     context: Mapping[str, Any] | None = None
@@ -63,6 +68,8 @@ class Declarations:
     states: Collection[str] | None = None
     lists: Mapping[str, Any] | None = None
     variables: Mapping[str, Any] = field(default_factory=dict)
+    functions: OwnFunctions = field(default_factory=dict)
+    pure: bool = False
 
 
 class ExpressionFindings:

@@ -9,17 +9,12 @@ from lumen.expressions.parser import MAX_REMEMBERED_TREES, parse_expression
 from lumen.expressions.printer import unparse
 from lumen.expressions.templates import split_template
 from lumen.expressions.tree import (
-    Binary,
-    Conditional,
     ExpressionNode,
     FieldAccess,
     FunctionCall,
     Identifier,
     IndexAccess,
-    ListLiteral,
-    Logic,
-    MapLiteral,
-    Unary,
+    rebuilt,
     walk,
 )
 
@@ -71,22 +66,10 @@ class _Substitution:
             case Identifier() | FieldAccess() | IndexAccess():
                 path = self.path(node)
                 return FunctionCall("in_language", (path,)) if self._spoken(node) and not whole else path
-            case ListLiteral(items=items):
-                return replace(node, items=tuple(map(self.of, items)))
-            case MapLiteral(values=values):
-                return replace(node, values=tuple(map(self.of, values)))
-            case Unary(operand=operand):
-                return replace(node, operand=self.of(operand))
-            case Binary(left=left, right=right):
-                return replace(node, left=self.of(left), right=self.of(right))
-            case Logic(operands=operands):
-                return replace(node, operands=tuple(map(self.of, operands)))
-            case Conditional(condition=condition, then=then, otherwise=otherwise):
-                return replace(node, condition=self.of(condition), then=self.of(then), otherwise=self.of(otherwise))
             case FunctionCall(function=function, arguments=arguments):
                 every = function in _WHOLE
                 return replace(node, arguments=tuple(self.of(argument, whole=every) for argument in arguments))
-        return node
+        return rebuilt(node, self.of)
 
     def path(self, node: ExpressionNode) -> ExpressionNode:
         """A path with its beginning replaced."""

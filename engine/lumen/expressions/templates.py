@@ -11,6 +11,7 @@ from lumen.expressions.compiler import compile_expression
 from lumen.expressions.expression_findings import EXPRESSION_SYNTAX, ExpressionFinding
 from lumen.expressions.kinds import FaultError
 from lumen.expressions.operators import bounded
+from lumen.expressions.own_functions import OwnFunctions, expanded
 from lumen.expressions.scope import MAX_TEXT_LENGTH, Scope
 from lumen.expressions.tokens import token_at
 
@@ -109,6 +110,23 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
         return int(value)
     return value
+
+
+def expanded_template(text: str, functions: OwnFunctions) -> str:
+    """Return the text with `expanded` done in each `{{ expression }}`; raises what that does."""
+    if not any(name in text for name in functions):
+        return text
+    parts = []
+    for part in split_template(text):
+        if isinstance(part, str):
+            parts.append(part)
+            continue
+        try:
+            meant = expanded(part.source, functions)
+        except ExpressionError as error:
+            raise moved(error, part.offset) from None
+        parts.append("{{" + (part.source if meant == part.source else f" {meant} ") + "}}")
+    return "".join(parts)
 
 
 def check_template(text: str, *, context: Mapping[str, Any] | None, **around: Any) -> list[ExpressionFinding]:

@@ -1,7 +1,7 @@
 """The tree of an expression: frozen nodes that know where they stand."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 
@@ -134,6 +134,30 @@ def children(node: ExpressionNode) -> tuple[ExpressionNode, ...]:
         case Conditional(condition=condition, then=then, otherwise=otherwise):
             return (condition, then, otherwise)
     return ()
+
+
+def rebuilt(node: ExpressionNode, change: Callable[[ExpressionNode], ExpressionNode]) -> ExpressionNode:
+    """The node with each of its children replaced by what `change` returns for it."""
+    match node:
+        case FieldAccess(base=base):
+            return replace(node, base=change(base))
+        case IndexAccess(base=base, key=key):
+            return replace(node, base=change(base), key=change(key))
+        case ListLiteral(items=items):
+            return replace(node, items=tuple(map(change, items)))
+        case MapLiteral(values=values):
+            return replace(node, values=tuple(map(change, values)))
+        case Unary(operand=operand):
+            return replace(node, operand=change(operand))
+        case Binary(left=left, right=right):
+            return replace(node, left=change(left), right=change(right))
+        case Logic(operands=operands):
+            return replace(node, operands=tuple(map(change, operands)))
+        case Conditional(condition=condition, then=then, otherwise=otherwise):
+            return replace(node, condition=change(condition), then=change(then), otherwise=change(otherwise))
+        case FunctionCall(arguments=arguments):
+            return replace(node, arguments=tuple(map(change, arguments)))
+    return node
 
 
 def walk(tree: ExpressionNode) -> Iterator[tuple[ExpressionNode, int]]:

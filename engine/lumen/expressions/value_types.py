@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT, FaultError, kind_of
 
-_JSON_TYPES = {
+JSON_TYPES = {
     "null": NULL, "boolean": BOOLEAN, "integer": NUMBER, "number": NUMBER, "string": TEXT, "array": LIST, "object": MAP,
 }  # fmt: skip
 
@@ -77,7 +77,7 @@ def type_of_schema(schema: object) -> ValueType:
         return type_of_values(schema["enum"])
     declared = schema.get("type")
     listed = [declared] if isinstance(declared, str) else declared if isinstance(declared, Sequence) else []
-    kinds = frozenset(_JSON_TYPES[name] for name in listed if name in _JSON_TYPES)
+    kinds = frozenset(JSON_TYPES[name] for name in listed if name in JSON_TYPES)
     if not kinds and "properties" in schema:
         kinds = frozenset((MAP,))
     if not kinds:

@@ -105,6 +105,8 @@ FEATURE = Feature(
         "lumen.project.broken_features",
         "lumen.project.complaints",
         "lumen.project.document",
+        "lumen.project.expressions",
+        "lumen.project.functions",
         "lumen.project.gestures",
         "lumen.project.hears_keys",
         "lumen.project.house",

@@ -3,3 +3,4 @@
 KNOWLEDGE_FOLDER = "knowledge"
 QUESTIONS_FOLDER = "knowledge/questions"
 SAYINGS_FOLDER = "behaviors/sayings"
+FUNCTIONS_FOLDER = "functions"

@@ -7,6 +7,7 @@ from typing import TypeVar
 from lumen.feature import VerbRow
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import NodePath, Place, Places
+from lumen.language.functions import FunctionDefinition
 from lumen.language.gestures import GestureLibrary
 from lumen.language.house import RobotSpec
 from lumen.language.knowledge import Passage, QuestionSet
@@ -45,9 +46,9 @@ class Project:
     name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
     wherever it runs. `patience` [s] is how long saved files wait for what is under way. `aliases` is whether routes
     have their aliases: None for as long as no other robot is seen on the bus. `knowledge` are the passages by name,
-    `questions` what they are tried with, `sayings` what `hears` is tried with. `sections` are what lumen.yaml says of
-    features by the keys of their sections; `section` returns those of one. `verbs` are those that files of the project
-    declare.
+    `questions` what they are tried with, `sayings` what `hears` is tried with, `functions` those of functions/.
+    `sections` are what lumen.yaml says of features by the keys of their sections; `section` returns those of one.
+    `verbs` are those that files of the project declare.
     """
 
     root: str
@@ -66,6 +67,7 @@ class Project:
     routes: Mapping[str, Route] = field(default_factory=dict)
     stories: Mapping[str, Story] = field(default_factory=dict)
     sayings: Mapping[str, SayingSet] = field(default_factory=dict)
+    functions: Mapping[str, FunctionDefinition] = field(default_factory=dict)
     messages: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     languages: tuple[str, ...] = ("en",)
     timezone: str = ""

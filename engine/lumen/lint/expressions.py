@@ -55,6 +55,7 @@ class _Expressions:
             "answers": machine.answers if self.whole else None,
             "states": {n for state in machine.states.values() for n in (state.path, state.alias) if n},
             "lists": self.lists if self.whole else None,
+            "functions": draft.known_functions,
         }
         given = self.events, self.known
         self.remembered = RememberedFindings(("typed expressions", name), self.names, given)

@@ -76,10 +76,14 @@ class _Script:
             return
         context = {key: machine.types.get(key, schema_of(value)) for key, value in machine.context.items()}
         names = {name for state in machine.states.values() for name in (state.path, state.alias) if name}
-        for finding in check_expression(condition.source, context=context, states=names, expected={"type": "boolean"}):
-            place = place_within(
-                self.report.document, condition.where, condition.source, finding.offset, finding.length
-            )
+        for finding in check_expression(
+            condition.shown,
+            context=context,
+            states=names,
+            functions=self.draft.known_functions,
+            expected={"type": "boolean"},
+        ):
+            place = place_within(self.report.document, condition.where, condition.shown, finding.offset, finding.length)
             self.report.diagnostics.append(finding.code.at(place, finding.message, finding.hint))
 
     def expect(self, where: NodePath, expected: Expect) -> None:

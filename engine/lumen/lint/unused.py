@@ -1,5 +1,6 @@
 """What is declared and never used, and names that differ by case only."""
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -8,13 +9,15 @@ from lumen.expressions.expression_findings import UNKNOWN_STATE
 from lumen.language.actions import context_key
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import INFO, WARNING, Code, NodePath, has_errors, nearest
+from lumen.language.folders import FUNCTIONS_FOLDER
 from lumen.language.json_paths import values_in
 from lumen.language.machines import MachineDefinition
+from lumen.language.properties import conditions_of
 from lumen.language.stories import Expect
 from lumen.language.verbs import names_in
 from lumen.lint.events import UNUSED_EVENT, descriptors, hears
 from lumen.lint.naming import Named, heard_rows, named_in
-from lumen.lint.walk import action_sites
+from lumen.lint.walk import action_sites, expression_sites
 from lumen.lint.word_tables import word_tables
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
@@ -25,6 +28,7 @@ SAME_BUT_CASE = Code("same-but-case", "references", WARNING, "two names differ o
 UNUSED_ANSWERS = Code("unused-answers", "references", WARNING, "no expression looks up a table of answers")
 UNUSED_CONTEXT_KEY = Code("unused-context-key", "references", WARNING, "a key of the context is never read")
 UNUSED_FILE = Code("unused-file", "references", INFO, "nothing uses a motion, behaviour or controller")
+UNUSED_FUNCTION = Code("unused-function", "references", WARNING, "no expression calls a function of the project")
 UNUSED_LIST = Code("unused-list", "references", WARNING, "nothing uses a list")
 UNUSED_PHRASES = Code("unused-phrases", "references", WARNING, "nothing uses a group of phrases")
 UNUSED_WORDS = Code("unused-words", "references", WARNING, "no behaviour uses a words file")
@@ -64,6 +68,7 @@ def check(draft: ProjectDraft) -> None:
     _alike_files(draft)
     if draft.settings and not has_errors(draft.diagnostics):
         _files(draft)
+        _functions(draft)
 
 
 def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: DocumentReport) -> None:
@@ -164,6 +169,17 @@ def _files(draft: ProjectDraft) -> None:
             if name not in wanted and (folder != "fuzzy" or _bound(draft.controllers[name])):
                 message = f"nothing uses the {what} `{name}`"
                 draft.say(UNUSED_FILE, f"{folder}/{name}.yaml", message, hint)
+
+
+def _functions(draft: ProjectDraft) -> None:
+    """Functions of the project that no expression calls; one that calls another may itself be unused."""
+    written = [site.text.shown for machine in draft.behaviors.values() for site in expression_sites(machine)]
+    written += [each.shown for story in draft.stories.values() for each in conditions_of(story.properties)]
+    written += [function.expression for function in draft.functions.values()]
+    for name in draft.functions:
+        if not any(re.search(rf"\b{name}\s*\(", source) for source in written if name in source):
+            hint = f"call it in an expression, as `{draft.functions[name].signature}`, or delete the file"
+            draft.say(UNUSED_FUNCTION, f"{FUNCTIONS_FOLDER}/{name}.yaml", f"nothing calls the function `{name}`", hint)
 
 
 def _bound(controller: ControllerDefinition) -> bool:

@@ -7,7 +7,9 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from lumen.expressions import unparse
 from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
+from lumen.expressions.own_functions import OwnFunctions
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.shared import SHARED, SharedKey, first_values, shared_schema
@@ -44,18 +46,20 @@ def build_machine(
     languages: Collection[str] = (),
     shipped: bool = False,
     verbs: OwnVerbs = NO_VERBS,
+    functions: OwnFunctions = MappingProxyType({}),
 ) -> MachineDefinition | None:
     """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
 
     `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out. `words` are the
     words files that it may name, `known` the names of all, those that can't be read among them; `shared` what robots
     have in common, which the behaviours `performed` by one can read. `languages` are those of the project; `common` of
-    the words files is `shipped` if it comes with Lumen. `verbs` are those that the project declares.
+    the words files is `shipped` if it comes with Lumen. `verbs` are those that the project declares, `functions` its
+    functions.
     """
     if not isinstance(data, Mapping) or not data.get("states"):
         return None
     common = shared if name in performed and SHARED not in (data.get("context") or {}) else {}
-    around = _WordsAround(words, known or words.keys(), languages, shipped)
+    around = _WordsAround(words, known or words.keys(), languages, shipped, functions)
     builder = _Builder(data, report, name, around, common, verbs)
     return MachineDefinition(**builder.fields())
 
@@ -67,12 +71,13 @@ def fingerprint(data: Any) -> str:
 
 
 class _WordsAround(NamedTuple):
-    """The words files that a behaviour may name, as `build_machine` gets them."""
+    """The words files that a behaviour may name, and the functions that it may call, as `build_machine` gets them."""
 
     files: WordFiles
     known: Collection[str]
     languages: Collection[str]
     shipped: bool
+    functions: OwnFunctions
 
 
 class _Builder:
@@ -90,9 +95,8 @@ class _Builder:
         self.data, self.report, self.files, self.shared = data, report, words.files, shared
         self.outline = BehaviorOutline(data, name, report)
         hears = any("hears" in entry.data for entry in self.outline.entries.values())
-        self.words = known_words(
-            data, report, words.files, words.known, words.languages, shipped=words.shipped, hears=hears
-        )
+        found = known_words(data, report, words.files, words.known, words.languages, shipped=words.shipped, hears=hears)
+        self.words = found._replace(functions=words.functions)
         self.rounds = Rounds(self.outline, report, data.get("context") or {}, shared=bool(shared))
         names = {*self.outline.entries, *self.outline.aliases}
         self.expressions = Expressions(report, data, self.words, names, self.rounds)
@@ -139,6 +143,9 @@ class _Builder:
         if supplied is not None:
             yield supplied
         yield from ([name, key.type, key.initial] for name, key in self.shared.items())
+        for name in sorted(self.expressions.used):
+            if function := self.expressions.functions[name]:
+                yield [name, [*function.parameters], unparse(function.body)]
 
     def states(self, entry: OutlinedState) -> Iterator[State]:
         """The state, and what its `for` adds to it."""

@@ -8,15 +8,11 @@ from pathlib import Path, PurePosixPath
 from typing import TypeVar
 from unicodedata import normalize
 
-from lumen.feature import rows
-from lumen.feature import VerbRow, resolve, table
-from lumen.project.markdown import MARKDOWN_SUFFIX
-from lumen.project.knowledge import build_passage, build_questions
-from lumen.features.fleet.reading import build_fleet
+from lumen.feature import VerbRow, resolve, rows, table
 from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.added_verbs import UNUSABLE
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
-from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
+from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -41,6 +37,7 @@ from lumen.project.files import (
     fingerprint,
     read_main_file,
 )
+from lumen.project.functions import build_function, joined
 from lumen.project.gestures import build_gestures
 from lumen.project.knowledge import build_passage, build_questions
 from lumen.project.lending import lend, shipped_models
@@ -96,6 +93,8 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
             return ProjectDraft(files, loose=[other])
         found.settings = main.built and replace(main.built, model=chosen(files, main.built.model))
     _beside(found)
+    functions = _each(found, FUNCTIONS_FOLDER, build_function)
+    found.functions, found.known_functions = joined(functions, found.names[FUNCTIONS_FOLDER])
     models, behaviors = _each(found, MODELS, build_body), _behaviors(found)
     found.controllers = _built(_each(found, "fuzzy", build_controller))
     if found.settings:
@@ -188,6 +187,7 @@ def assemble(found: ProjectDraft, root: str) -> Project:
         routes=settings.routes,
         stories=found.stories,
         sayings=found.sayings,
+        functions=found.functions,
         messages=found.messages,
         languages=settings.languages,
         timezone=settings.timezone,
@@ -238,8 +238,9 @@ def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
         languages=languages,
         shipped=shipped,
         verbs=found.verbs,
+        functions=found.known_functions,
     )
-    around = (contents, shared, performed, languages, shipped)
+    around = (contents, shared, performed, languages, shipped, found.known_functions)
     behaviors = _each(found, "behaviors", build, around=around, verbs=found.verbs)
     if shipped:
         found.reports.pop(COMMON_FILE, None)
@@ -262,8 +263,9 @@ def _verbs(found: ProjectDraft) -> OwnVerbs:
 
 
 def _stories(found: ProjectDraft) -> dict[str, Story]:
-    build = partial(build_story, verbs=found.verbs)
-    return _built(_each(found, "behaviors/stories", build, around=found.verbs, verbs=found.verbs))
+    build = partial(build_story, verbs=found.verbs, functions=found.known_functions)
+    around = (found.verbs, found.known_functions)
+    return _built(_each(found, "behaviors/stories", build, around=around, verbs=found.verbs))
 
 
 def _each(

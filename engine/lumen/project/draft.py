@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ProjectError
+from lumen.expressions.own_functions import OwnFunctions
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
 from lumen.language.folders import KNOWLEDGE_FOLDER
+from lumen.language.functions import FunctionDefinition
 from lumen.language.gestures import GestureLibrary
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.life import LifeStyle
@@ -34,6 +36,7 @@ class ProjectDraft:
     of each document by its file; `missing` the folders that were reported as missing; `unsound` the JSON Schemas in
     behaviours that were reported as broken: behaviour, `types` or `events`, name. `lent` are files that come with Lumen
     and stand where the project has none; `own_motions` those that lie in motions/MODEL/, for this robot alone.
+    `functions` are those of the project that are sound, `known_functions` all of them as expressions see them.
     `words` may hold those that come with Lumen, which have no report: nobody can edit them.
     `verbs` are those that files of the project declare.
     `settings` is None where lumen.yaml could not be read at all. `root` is the project's folder, for what is needed of
@@ -56,6 +59,8 @@ class ProjectDraft:
     verbs: OwnVerbs = NO_VERBS
     stories: dict[str, Story] = field(default_factory=dict)
     sayings: dict[str, SayingSet] = field(default_factory=dict)
+    functions: dict[str, FunctionDefinition] = field(default_factory=dict)
+    known_functions: OwnFunctions = field(default_factory=dict)
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     names: dict[str, frozenset[str]] = field(default_factory=dict)
     reports: dict[str, DocumentReport] = field(default_factory=dict)

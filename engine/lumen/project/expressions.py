@@ -1,10 +1,11 @@
 """Expressions and templates in a file: their syntax checked, each fault at its character."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from lumen.expressions import (
+    ExpressionError,
     ExpressionFinding,
     check_expression,
     check_template,
@@ -20,8 +21,10 @@ from lumen.expressions.expression_findings import (
 )
 from lumen.expressions.function_table import drawing_functions
 from lumen.expressions.functions import CAUGHT
+from lumen.expressions.own_functions import BrokenFunctionError, OwnFunctions, expanded
+from lumen.expressions.templates import expanded_template
 from lumen.language.actions import ComputedValue, Expression, Template
-from lumen.language.diagnostics import NodePath, Place, did_you_mean
+from lumen.language.diagnostics import ERROR, Code, NodePath, Place, did_you_mean
 from lumen.language.text_lines import lines_of
 from lumen.project.document import Document
 from lumen.project.document_report import DocumentReport
@@ -31,6 +34,11 @@ from lumen.project.remembered_findings import Check, RememberedFindings
 from lumen.project.rounds import Rounds
 from lumen.project.scalars import within
 from lumen.talk.hearing import HEARD
+
+FUNCTION_SIZE = Code("function-size", "expressions", ERROR, "an expression is too large with its functions put in")
+
+Expand = Callable[[str, OwnFunctions], str]
+"""`expanded` or `expanded_template`."""
 
 
 class Expressions:
@@ -44,7 +52,11 @@ class Expressions:
     ) -> None:
         self.report, self.rounds, self.words = report, rounds, words
         self.keys = frozenset((*(data.get("context") or ()), *rounds.known))
+        self.functions = words.functions
+        self.used: set[str] = set()
+        """The functions of the project whose names occur in the expressions: at least those that are called."""
         names: dict[str, Any] = {
+            "functions": self.functions,
             "context": {key: {} for key in self.keys},
             **{key: tuple(table) if words.whole else None for key, table in words.tables.items()},
             "lists": {key: {} for key in words.tables["lists"]} if words.whole else None,
@@ -64,16 +76,16 @@ class Expressions:
         variables = self.rounds.variables(where)
         if not self._sound(check_expression, source, where, variables):
             return None
-        meant = substituted(source, variables, localized=localized)
-        return Expression(meant, where, source if meant != source else "")
+        meant = self._expanded(expanded, substituted(source, variables, localized=localized), source, where)
+        return None if meant is None else Expression(meant, where, source if meant != source else "")
 
     def template(self, text: str, where: NodePath) -> Template | None:
         """The text with its `{{ expressions }}`, None (and reported) where one can't be read."""
         variables = self.rounds.variables(where)
         if not self._sound(check_template, text, where, variables):
             return None
-        meant = substituted_template(text, variables)
-        return Template(meant, where, text if meant != text else "")
+        meant = self._expanded(expanded_template, substituted_template(text, variables), text, where)
+        return None if meant is None else Template(meant, where, text if meant != text else "")
 
     def value(self, data: Any, where: NodePath) -> ComputedValue:
         """Every text an expression, lists and maps read through; None in place of what can't be read.
@@ -114,6 +126,11 @@ class Expressions:
             self.report.diagnostics.append(finding.code.at(place, finding.message, finding.hint, cause=cause))
         return not found and self._calls_what_it_may(source, where) and self._draws_where_it_may(source, where)
 
+    def _expanded(self, expand: Expand, meant: str, written: str, where: NodePath) -> str | None:
+        """The source or text with the project's functions put in, None if that can't be done."""
+        self.used |= {name for name in self.functions if name in meant}
+        return expanded_here(expand, meant, self.functions, self.report, where, written)
+
     def _explained(self, finding: ExpressionFinding) -> ExpressionFinding:
         """With a word on where a name is known that is known elsewhere."""
         name = finding.message.split("`")[1] if finding.code == UNKNOWN_NAME else ""
@@ -145,6 +162,27 @@ class Expressions:
                 MISPLACED_DRAW, where, f"`{drawing}` gives a random value, which is allowed only in `assign`", hint
             )
         return not drawing
+
+
+def expanded_here(
+    expand: Expand, source: str, functions: OwnFunctions, report: DocumentReport, where: NodePath, written: str = ""
+) -> str | None:
+    """Return the sound expression or text at a path with the project's functions put in.
+
+    If one of them is broken, or the result is too large, return None; the latter is reported. `written` is how the
+    author wrote the source, if that differs.
+    """
+    try:
+        return expand(source, functions)
+    except BrokenFunctionError:
+        report.pruned.add(where)
+    except ExpressionError as error:
+        shown = written or source
+        offset = error.offset if shown == source else 0
+        word = re.match(r"\w*", shown[offset:])
+        place = place_within(report.document, where, shown, offset, len(word[0]) if word else 1)
+        report.diagnostics.append(FUNCTION_SIZE.at(place, error.message, error.hint))
+    return None
 
 
 def cause_of(file: str, finding: ExpressionFinding) -> str:

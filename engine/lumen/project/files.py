@@ -35,6 +35,7 @@ MISTAKEN_FOLDERS: Mapping[str, str] = {
     "gestures": "motions",
     "life": "motions/life",
     "controllers": "fuzzy",
+    "function": "functions",
 }
 """Folders beside lumen.yaml of which nothing is built, and the ones that were probably meant: lint says so."""
 

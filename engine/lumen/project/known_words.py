@@ -1,8 +1,10 @@
 """What a behaviour knows by name: its own phrases and answers, and those of the words files that it names."""
 
 from collections.abc import Collection, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from lumen.expressions.own_functions import OwnFunctions
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, Related, did_you_mean
 from lumen.language.machines import Answer
 from lumen.language.words import Words
@@ -28,6 +30,7 @@ class KnownWords(NamedTuple):
     `borrowed` says of (key, name) from which of them it comes. Unless `whole`, one of them can't be read, and a name
     that is not known may be there. `anyhow` are the names of phrases that count even if negated, and `supplied` is
     what of Lumen's own words is used without being named, as data; `offered` are the names that it has beside.
+    `functions` are those of the project.
     """
 
     tables: Mapping[str, Mapping[str, Any]]
@@ -37,6 +40,7 @@ class KnownWords(NamedTuple):
     anyhow: frozenset[str] = frozenset()
     supplied: Any = None
     offered: frozenset[str] = frozenset()
+    functions: OwnFunctions = MappingProxyType({})
 
 
 def known_words(

@@ -49,6 +49,7 @@ _KINDS: Mapping[str, _Kind] = {
         only=frozenset(("asked", "unanswered")),
     ),
     "story": _Kind("a story", frozenset(("steps",))),
+    "function": _Kind("a function", frozenset(("expression",))),
     "controller": _Kind("a controller", frozenset(("inputs", "outputs"))),
     "motion": _Kind("a motion", frozenset(("keyframes",))),
     "life": _Kind("a style of life", frozenset(("sways",)), "blinks"),

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
-from lumen.language.folders import KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
+from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 
 MAIN_FILE, MAIN_KIND = "lumen.yaml", "lumen"
 FLEET_FILE = "fleet.yaml"
@@ -35,6 +35,7 @@ FOLDERS = (
     ProjectFolder(STORIES, "story"),
     ProjectFolder(KNOWLEDGE_FOLDER, "knowledge", (".yaml", ".yml", ".md")),
     ProjectFolder(QUESTIONS_FOLDER, "questions"),
+    ProjectFolder(FUNCTIONS_FOLDER, "function"),
     ProjectFolder(CONTROLLERS, "controller"),
     ProjectFolder(MOTIONS, "motion"),
     ProjectFolder(LIFE_FOLDER, "life"),

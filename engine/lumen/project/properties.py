@@ -4,12 +4,13 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from lumen.expressions import check_expression
+from lumen.expressions.own_functions import OwnFunctions, expanded
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
 from lumen.language.properties import Property
 from lumen.project.complaints import ONE_VERB
 from lumen.project.document_report import DocumentReport
-from lumen.project.expressions import place_within
+from lumen.project.expressions import expanded_here, place_within
 from lumen.project.routes import duration
 
 ReadCondition = Callable[[str, NodePath], Expression | None]
@@ -34,14 +35,15 @@ def build_properties(data: Mapping[str, Any], report: DocumentReport, read: Read
     return tuple(found)
 
 
-def unbound_conditions(report: DocumentReport) -> ReadCondition:
-    """Reads the conditions of a file that does not declare what they speak of."""
+def unbound_conditions(report: DocumentReport, functions: OwnFunctions) -> ReadCondition:
+    """Return the reader of conditions of a file that does not declare what they name."""
 
     def read(source: str, where: NodePath) -> Expression | None:
-        findings = check_expression(source, context=None)
+        findings = check_expression(source, context=None, functions=functions)
         for finding in findings:
             place = place_within(report.document, where, source, finding.offset, finding.length)
             report.diagnostics.append(finding.code.at(place, finding.message, finding.hint))
-        return None if findings else Expression(source, where)
+        meant = None if findings else expanded_here(expanded, source, functions, report, where)
+        return None if meant is None else Expression(meant, where, source if meant != source else "")
 
     return read

@@ -2,8 +2,10 @@
 
 from collections.abc import Mapping
 from math import isfinite
+from types import MappingProxyType
 from typing import Any
 
+from lumen.expressions.own_functions import OwnFunctions
 from lumen.language.added_verbs import given_arguments
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
@@ -39,8 +41,18 @@ DEFAULT_WITHIN = 30.0
 """How long an expectation waits where it does not say [s]."""
 
 
-def build_story(data: Any, report: DocumentReport, *, name: str, verbs: OwnVerbs = NO_VERBS) -> Story | None:
-    """The story in the data of `behaviors/stories/NAME.yaml`, None where it has no steps."""
+def build_story(
+    data: Any,
+    report: DocumentReport,
+    *,
+    name: str,
+    verbs: OwnVerbs = NO_VERBS,
+    functions: OwnFunctions = MappingProxyType({}),
+) -> Story | None:
+    """Return the story in the data of `behaviors/stories/NAME.yaml`, or None if it has no steps.
+
+    `verbs` are those that the project declares; `functions` are its functions, which the story's properties may call.
+    """
     if not isinstance(data, Mapping) or not data.get("steps"):
         return None
     rows = ((("steps", i), row) for i, row in enumerate(data["steps"]))
@@ -59,7 +71,7 @@ def build_story(data: Any, report: DocumentReport, *, name: str, verbs: OwnVerbs
             if isinstance(how, Mapping) and "result" in how
         },
         never=tuple(data.get("never", ())),
-        properties=build_properties(data, report, unbound_conditions(report)),
+        properties=build_properties(data, report, unbound_conditions(report, functions)),
     )
 
 

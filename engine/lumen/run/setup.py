@@ -45,8 +45,8 @@ class Setup:
 class RobotRequest:
     """A request for a robot.
 
-    `speed` is one of `SPEEDS`. `options` are those of the robot's row that were given, by their names. With `real_skills`
-    a recording robot performs added verbs by their code.
+    `speed` is one of `SPEEDS`. `options` are those of the robot's row that were given, by their names. With
+    `real_skills` a recording robot performs added verbs by their code.
     """
 
     project: Project

@@ -48,6 +48,7 @@ MEANINGS = {
     "behaviors": "what it does, as states; `stories` has scripted visitors, and what must happen",
     "behaviors/words": "what it says and listens for, by language",
     "behaviors/sayings": "what visitors say, and what must follow: `lumen test` tries each of them",
+    "functions": "expressions with a name, which the other files use",
     "knowledge": "questions of visitors and their answers: one passage per file",
     "knowledge/questions": "other wordings of these questions: `lumen test` prints how many are answered",
     "fuzzy": "controllers, such as the one that turns the head to a face",

@@ -1,7 +1,8 @@
-"""The findings of `lumen test`: stories, sayings and questions, coverage, and exploration."""
+"""The findings of `lumen test`: stories, sayings, examples and questions, coverage, and exploration."""
 
 from dataclasses import dataclass
 
+from lumen.insight.explaining.function_examples import TriedExample
 from lumen.insight.explaining.sayings import TriedSaying
 from lumen.language.diagnostics import Place
 from lumen.retrieval.ranking import QuestionTrial
@@ -15,6 +16,14 @@ class JudgedSaying:
     """A saying that was tried, and its place in its file."""
 
     tried: TriedSaying
+    place: Place
+
+
+@dataclass(frozen=True)
+class JudgedExample:
+    """An example of a function that was tried, and its place in its file."""
+
+    tried: TriedExample
     place: Place
 
 
@@ -33,6 +42,7 @@ class Verdict:
     took: float = 0.0
     trials: tuple[QuestionTrial, ...] = ()
     sayings: tuple[JudgedSaying, ...] = ()
+    examples: tuple[JudgedExample, ...] = ()
 
     @property
     def failed(self) -> int:
@@ -45,9 +55,14 @@ class Verdict:
         return [one for one in self.sayings if one.tried.wrong]
 
     @property
+    def refuted(self) -> list[JudgedExample]:
+        """The examples of functions that give another value."""
+        return [one for one in self.examples if one.tried.wrong]
+
+    @property
     def all_failed(self) -> int:
-        """The number of stories and sayings that failed."""
-        return self.failed + len(self.misheard)
+        """The number of stories, sayings and examples that failed."""
+        return self.failed + len(self.misheard) + len(self.refuted)
 
     @property
     def uncovered(self) -> bool:
@@ -57,4 +72,4 @@ class Verdict:
     @property
     def well(self) -> bool:
         """Whether nothing is wrong."""
-        return not (self.failed or self.misheard or self.uncovered or (self.explored and self.explored.findings))
+        return not (self.all_failed or self.uncovered or (self.explored and self.explored.findings))

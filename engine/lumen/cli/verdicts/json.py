@@ -8,11 +8,11 @@ from lumen.retrieval.ranking import QuestionTrial
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored
 from lumen.run.rehearsal import Rehearsal
-from lumen.run.verdict import JudgedSaying, Verdict
+from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 
 def render(verdict: Verdict) -> str:
-    """`{"stories": […], "failed": N, "took": s}`, and `sayings`, `questions`, `coverage` and `explore` if any."""
+    """`{"stories": […], "failed": N, "took": s}`, and what else there is: `sayings`, `examples`, `questions` …"""
     found: dict[str, Any] = {
         "stories": [_story(rehearsal) for rehearsal in verdict.rehearsals],
         "failed": verdict.failed,
@@ -20,6 +20,8 @@ def render(verdict: Verdict) -> str:
     }
     if verdict.sayings:
         found["sayings"] = [_saying(one) for one in verdict.sayings]
+    if verdict.examples:
+        found["examples"] = [_example(one) for one in verdict.examples]
     if verdict.trials:
         found["questions"] = [_tried(trial) for trial in verdict.trials]
     if verdict.coverage:
@@ -62,6 +64,11 @@ def _saying(one: JudgedSaying) -> dict[str, Any]:
         "passed": not wrong,
         **({"wrong": wrong} if wrong else {}),
     }
+
+
+def _example(one: JudgedExample) -> dict[str, Any]:
+    wrong = one.tried.wrong
+    return {**_place(one.place), "call": one.tried.call, "passed": not wrong, **({"wrong": wrong} if wrong else {})}
 
 
 def _tried(trial: QuestionTrial) -> dict[str, Any]:

@@ -6,17 +6,19 @@ from lumen.cli.junit_xml import JunitCase, JunitFailure, JunitSuite, junit_xml
 from lumen.cli.verdicts import text
 from lumen.run.exploring import Explored
 from lumen.run.rehearsal import Rehearsal
-from lumen.run.verdict import JudgedSaying, Verdict
+from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 
 def render(verdict: Verdict) -> str:
-    """A suite of the stories, one of the sayings, and one of the findings if the behaviour was explored."""
+    """A suite of the stories, one of the sayings, one of the functions, and one of what exploring found."""
     suites = []
-    if verdict.rehearsals or not (verdict.explored or verdict.sayings):
+    if verdict.rehearsals or not (verdict.explored or verdict.sayings or verdict.examples):
         cases = [*map(_story, verdict.rehearsals), *_uncovered(verdict)]
         suites.append(JunitSuite("stories", cases, sum(r.took for r in verdict.rehearsals), _properties(verdict)))
     if verdict.sayings:
         suites.append(JunitSuite("sayings", [_saying(one) for one in verdict.sayings], 0.0))
+    if verdict.examples:
+        suites.append(JunitSuite("functions", [_example(one) for one in verdict.examples], 0.0))
     if verdict.explored:
         suites.append(JunitSuite("explore", list(_explored(verdict.explored)), verdict.explored.took))
     return junit_xml(verdict.name, suites, verdict.took)
@@ -39,6 +41,14 @@ def _saying(one: JudgedSaying) -> JunitCase:
     if not one.tried.wrong:
         return case
     return case._replace(failure=JunitFailure(one.tried.wrong, f"{place}: {text.misheard(one)}"))
+
+
+def _example(one: JudgedExample) -> JunitCase:
+    place = one.place
+    case = JunitCase(one.tried.call, "functions", {"time": "0", "file": place.file, "line": str(place.line)})
+    if not one.tried.wrong:
+        return case
+    return case._replace(failure=JunitFailure(one.tried.wrong, f"{place}: {text.refuted(one)}"))
 
 
 def _properties(verdict: Verdict) -> dict[str, str]:

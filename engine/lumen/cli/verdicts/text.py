@@ -8,7 +8,7 @@ from lumen.retrieval.ranking import QuestionTrial, WrongAnswer
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored
 from lumen.run.rehearsal import Rehearsal
-from lumen.run.verdict import JudgedSaying, Verdict
+from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 FINDING_KINDS = {
     "dead-end": "a dead end",
@@ -38,7 +38,7 @@ def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
 
 
 def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
-    """The lines after the stories: coverage, exploration, questions, sayings, and the sum of stories and sayings."""
+    """The lines after the stories: coverage, exploration, questions, sayings, examples, and the sum of the tests."""
     if verdict.coverage:
         yield from _coverage(verdict, verdict.coverage, coloured)
     if verdict.explored:
@@ -47,11 +47,14 @@ def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
         yield from _tried(trial, coloured)
     if verdict.sayings:
         yield from _sayings(verdict, coloured)
+    if verdict.examples:
+        yield from _examples(verdict, coloured)
     if verdict.rehearsals:
         lived = sum(r.time for r in verdict.rehearsals)
         tried = [count(len(verdict.rehearsals), "story", "stories")]
         tried += [count(len(verdict.sayings), "saying", "sayings")] if verdict.sayings else []
-        sum_of = f"{' and '.join(tried)}, {verdict.all_failed} failed"
+        tried += [count(len(verdict.examples), "example", "examples")] if verdict.examples else []
+        sum_of = f"{_joined(tried)}, {verdict.all_failed} failed"
         colour = "green" if verdict.well else "red"
         time = f"{clock_time(lived)} of simulated time in {verdict.took:.1f} s"
         yield f"\n{paint(sum_of, 'bold', colour, on=coloured)}: {time}"
@@ -69,6 +72,20 @@ def _sayings(verdict: Verdict, coloured: bool) -> Iterator[str]:
 def misheard(one: JudgedSaying) -> str:
     """Return in one line why a saying does not hold."""
     return f"“{one.tried.saying.text}” in `{one.tried.saying.state}`: {one.tried.wrong}"
+
+
+def _examples(verdict: Verdict, coloured: bool) -> Iterator[str]:
+    """The share of examples of functions that hold, then the others."""
+    right, every = len(verdict.examples) - len(verdict.refuted), len(verdict.examples)
+    share = f"functions: {right:,} of {count(every, 'example', 'examples')}"
+    yield f"\n{paint(share, 'bold', 'red' if verdict.refuted else 'green', on=coloured)}"
+    for one in verdict.refuted:
+        yield f"  {paint(str(one.place), 'bold', on=coloured)}: {refuted(one)}"
+
+
+def refuted(one: JudgedExample) -> str:
+    """Return in one line why an example does not hold."""
+    return f"`{one.tried.call}`: {one.tried.wrong}"
 
 
 def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:
@@ -91,6 +108,11 @@ def _wanted(each: WrongAnswer) -> str:
 def count(number: int, one: str, many: str) -> str:
     """`1 story`, `2 stories`."""
     return f"{number:,} {one if number == 1 else many}"
+
+
+def _joined(parts: list[str]) -> str:
+    """`a`, `a and b`, or `a, b and c`."""
+    return " and ".join(part for part in (", ".join(parts[:-1]), parts[-1]) if part)
 
 
 def _line(time: float, who: str, text: str, coloured: bool) -> str:

@@ -2,7 +2,6 @@
 
 import re
 
-from lumen.language.addresses import loopback
 from lumen.features.console.proxies import network_of
 from lumen.features.console.settings import ConsoleSettings
 from lumen.language.addresses import loopback

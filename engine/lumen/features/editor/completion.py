@@ -268,9 +268,28 @@ class _Completion:
         else:
             part = re.search(r"\w*$", before)
             wide = len(part[0]) if part else 0
-            known = ("context", "event", "state", *(["heard"] if row_around(path) else []))
-            yield from (Item(name, "", wide) for name in known)
-            yield from (Item(f"{name}(", "function", wide) for name in functions())
+            yield from (Item(name, "", wide) for name in self.beginnings(path))
+            yield from (Item(f"{name}(", what, wide) for name, what in self.functions())
+
+    def beginnings(self, path: NodePath) -> list[str]:
+        """The names that an expression can begin with; in a function of the project its arguments."""
+        if self.kind == "function":
+            data = self.here.document.data
+            arguments = data.get("args") if isinstance(data, dict) else None
+            return [*map(str, arguments)] if isinstance(arguments, dict) else []
+        return ["context", "event", "state", *(["heard"] if row_around(path) else [])]
+
+    def functions(self) -> Iterator[tuple[str, str]]:
+        """The functions that can be called here, with what each is; those of the project first."""
+        own = [name for name in self.index.names(NameKind.FUNCTION) if name not in functions()]
+        yield from ((name, "the project's function") for name in own if not self.is_own(name))
+        yield from (
+            (name, "function") for name, each in functions().items() if self.kind != "function" or not each.scoped
+        )
+
+    def is_own(self, function: str) -> bool:
+        """Whether this is the file of that function, which can't call itself."""
+        return self.kind == "function" and stem(self.file) == function
 
     def event_fields(self, path: NodePath) -> list[str]:
         """The fields of the events that can arrive where an expression stands."""

@@ -120,6 +120,7 @@ _VALUES: Mapping[str, Table] = {
         ("language",): NameKind.LANGUAGE,
     },
     "knowledge": {("place",): NameKind.PLACE},
+    "function": {("expression",): NameKind.EXPRESSION},
     "lumen": {
         ("behavior",): NameKind.BEHAVIOR,
         ("story",): NameKind.STORY,

@@ -82,6 +82,8 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
             rows = holder.phrases.get(use.name, {}) if holder else {}
             said = [f"- {language or 'any'}: {_some(texts)}" for language, texts in rows.items()]
             return "\n".join([*said, *of_patterns(draft, [text for texts in rows.values() for text in texts])])
+        case NameKind.FUNCTION:
+            return _function(draft, use.name)
         case NameKind.EVENT:
             routes = draft.settings.routes.values() if draft.settings else ()
             return "\n".join(f"from the route `{r.name}` (`{r.key}`)" for r in routes if r.event == use.name)
@@ -115,6 +117,15 @@ def _joint(draft: ProjectDraft, name: str) -> str:
     low, high = degrees(joint.minimum), degrees(joint.maximum)
     speed = f", at most {degrees(joint.speed):.0f} deg/s" if joint.speed < 1e3 else ""
     return f"{low:.1f} to {high:.1f} deg ({joint.minimum:.3f} to {joint.maximum:.3f} rad){speed}"
+
+
+def _function(draft: ProjectDraft, name: str) -> str:
+    if (function := draft.functions.get(name)) is None:
+        return ""
+    languages = draft.settings.languages if draft.settings else ()
+    arguments = ", ".join(f"{each}: {' or '.join(kinds)}" for each, kinds in function.parameters.items())
+    shown = f"```\n{name}({arguments})\n    {function.expression}\n```"
+    return "\n\n".join(filter(None, [function.described(languages[0] if languages else ""), shown]))
 
 
 def _described(analysis: Analysis, file: str, line: int, column: int) -> str:

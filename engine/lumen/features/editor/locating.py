@@ -6,6 +6,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from lumen.errors import ExpressionError
+from lumen.expressions.function_table import functions
 from lumen.expressions.tokens import Token, tokenize
 from lumen.features.editor.names import NameKind, covers
 from lumen.language.diagnostics import NodePath, Place
@@ -69,7 +70,7 @@ def key_at(document: Document, line: int, column: int) -> NodePath:
 
 
 def in_expression(source: str, base: int = 0) -> Iterator[NameInText]:
-    """The context keys, phrases, tables and states that an expression names; nothing where it can't be read."""
+    """The context keys, phrases, tables, states and functions that an expression names; none if it can't be read."""
     yield from (name._replace(offset=base + name.offset) for name in _named(source))
 
 
@@ -91,6 +92,8 @@ def _names(source: str) -> Iterator[NameInText]:
             name = _last_text(tokens, i + 2)
             if name and isinstance(name.value, str):
                 yield NameInText(_NAMED[token.text], name.value, name.offset + 1)
+        elif token.kind == "name" and _signs(tokens, i + 1, "(") and token.text not in functions():
+            yield NameInText(NameKind.FUNCTION, token.text, token.offset)
 
 
 def in_template(text: str) -> Iterator[NameInText]:

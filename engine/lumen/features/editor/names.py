@@ -4,6 +4,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
+from lumen.language.folders import FUNCTIONS_FOLDER
 from lumen.project.project_folders import BEHAVIORS, CONTROLLERS, MESSAGES, MODELS, MOTIONS, STORIES, WORDS_FOLDER
 
 
@@ -23,6 +24,7 @@ class NameKind(StrEnum):
     CONTROLLER = "controller"
     BEHAVIOR = "behaviour"
     WORDS = "words file"
+    FUNCTION = "function"
     STORY = "story"
     MODEL = "robot"
     JOINT = "joint"
@@ -38,6 +40,7 @@ class NameKind(StrEnum):
 KIND_FOLDERS = {
     NameKind.BEHAVIOR: BEHAVIORS,
     NameKind.WORDS: WORDS_FOLDER,
+    NameKind.FUNCTION: FUNCTIONS_FOLDER,
     NameKind.STORY: STORIES,
     NameKind.MOTION: MOTIONS,
     NameKind.CONTROLLER: CONTROLLERS,

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from lumen.errors import UsageError
+from lumen.expressions.function_table import functions
 from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.heard_rows import ELSE, WAYS
 from lumen.features.editor.index import WORD_KINDS
@@ -32,6 +33,10 @@ _NAMES = {
     NameKind.CONTROLLER: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
     NameKind.BEHAVIOR: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
     NameKind.WORDS: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
+    NameKind.FUNCTION: (
+        r"[A-Za-z_][A-Za-z0-9_]*",
+        "made of letters, digits and `_`, and begin with a letter or `_`",
+    ),
     NameKind.PLACE: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
     NameKind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
 }
@@ -74,6 +79,8 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
         )
     if use.kind is NameKind.ROUTE and use.name in route_meanings():
         raise UsageError(f"the route `{use.name}` has a fixed meaning in Lumen: {route_meanings()[use.name]}")
+    if use.kind is NameKind.FUNCTION and name in functions():
+        raise UsageError(f"`{name}` can't be the name of a {use.kind}: a function of this name comes with Lumen")
     if _taken(analysis, use, name):
         raise UsageError(f"there is already a {use.kind} `{name}`")
     uses = [other for other in analysis.index.of(use) if other.text == use.text]

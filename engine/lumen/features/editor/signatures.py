@@ -7,6 +7,7 @@ from typing import NamedTuple
 from lumen.expressions.function_table import fault_of, functions
 from lumen.feature import resolve, table
 from lumen.features.editor.analysis import Analysis
+from lumen.language.functions import FunctionDefinition
 from lumen.language.text_lines import lines_of
 
 _OPEN = re.compile(r"(\w+)\s*\($")
@@ -42,9 +43,20 @@ def signature(analysis: Analysis, file: str, line: int, column: int) -> Function
             commas += 1
         elif sign == "(" and (called := _OPEN.search(head[: at + 1])) and called[1] in functions():
             return _of(called[1], commas)
+        elif sign == "(" and called and called[1] in analysis.draft.functions:
+            return _of_project(analysis, analysis.draft.functions[called[1]], commas)
         elif sign in "([{":
             commas = 0
     return None
+
+
+def _of_project(analysis: Analysis, function: FunctionDefinition, active: int) -> FunctionSignature:
+    """A function of the project, described in the project's first language."""
+    settings = analysis.draft.settings
+    shown = tuple(f"{name}: {' or '.join(kinds)}" for name, kinds in function.parameters.items())
+    gives = " or ".join(function.returns) if len(function.returns) < 4 else "anything"
+    says = function.described(settings.languages[0] if settings and settings.languages else "")
+    return FunctionSignature(function.name, shown, active, f"{says} Gives {gives}.".strip())
 
 
 def _of(name: str, active: int) -> FunctionSignature:

@@ -93,13 +93,13 @@ def _action(old: Action, new: Action, title: str, when: str, file: str) -> Itera
                     yield replace(change, was=_whole(before.get(language)), now=_whole(after.get(language)))
         case If(before, then, otherwise), If(after, then_now, otherwise_now):
             if before != after:
-                now = f"{title} now decides{when} by {code(after.source)}, not {code(before.source)}"
+                now = f"{title} now decides{when} by {code(after.shown)}, not {code(before.shown)}"
                 yield Change("action", title, now, Risk.BEHAVIOR, file)
             yield from block_changes(then, then_now, title, when, file)
             yield from block_changes(otherwise, otherwise_now, title, when, file)
         case AskQuestion(before, within, otherwise), AskQuestion(after, within_now, otherwise_now):
             if before != after:
-                now = f"{title} now asks{when} for {code(after.source)}, not {code(before.source)}"
+                now = f"{title} now asks{when} for {code(after.shown)}, not {code(before.shown)}"
                 yield Change("action", title, now, Risk.BEHAVIOR, file)
             if within != within_now:
                 now = f"{title} now waits {seconds(within_now)} for an answer{when}, not {seconds(within)}"
@@ -115,7 +115,7 @@ def _text(language: str, texts: Sequence[object] | None, title: str, when: str, 
     spoken = f" ({language})" if language else ""
     if not texts:
         return Change("text", title, f"{title} no longer speaks{when} in `{language}`", Risk.COSMETIC, file)
-    said = quoted(str(getattr(texts[0], "text", ""))) + (" and others" if len(texts) > 1 else "")
+    said = quoted(str(getattr(texts[0], "shown", ""))) + (" and others" if len(texts) > 1 else "")
     return Change("text", title, f"{title} now says {said}{when}{spoken}", Risk.COSMETIC, file)
 
 
@@ -128,7 +128,7 @@ def described(action: Action) -> str:
     """What an action does, as the end of a sentence."""
     match action:
         case SayText(texts):
-            return f"says {quoted(next(iter(texts.values()))[0].text)}"
+            return f"says {quoted(next(iter(texts.values()))[0].shown)}"
         case PublishBody(route):
             return f"publishes on `{route}`"
         case Assign(values):
@@ -143,7 +143,7 @@ def described(action: Action) -> str:
         case Wait(time):
             return f"waits {seconds(time)}"
         case LogText(text):
-            return f"logs {quoted(text.text)}"
+            return f"logs {quoted(text.shown)}"
         case If(guard):
             return f"decides by {code(guard.shown)}"
         case AskQuestion(question):

@@ -1,4 +1,4 @@
-"""What differs between two versions of a controller, a motion or a route."""
+"""The changes between two versions of a controller, a function, a motion or a route."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
@@ -7,6 +7,7 @@ from typing import Any
 from lumen.insight.changes.change import Change, Risk
 from lumen.insight.changes.formatting import code, names, seconds
 from lumen.language.controllers import ControllerDefinition
+from lumen.language.functions import FunctionDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.routes import Route
 
@@ -15,6 +16,25 @@ def controller_changes(old: ControllerDefinition, new: ControllerDefinition) -> 
     """Rules, variables and terms one by one, everything else by its name."""
     for sentence in _controller(old, new):
         yield Change("controller", new.name, sentence, Risk.MOTION, f"fuzzy/{new.name}.yaml")
+
+
+def function_changes(old: FunctionDefinition, new: FunctionDefinition) -> Iterator[Change]:
+    """Its arguments and its expression, with both versions; the rest changes nothing that runs."""
+    title, file = f"function `{new.name}`", f"functions/{new.name}.yaml"
+    if list(old.parameters.items()) != list(new.parameters.items()):
+        sentence = f"{title} is now called as {code(new.signature)}, not {code(old.signature)}"
+        if old.signature == new.signature:
+            sentence = f"{title} accepts other kinds of arguments"
+        yield Change("function", new.name, sentence, Risk.BEHAVIOR, file)
+    if old.expression != new.expression:
+        sentence = f"{title} is now {code(new.expression)}, not {code(old.expression)}"
+        yield Change("function", new.name, sentence, Risk.BEHAVIOR, file)
+    for what, before, after in (
+        ("another description", old.description, new.description),
+        ("other examples", old.examples, new.examples),
+    ):
+        if before != after:
+            yield Change("function", new.name, f"{title} has {what}", Risk.COSMETIC, file)
 
 
 def motion_changes(old: MotionDefinition, new: MotionDefinition) -> Iterator[Change]:

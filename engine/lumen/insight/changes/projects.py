@@ -10,7 +10,7 @@ from lumen.insight.changes.change import Change, Risk
 from lumen.insight.changes.entries import entry_changes
 from lumen.insight.changes.formatting import code, how_many
 from lumen.insight.changes.machines import machine_changes
-from lumen.insight.changes.parts import controller_changes, motion_changes, route_changes
+from lumen.insight.changes.parts import controller_changes, function_changes, motion_changes, route_changes
 from lumen.insight.changes.restart_fields import RESTART_FIELDS
 from lumen.insight.changes.sections import AT_NEXT_START, section_changes
 from lumen.language.projects import Project
@@ -63,8 +63,10 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
         {name: (name, machine) for name, machine in new.behaviors.items()},
         lambda before, after: machine_changes(after[0], before[1], after[1]),
     )  # fmt: skip
-    skills = "skill", "skill", Risk.BEHAVIOR, "skills/{}.yaml"
-    yield from entry_changes(*skills, *map(_manifests, (old, new)))
+    yield from entry_changes("skill", "skill", Risk.BEHAVIOR, "skills/{}.yaml", _manifests(old), _manifests(new))
+    yield from entry_changes(
+        "function", "function", Risk.BEHAVIOR, "functions/{}.yaml", old.functions, new.functions, function_changes
+    )
     yield from entry_changes(
         "controller", "controller", Risk.MOTION, "fuzzy/{}.yaml", old.controllers, new.controllers, controller_changes
     )

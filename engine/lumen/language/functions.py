@@ -1,0 +1,44 @@
+"""A function of the project, `functions/NAME.yaml`: a named expression of its arguments."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from lumen.language.diagnostics import NodePath
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionExample:
+    """A call that `lumen test` checks: JSON values by argument, and the value that the function must give."""
+
+    arguments: Mapping[str, Any]
+    value: Any
+    where: NodePath = field(default=(), compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class FunctionDefinition:
+    """What a file of functions/ says.
+
+    `parameters` maps each argument to the kinds of values that it accepts, such as `("text", "number")`, in the order
+    of a call; `returns` are the kinds that the value can have. `description` maps languages (`""` for any) to texts.
+    `expression` is as the author wrote it; `expanded` has the functions of the project that it calls put in.
+    """
+
+    name: str
+    parameters: Mapping[str, tuple[str, ...]]
+    returns: tuple[str, ...]
+    description: Mapping[str, str]
+    expression: str
+    expanded: str
+    examples: tuple[FunctionExample, ...] = ()
+
+    @property
+    def signature(self) -> str:
+        """How the function is called: `greeting(name, hour)`."""
+        return f"{self.name}({', '.join(self.parameters)})"
+
+    def described(self, language: str) -> str:
+        """Return the description in a language, else in English or the first one; empty if there is none."""
+        texts = self.description
+        return texts.get(language) or texts.get("") or texts.get("en") or next(iter(texts.values()), "")
