@@ -6,12 +6,13 @@ from lumen.language.lights import LIGHTS, lights_of
 from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 
-HEAD, ARMS, LEGS, VOICE, LEDS, EARS = ("head", "arms", "legs", "voice", "leds", "ears")
+HEAD, ARMS, LEGS, BODY, VOICE, LEDS, EARS = ("head", "arms", "legs", "body", "voice", "leds", "ears")
 
-PARTS = (HEAD, ARMS, LEGS, VOICE, LEDS, EARS, *(f"light {name}" for name in LIGHTS))
+PARTS = (HEAD, ARMS, LEGS, BODY, VOICE, LEDS, EARS, *(f"light {name}" for name in LIGHTS))
 """Each light is a part of its own; `leds` is the part of motions that set any, which follow one another."""
 
-WHOLE_BODY = frozenset((HEAD, ARMS, LEGS))
+WHOLE_BODY = frozenset((HEAD, ARMS, LEGS, BODY))
+"""What a robot moves as it wakes, rests or takes a posture. `body` is a trunk that turns: few robots have that part."""
 
 
 def part_of(body: Body) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""What a mirror makes of a body's joints: left and right exchanged, yaws and rolls the other way."""
+"""What a mirror makes of a body's joints: left and right exchanged, yaws, rolls and ways to the side reversed."""
 
 from collections.abc import Mapping
 
@@ -26,5 +26,5 @@ def mirror_of(body: Body) -> Mirror:
 def _sign(path: str, role: JointRole, other: JointRole, body: Body) -> float:
     """Joints on one motor turn together, whatever they are."""
     one_motor = body.shared.get(role.joint) == other.joint or body.shared.get(other.joint) == role.joint
-    turned = -1.0 if path.endswith(("yaw", "roll")) and not one_motor else 1.0
+    turned = -1.0 if path.endswith(("yaw", "roll", "head.y")) and not one_motor else 1.0
     return turned * role.sign * other.sign

@@ -1,6 +1,7 @@
 """What the parts of a body are: `roles` of `models/NAME.yaml`. Skills, motions and life ask for these, not for names.
 
-Directions are those of NAO for every body: a yaw grows to the left, a pitch down or forward, a roll to the left.
+Directions are those of NAO for every body: a yaw grows to the left, a pitch down or forward, a roll to the left. A roll
+of the head grows to the right, about the axis that points ahead.
 """
 
 from collections.abc import Mapping
@@ -11,13 +12,16 @@ from lumen.feature import BaseRow, table
 LEFT, RIGHT = SIDES = ("left", "right")
 
 HEAD_ROLES = ("yaw", "pitch")
-"""The joints by which a head looks somewhere; a `roll` only tilts it."""
+"""The joints by which a head looks somewhere."""
+HEAD_MOVES = ("roll", "x", "y", "z")
+"""Other joints of a head: `roll` tilts it, and on x (ahead), y (left) and z (up) it slides by a length."""
 ARM_ROLES = ("shoulder-pitch", "shoulder-roll", "elbow-yaw", "elbow-roll", "wrist-yaw")
 LEG_ROLES = ("hip-yaw", "hip-roll", "hip-pitch", "knee", "ankle-pitch", "ankle-roll")
 """The joints of a leg from the hip to the sole; walking on feet needs all six."""
 
 JOINT_PATHS = (
-    *(f"head.{name}" for name in (*HEAD_ROLES, "roll")),
+    *(f"head.{name}" for name in (*HEAD_ROLES, *HEAD_MOVES)),
+    "body.yaw",
     *(f"arms.{side}.{name}" for side in SIDES for name in ARM_ROLES),
     *(f"{kind}.{side}" for kind in ("hands", "antennas") for side in SIDES),
     *(f"legs.{side}.{name}" for side in SIDES for name in LEG_ROLES),
@@ -93,6 +97,7 @@ class Roles:
 
     torso: str = ""
     head: Mapping[str, JointRole] = field(default_factory=dict)
+    body: Mapping[str, JointRole] = field(default_factory=dict)
     eyes: EyeRoles = EyeRoles()
     arms: Mapping[str, Mapping[str, JointRole]] = field(default_factory=dict)
     hands: Mapping[str, JointRole] = field(default_factory=dict)
@@ -107,7 +112,7 @@ class Roles:
 
     def __post_init__(self) -> None:
         limbs = {f"{kind}.{side}.": limb for kind in ("arms", "legs") for side, limb in getattr(self, kind).items()}
-        grouped = {"head.": self.head, "hands.": self.hands, "antennas.": self.antennas, **limbs}
+        grouped = {"head.": self.head, "body.": self.body, "hands.": self.hands, "antennas.": self.antennas, **limbs}
         found = {prefix + name: role for prefix, roles in grouped.items() for name, role in roles.items()}
         object.__setattr__(self, "paths", {path: found[path] for path in JOINT_PATHS if path in found})
 

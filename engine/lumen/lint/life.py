@@ -9,7 +9,7 @@ from lumen.lint.lookups import References, first
 from lumen.motion.life import PEAK_SLOPE, SETTLE_SLOPE, SPEED_SHARE
 from lumen.project.draft import ProjectDraft
 from lumen.project.project_folders import LIFE_FOLDER
-from lumen.project.units import ANGLES
+from lumen.project.units import JointUnits, joint_units
 
 LIFE_TOO_FAR = Code("life-too-far", "motions", ERROR, "a style of life moves a joint farther than is safe")
 LIFE_TOO_FAST = Code("life-too-fast", "motions", ERROR, "a style of life moves a joint too fast")
@@ -35,17 +35,17 @@ def check(draft: ProjectDraft) -> None:
         return
     for name, style in draft.life.items():
         report = draft.report(LIFE_FOLDER, name)
-        unit = report.document.find(("units", "angle")) or "rad"
-        for code, path, message, hint in _Judge(style, draft.body, unit).faults():
+        units = joint_units(report.document.data)
+        for code, path, message, hint in _Judge(style, draft.body, units).faults():
             by_role = (*path[:-2], "roles", draft.body.roles.path(str(path[-1])))
             report(code, first(report, path, by_role, path), message, hint)
 
 
 class _Judge:
-    """Looks at one style; `unit` is that of the angles in its file."""
+    """Looks at one style; `units` are those of its file."""
 
-    def __init__(self, style: LifeStyle, body: Body, unit: str) -> None:
-        self._style, self._body, self._unit = style, body, unit
+    def __init__(self, style: LifeStyle, body: Body, units: JointUnits) -> None:
+        self._style, self._body, self._units = style, body, units
 
     def faults(self) -> Iterator[_Fault]:
         for sway in self._style.sways:
@@ -116,4 +116,5 @@ class _Judge:
     def _shown(self, joint: str, angle: float) -> str:
         if joint in self._body.hands:
             return f"{angle:.2g}"
-        return f"{round(angle / ANGLES[self._unit], 1):g} {self._unit}"
+        units, body = self._units, self._body
+        return f"{round(angle / units.factor(joint, body), 1):g} {units.name(joint, body)}"

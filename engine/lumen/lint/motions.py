@@ -15,7 +15,7 @@ from lumen.project.draft import ProjectDraft
 from lumen.project.memoization import memoize
 from lumen.project.poses import ANGLE_OUT_OF_RANGE
 from lumen.project.project_folders import PASSAGES
-from lumen.project.units import ANGLES
+from lumen.project.units import JointUnits, joint_units
 
 TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
 
@@ -33,12 +33,12 @@ def check(draft: ProjectDraft) -> None:
         report = draft.report(folder, motion.name)
         if report.diagnostics:
             continue
-        unit = report.document.find(("units", "angle")) or "rad"
+        units = joint_units(report.document.data)
         fast, far = memoize(("excess", folder, motion.name), (motion, body), partial(_excesses, motion, body))
         for excesses in _by_key(fast):
-            _too_fast(report, excesses, unit, draft.body)
+            _too_fast(report, excesses, units, draft.body)
         for excess in far:
-            _too_far(report, excess, unit, draft.body)
+            _too_far(report, excess, units, draft.body)
 
 
 def _excesses(motion: MotionDefinition, body: Body) -> tuple[tuple[Excess, ...], tuple[Excess, ...]]:
@@ -60,10 +60,11 @@ def _keyframe(where: NodePath) -> NodePath:
     return where[: max((n for n, step in enumerate(where) if step == "keyframes"), default=len(where)) + 2]
 
 
-def _too_fast(report: DocumentReport, excesses: Sequence[Excess], unit: str, body: Body) -> None:
+def _too_fast(report: DocumentReport, excesses: Sequence[Excess], units: JointUnits, body: Body) -> None:
     excess, *others = excesses
-    value, limit = _shown(excess, unit, body)
-    what = "" if excess.joint in body.hands else f" {unit}/s"
+    value, limit = _shown(excess, units, body)
+    unit = units.name(excess.joint, body)
+    what = f" {unit}/s" if unit else ""
     message = f"`{excess.joint}` would have to move at {value:g}{what} to get here in time, but its limit is {limit:g}"
     if others:
         names = ", ".join(f"`{name}`" for name in list(dict.fromkeys(e.joint for e in others))[:3])
@@ -88,8 +89,9 @@ def more_time(factor: float) -> str:
     return f"{ceil(100 * (factor - 1))} % more time"
 
 
-def _too_far(report: DocumentReport, excess: Excess, unit: str, body: Body) -> None:
-    value, limit = _shown(excess, unit, body)
+def _too_far(report: DocumentReport, excess: Excess, units: JointUnits, body: Body) -> None:
+    value, limit = _shown(excess, units, body)
+    unit = units.name(excess.joint, body) or units.angle
     message = f"`{excess.joint}` would reach {value:g} {unit} here, but its limit is {limit:g}"
     coupled = [c.on for c in body.coupled if c.joint == excess.joint]
     hint = (
@@ -108,9 +110,9 @@ def _too_far(report: DocumentReport, excess: Excess, unit: str, body: Body) -> N
     )
 
 
-def _shown(excess: Excess, unit: str, body: Body) -> tuple[float, float]:
+def _shown(excess: Excess, units: JointUnits, body: Body) -> tuple[float, float]:
     """Value and limit in the file's unit, as many digits as tell them apart."""
-    factor = 1.0 if excess.joint in body.hands else ANGLES[unit]
+    factor = units.factor(excess.joint, body)
     value, limit = excess.value / factor, excess.limit / factor
     digits = next((d for d in range(1, 6) if round(value, d) != round(limit, d)), 6)
     return round(value, digits), round(limit, digits)

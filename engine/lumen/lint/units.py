@@ -54,8 +54,8 @@ def _radians(report: DocumentReport, body: Body | None) -> None:
 
 
 def _angles(data: Any, path: NodePath, body: Body | None) -> Iterator[tuple[NodePath, float]]:
-    """Every angle of a motion's `joints` and `roles`; a hand's opening is none."""
-    hands = body.hands if body else ()
+    """Every angle of a motion's `joints` and `roles`; openings and lengths are none."""
+    others = (*body.hands, *body.slides, *map(body.roles.path, body.slides)) if body else ()
     waiting: list[tuple[Any, NodePath]] = [(data, path)]
     while waiting:
         item, here = waiting.pop(0)
@@ -66,7 +66,7 @@ def _angles(data: Any, path: NodePath, body: Body | None) -> Iterator[tuple[Node
                     yield from (
                         ((*here, key, name), v)
                         for name, v in numbers
-                        if name not in hands and not name.startswith("hands.")
+                        if name not in others and not name.startswith("hands.")
                     )
                 else:
                     waiting.append((value, (*here, key)))

@@ -107,6 +107,8 @@ def _changed(verb: str, wanted: Mapping[str, float], near: Mapping[str, float], 
 
 
 def _shown(joint: str, angle: float, body: Body) -> str:
+    if joint in body.slides:
+        return f"{1000 * angle:.1f} mm"
     return f"{angle:.3g}" if joint in body.hands else f"{degrees(angle):.1f} deg"
 
 

@@ -11,9 +11,6 @@ from lumen.language.robots import Camera
 Vector3 = tuple[float, float, float]
 Matrix3 = tuple[Vector3, Vector3, Vector3]
 
-NECK: Vector3 = (0.0, 0.0, 0.1265)
-"""Where the head's two axes meet, in the torso frame [m]: NAO's, and about that of a robot of its size."""
-
 
 def project(point: Vector3, camera: Camera) -> tuple[float, float] | None:
     """The pixel (u, v) of a point in the camera's frame; None behind the camera or outside the image.
@@ -25,30 +22,31 @@ def project(point: Vector3, camera: Camera) -> tuple[float, float] | None:
     return pixel if inside else None
 
 
-def camera_pose(camera: Camera, yaw: float, pitch: float, neck: Vector3 = NECK) -> tuple[Vector3, Matrix3]:
+def camera_pose(camera: Camera, yaw: float, pitch: float) -> tuple[Vector3, Matrix3]:
     """The camera's place in the torso frame [m], and its rotation: the columns are its x, y, z in that frame."""
-    place = _times(_head(yaw, pitch), camera.position)
+    place, neck = _times(_head(yaw, pitch), camera.position), camera.neck
     return (neck[0] + place[0], neck[1] + place[1], neck[2] + place[2]), _head(yaw, pitch + camera.pitch)
 
 
-def into_camera(point: Vector3, camera: Camera, yaw: float, pitch: float, neck: Vector3 = NECK) -> Vector3:
+def into_camera(point: Vector3, camera: Camera, yaw: float, pitch: float) -> Vector3:
     """A point of the torso frame in the camera's frame, with the head at `yaw`, `pitch`."""
-    place, rotation = camera_pose(camera, yaw, pitch, neck)
+    place, rotation = camera_pose(camera, yaw, pitch)
     offset = (point[0] - place[0], point[1] - place[1], point[2] - place[2])
     columns: Matrix3 = tuple(zip(*rotation, strict=True))  # type: ignore[assignment]
     return _times(columns, offset)
 
 
-def seen(point: Vector3, camera: Camera, yaw: float, pitch: float, neck: Vector3 = NECK) -> tuple[float, float] | None:
+def seen(point: Vector3, camera: Camera, yaw: float, pitch: float) -> tuple[float, float] | None:
     """The pixel of a point of the torso frame, with the head at `yaw`, `pitch`; None where it can't be seen."""
-    return project(into_camera(point, camera, yaw, pitch, neck), camera)
+    return project(into_camera(point, camera, yaw, pitch), camera)
 
 
-def centring(point: Vector3, camera: Camera, neck: Vector3 = NECK) -> tuple[float, float]:
+def centring(point: Vector3, camera: Camera) -> tuple[float, float]:
     """The yaw and pitch that bring a point of the torso frame to the middle of the image, whatever the joints allow.
 
     Exact for a camera in the head's plane of symmetry, as NAO's are; the point must be farther from the neck than it.
     """
+    neck = camera.neck
     x, y, z = point[0] - neck[0], point[1] - neck[1], point[2] - neck[2]
     ahead = hypot(x, y)
     lift = sin(camera.pitch) * camera.position[0] + cos(camera.pitch) * camera.position[2]

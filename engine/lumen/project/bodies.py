@@ -1,6 +1,6 @@
 """The description of a robot's body, `models/NAME.yaml`, from its plain data to a `Body`."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import inf, isfinite
@@ -50,7 +50,7 @@ COMMON_POSTURE = "Stand"
 BIPED_POSTURE = "Crouch"
 """Where a robot on two legs may go limp without a fall."""
 
-BODY_PARTS = ("head", "arms", "legs")
+BODY_PARTS = ("head", "arms", "legs", "body")
 """Every body has these parts; one that it lacks has no joints."""
 
 POSTURE_TOLERANCE = 2e-3
@@ -101,6 +101,7 @@ class _Builder:
         self.length = LENGTHS.get(units.get("length", "m"), 1.0)
         self.joints = {n: joint for n, spec in data["joints"].items() if (joint := self.joint(n, spec))}
         self.hands = tuple(n for n in self.joints if data["joints"][n].get("opening"))
+        self.slides = tuple(n for n in self.joints if data["joints"][n].get("sliding"))
         self.unmodelled = data.get("mjcf") == NO_MJCF
 
     def body(self, name: str) -> Body:
@@ -116,6 +117,7 @@ class _Builder:
             tactile=tuple(data.get("tactile") or ()),
             shared=self.shared(),
             hands=self.hands,
+            slides=self.slides,
             sonar=self.sonar(data.get("sonar")),
             links={n: self.link(spec) for n, spec in (data.get("links") or {}).items()},
             roles=roles,
@@ -145,8 +147,9 @@ class _Builder:
         return LinkInertia(spec["mass"], tuple(c * self.length for c in spec["centre"]), tuple(spec["inertia"]))
 
     def unit(self, name: str) -> float:
-        """What one of the file's units of this joint is in [rad]; the opening of a hand stays as it is."""
-        return 1.0 if self.data["joints"][name].get("opening") else self.angle
+        """Return one of the file's units of this joint in SI; the opening of a hand stays as it is."""
+        joint = self.data["joints"][name]
+        return 1.0 if joint.get("opening") else self.length if joint.get("sliding") else self.angle
 
     def joint(self, name: str, spec: Mapping[str, Any]) -> Joint | None:
         if "range" not in spec:
@@ -249,15 +252,20 @@ class _Builder:
         return min(max(angle, joint.minimum), joint.maximum)
 
     def camera(self, spec: Mapping[str, Any]) -> Camera:
-        x, y, z = (c * self.length for c in spec.get("position", (0.0, 0.0, 0.0)))
         return Camera(
             width=spec.get("width", 320),
             height=spec.get("height", 240),
             horizontal_fov=spec.get("horizontal_fov", 1.0641 / self.angle) * self.angle,
             vertical_fov=spec.get("vertical_fov", 0.83147 / self.angle) * self.angle,
-            position=(x, y, z),
+            position=self.point(spec.get("position", (0.0, 0.0, 0.0))),
             pitch=spec.get("pitch", 0.0) * self.angle,
+            **({"neck": self.point(spec["neck"])} if "neck" in spec else {}),
         )
+
+    def point(self, spec: Sequence[float]) -> tuple[float, float, float]:
+        """Return a point of the file in [m]."""
+        x, y, z = (c * self.length for c in spec)
+        return x, y, z
 
     def sonar(self, spec: Mapping[str, Any] | None) -> Ultrasound | None:
         if not spec or not {"range", "cone"} <= spec.keys():

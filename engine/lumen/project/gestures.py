@@ -9,7 +9,7 @@ from lumen.language.robots import Body
 from lumen.project.document_report import DocumentReport
 from lumen.project.field_reader import read_fields
 from lumen.project.poses import PoseReader
-from lumen.project.units import ANGLES, BAD_DURATION, seconds
+from lumen.project.units import BAD_DURATION, joint_units, seconds
 
 POSTURE = "Stand"
 """The posture from which a gesture begins, and to which it leads back."""
@@ -19,10 +19,9 @@ GESTURE_LEGS = Code("gesture-legs", "motions", ERROR, "a gesture moves a leg")
 
 def build_gestures(data: Any, report: DocumentReport, *, name: str, body: Body) -> GestureLibrary | None:
     """The library that the data describes, None where that is no map."""
-    if not isinstance(data, Mapping) or report.broken(("units", "angle")):
+    if not isinstance(data, Mapping) or report.broken(("units",)):
         return None
-    unit = (data.get("units") or {}).get("angle", "rad")
-    poses = PoseReader(report, body, unit, ANGLES.get(unit, 1.0))
+    poses = PoseReader(report, body, joint_units(data))
     reader = _GestureReader(report, body, poses)
     read = [reader.read(key, each) for key, each in (data.get("gestures") or {}).items()]
     poses.roles.tell_left_out("gestures")

@@ -9,7 +9,7 @@ from lumen.language.robots import Body
 from lumen.project.document_report import DocumentReport
 from lumen.project.poses import UNKNOWN_JOINT
 from lumen.project.role_names import RoleNames
-from lumen.project.units import ANGLES, BAD_DURATION, seconds
+from lumen.project.units import ANGLES, BAD_DURATION, JointUnits, joint_units, seconds
 
 SHORTEST_PERIOD = 0.1
 """What comes again and again in a life takes at least so long [s]."""
@@ -19,22 +19,23 @@ RESERVED_LIFE = Code("reserved-life", "motions", ERROR, "a style of life is call
 
 def build_life(data: Any, report: DocumentReport, *, name: str, body: Body) -> LifeStyle | None:
     """The style that the data of `motions/life/NAME.yaml` describes, None where that is no map."""
-    if not isinstance(data, Mapping) or report.broken(("units", "angle")):
+    if not isinstance(data, Mapping) or report.broken(("units",)):
         return None
     if name == STILL:
         hint = "give the file another name, or delete it"
         report(RESERVED_LIFE, (), "`still` always means that the robot does nothing, and needs no file", hint=hint)
-    reader = _LifeReader(report, body, ANGLES.get((data.get("units") or {}).get("angle", "rad"), 1.0))
+    reader = _LifeReader(report, body, joint_units(data))
     style = reader.read(data, name)
     reader.roles.tell_left_out("this style of life")
     return style
 
 
 class _LifeReader:
-    """Reads one file; `factor` is what one of its angles is in [rad]."""
+    """Reads one file."""
 
-    def __init__(self, report: DocumentReport, body: Body, factor: float) -> None:
-        self._report, self._body, self._factor = report, body, factor
+    def __init__(self, report: DocumentReport, body: Body, units: JointUnits) -> None:
+        self._report, self._body, self._units = report, body, units
+        self._factor = ANGLES.get(units.angle, 1.0)
         self.roles = RoleNames(report, body)
 
     def read(self, data: Mapping[str, Any], name: str) -> LifeStyle:
@@ -79,7 +80,8 @@ class _LifeReader:
         self.roles.some(data, path)
         for name, value in (data.get("roles") or {}).items():
             if role := self.roles.joint(name, (*path, "roles", name)):
-                found[role.joint] = value * (1.0 if role.joint in self._body.hands else role.sign * self._factor)
+                turned = 1.0 if role.joint in self._body.hands else role.sign
+                found[role.joint] = value * turned * self._units.factor(role.joint, self._body)
         for joint, value in (data.get("joints") or {}).items():
             if joint not in self._body.joints:
                 hint = did_you_mean(joint, self._body.joints, f"{self._body.name} has")
@@ -87,7 +89,7 @@ class _LifeReader:
                 where = (*path, "joints", joint)
                 self._report(UNKNOWN_JOINT, where, message, hint=hint, key=True, cause=f"joint {joint}")
             else:
-                found[joint] = value * (1.0 if joint in self._body.hands else self._factor)
+                found[joint] = value * self._units.factor(joint, self._body)
         return found
 
     def _every(self, key: str, data: Mapping[str, Any]) -> float:

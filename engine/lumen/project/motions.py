@@ -14,7 +14,7 @@ from lumen.project.built_file import unless_too_deep
 from lumen.project.document_report import DocumentReport
 from lumen.project.keyframes import MOTION_CYCLE, TOO_MANY_KEYS, ZERO_DURATION, KeyframeReader
 from lumen.project.poses import PoseReader
-from lumen.project.units import ANGLES, seconds
+from lumen.project.units import joint_units, seconds
 
 DEFAULT_POSTURE = "Stand"
 """The posture that a motion begins in where its file does not say."""
@@ -38,10 +38,9 @@ def build_motion(
     """
     if not isinstance(data, Mapping) or not data.get("keyframes"):
         return None
-    if report.broken(("units", "angle")):
+    if report.broken(("units",)):
         return None
-    unit = (data.get("units") or {}).get("angle", "rad")
-    poses = PoseReader(report, body, unit, ANGLES.get(unit, 1.0))
+    poses = PoseReader(report, body, joint_units(data))
     poses.define(data.get("poses") or {}, ("poses",))
     tempo = data.get("tempo")
     beat = 60.0 / tempo if tempo and poses.number(tempo, ("tempo",)) else None

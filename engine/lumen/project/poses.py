@@ -12,7 +12,7 @@ from lumen.language.roles import JointRole
 from lumen.project.document_report import DocumentReport
 from lumen.project.numbers import NOT_A_NUMBER
 from lumen.project.role_names import OUT_OF_REACH, RoleNames
-from lumen.project.units import ANGLES, seconds
+from lumen.project.units import ANGLES, JointUnits, seconds
 
 UNKNOWN_JOINT = Code("unknown-joint", "references", ERROR, "the robot has no joint of that name")
 UNKNOWN_POSE = Code("unknown-pose", "references", ERROR, "the named pose is not defined in the motion")
@@ -32,12 +32,11 @@ DRIVE_TOLERANCE = 1e-6
 
 @dataclass
 class PoseReader:
-    """Reads what places joints. `unit` is the name of the file's angle, `factor` what one of it is in [rad]."""
+    """Reads what places joints, in the units of the file."""
 
     report: DocumentReport
     body: Body
-    unit: str
-    factor: float
+    units: JointUnits
     poses: dict[str, PlacedAngles] = field(default_factory=dict)
     mirror: Mirror = field(init=False)
     roles: RoleNames = field(init=False)
@@ -105,11 +104,13 @@ class PoseReader:
             if role.joint in self.body.hands:
                 found |= self._hand(role.joint, value, here)
                 continue
-            joint, angle = self.body.joints[role.joint], role.sign * value * self.factor
+            joint, factor = self.body.joints[role.joint], self.units.factor(role.joint, self.body)
+            angle = role.sign * value * factor
             if not self._fits(role.joint, angle):
-                low, high = sorted(role.sign * end / self.factor for end in (joint.minimum, joint.maximum))
-                message = f"{self.body.name} can't bring `{name}` to {value:g} {self.unit}: it stops at its limit"
-                hint = f"its range is {round(low, 4):g} to {round(high, 4):g} {self.unit}"
+                low, high = sorted(role.sign * end / factor for end in (joint.minimum, joint.maximum))
+                unit = self.units.name(role.joint, self.body)
+                message = f"{self.body.name} can't bring `{name}` to {value:g} {unit}: it stops at its limit"
+                hint = f"its range is {round(low, 4):g} to {round(high, 4):g} {unit}"
                 self.report(OUT_OF_REACH, here, message, hint=hint)
                 angle = min(max(angle, joint.minimum), joint.maximum)
             found[role.joint] = angle, here
@@ -122,7 +123,8 @@ class PoseReader:
         dt, da = seconds(handle.get("before" if side == "in" else "after")), handle.get("angle", 0)
         if dt is None or not self.number(da, (*path, side, "angle")):
             return 0.0, 0.0
-        return (-dt if side == "in" else dt), da * (1.0 if joint in self.body.hands else sign * self.factor)
+        turned = 1.0 if joint in self.body.hands else sign
+        return (-dt if side == "in" else dt), da * turned * self.units.factor(joint, self.body)
 
     def _posture(self, name: str, path: NodePath) -> PlacedAngles:
         return {joint: (angle, path) for joint, angle in (self.posture(name, path) or {}).items()}
@@ -143,7 +145,7 @@ class PoseReader:
             if name in self.body.hands:
                 found |= self._hand(name, value, here)
             elif self._inside(name, value, here):
-                found[name] = value * self.factor, here
+                found[name] = value * self.units.factor(name, self.body), here
         return found
 
     def lags(self, trails: Mapping[str, str], path: NodePath) -> dict[str, float]:
@@ -162,24 +164,25 @@ class PoseReader:
         return joint in self.body.joints
 
     def _inside(self, name: str, value: float, path: NodePath) -> bool:
-        joint = self.body.joints[name]
-        if self._fits(name, value * self.factor):
+        joint, factor = self.body.joints[name], self.units.factor(name, self.body)
+        if self._fits(name, value * factor):
             return True
-        low, high = (round(limit / self.factor, 4) for limit in (joint.minimum, joint.maximum))
-        hint = f"its range is {low:g} to {high:g} {self.unit}"
-        if self.unit == "deg" and abs(value) < 3.2 and self._fits(name, value):
+        unit = self.units.name(name, self.body)
+        low, high = (round(limit / factor, 4) for limit in (joint.minimum, joint.maximum))
+        hint = f"its range is {low:g} to {high:g} {unit}"
+        if unit == "deg" and abs(value) < 3.2 and self._fits(name, value):
             hint = f"this file uses degrees: write {degrees(value):.4g}; {hint}"
         cause, root = "", f"the range of `{name}` in models/"
-        if self.unit == "rad" and self._fits(name, value * ANGLES["deg"]):
+        if unit == "rad" and self._fits(name, value * ANGLES["deg"]):
             root = f"`units` in {self.report.document.file}"
             cause = root if abs(value) > 2 * pi else ""
         if cause:
             hint = f"write `units: {{angle: deg}}` at the top if these are degrees; {hint}"
-        elif self.mirror.get(name, ("",))[0] not in ("", name) and self._fits(name, -value * self.factor):
+        elif self.mirror.get(name, ("",))[0] not in ("", name) and self._fits(name, -value * factor):
             hint = (
                 f"left and right joints turn in opposite directions: write {-value:g} if that is what you mean; {hint}"
             )
-        message = f"`{name}` can't go to {value:g} {self.unit}"
+        message = f"`{name}` can't go to {value:g} {unit}"
         self.report(ANGLE_OUT_OF_RANGE, path, message, hint=hint, cause=cause, root=root)
         return False
 

@@ -44,6 +44,7 @@ class RoleReader:
         roles = Roles(
             torso=data.get("torso", ""),
             head=self._joints(data.get("head"), "head"),
+            body=self._joints(data.get("body"), "body"),
             eyes=read_fields(EyeRoles, eyes),
             arms=self._limbs("arms"),
             hands=self._joints(data.get("hands"), "hands"),

@@ -6,7 +6,7 @@ A command never notices it: it is added to where joints are wanted, and taken ba
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from math import inf
 
-from lumen.language.body_parts import ARMS, HEAD, LEGS, part_of
+from lumen.language.body_parts import ARMS, BODY, HEAD, LEGS, part_of
 from lumen.language.commands import Say
 from lumen.language.gestures import WordTime
 from lumen.language.life import STILL_STYLE, LifeStyle
@@ -142,7 +142,7 @@ class LifeLayer:
             for role, angle in zip(HEAD_ROLES, self._head(now), strict=True):
                 if turn := self._turns.get(role):
                     found[turn.joint] = found.get(turn.joint, 0.0) + turn.sign * angle
-        levels = {part: vigour(part) for part in (HEAD, ARMS, LEGS) if part in alive}
+        levels = {part: vigour(part) for part in (HEAD, ARMS, LEGS, BODY) if part in alive}
         return {joint: angle * levels[self._part[joint]] for joint, angle in found.items()}
 
     def eyes(self, now: float) -> str:

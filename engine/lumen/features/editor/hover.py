@@ -114,6 +114,9 @@ def _joint(draft: ProjectDraft, name: str) -> str:
         return ""
     if name in draft.body.hands:
         return "a hand: 0 is closed, 1 open"
+    if name in draft.body.slides:
+        low, high, most = (1000 * length for length in (joint.minimum, joint.maximum, joint.speed))
+        return f"slides from {low:.1f} to {high:.1f} mm" + (f", at most {most:.0f} mm/s" if most < 1e6 else "")
     low, high = degrees(joint.minimum), degrees(joint.maximum)
     speed = f", at most {degrees(joint.speed):.0f} deg/s" if joint.speed < 1e3 else ""
     return f"{low:.1f} to {high:.1f} deg ({joint.minimum:.3f} to {joint.maximum:.3f} rad){speed}"

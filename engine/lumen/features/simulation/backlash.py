@@ -13,12 +13,12 @@ _STIFFNESS, _HARDNESS = (0.005, 1.0), (0.99, 0.999, 0.001)
 
 
 def loosen(robot: mjcf.RootElement, body: Body) -> None:
-    """Give each joint but the hands a second one behind it, which no motor turns, free within the gear's play.
+    """Give each joint that turns a second one behind it, which no motor turns, free within the gear's play.
 
     The first one is the motor's: its servo, friction and inertia end there. The link hangs behind the second.
     """
     for name in body.joints:
-        if name not in body.hands:
+        if name not in (*body.hands, *body.slides):
             motor = robot.find("joint", name)
             motor.parent.add(
                 "joint",

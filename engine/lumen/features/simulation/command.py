@@ -30,6 +30,7 @@ from lumen.project.formats.imported_motions import read_gesture
 from lumen.project.formats.importers import endings
 from lumen.project.motions import build_motion
 from lumen.project.schema import check_schema
+from lumen.project.units import unit_in_si
 from lumen.run.loop import TICK_PERIOD
 from lumen.run.setup import SPEEDS, set_up
 from lumen.run.troubles import trouble_of_answer
@@ -158,7 +159,7 @@ def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
     worst = {excess.joint: excess for excess in sorted(overspeed(motion, body), key=lambda e: e.value / e.limit)}
     return [
         f"`{joint}` comes late: to get there by {excess.key.time:.2f} s it would have to move at {excess.value:.3g} "
-        f"{'' if joint in body.hands else 'rad'}/s, but its limit is {excess.limit:.3g}"
+        f"{unit_in_si(joint, body)}/s, but its limit is {excess.limit:.3g}"
         for joint, excess in worst.items()
     ]
 

@@ -12,6 +12,7 @@ from lumen.features.simulation.joint_envelope import JointEnvelope, JointVector
 from lumen.features.simulation.motor_torques import MotorTorques
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.world import World
+from lumen.project.units import unit_in_si
 
 LIMP_STIFFNESS = 0.5
 """Below this stiffness a joint may be anywhere but at its goal."""
@@ -79,8 +80,9 @@ class Motors:
         return {name: float(self.goal[self.index[name]]) for name in names}
 
     def unit(self, name: str) -> str:
-        """`rad ` for a joint that turns, empty for a hand."""
-        return "" if name in self._world.body.hands else "rad "
+        """Return `rad ` for a joint that turns, `m ` for one that slides; empty for a hand."""
+        unit = unit_in_si(name, self._world.body)
+        return f"{unit} " if unit else ""
 
     def lag(self, name: str) -> float:
         """The distance from the joint's goal to the angle that was sent to its servo in the last period [rad]."""

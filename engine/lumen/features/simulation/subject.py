@@ -33,7 +33,7 @@ class ExaminedRobot(SimulatedRobot):
         motors, playing = self.motors, self._skills.playing
         late = np.abs(motors.goal - self.world.angles)
         full = (np.abs(self.world.torques) >= EXHAUSTED_TORQUE * motors.effort) & (motors.effort > 0.0)
-        turning = [i for i, name in enumerate(motors.names) if name not in self.body.hands]
+        turning = [i for i, name in enumerate(motors.names) if name not in (*self.body.hands, *self.body.slides)]
         return Strain(
             playing.reached if playing else 0.0,
             self.world.tilt,

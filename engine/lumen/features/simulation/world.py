@@ -51,7 +51,8 @@ class World:
         joints = [self.model.joint(f"{prefix}/{name}") for name in body.joints]
         self._angles = np.array([j.qposadr[0] for j in joints])
         self._speeds = np.array([j.dofadr[0] for j in joints])
-        loose = {i: name for i, name in enumerate(body.joints) if backlash and name not in body.hands}
+        straight = (*body.hands, *body.slides)
+        loose = {i: name for i, name in enumerate(body.joints) if backlash and name not in straight}
         plays = [self.model.joint(f"{prefix}/{name}{PLAY_SUFFIX}") for name in loose.values()]
         self._loose, self._plays = np.array(list(loose), np.intp), np.array([p.qposadr[0] for p in plays], np.intp)
         driven = [i for i, name in enumerate(body.joints) if name not in body.shared]

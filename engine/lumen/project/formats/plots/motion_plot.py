@@ -12,7 +12,7 @@ POINTS_PER_CURVE = 201
 
 
 def motion_sheet(motion: MotionDefinition, body: Body) -> PlotSheet:
-    """A panel for each joint, in the body's order; angles in degrees, hands from 0 to 1."""
+    """A panel for each joint, in the body's order; angles in degrees, lengths in mm, hands from 0 to 1."""
     tracks = sorted(Trajectory(motion).tracks, key=lambda track: _place(body, track.joint))
     title = f"Motion {motion.name}, {motion.duration:g} s"
     panels = tuple(_panel(motion, body, track) for track in tracks)
@@ -21,16 +21,19 @@ def motion_sheet(motion: MotionDefinition, body: Body) -> PlotSheet:
 
 def _panel(motion: MotionDefinition, body: Body, track: JointTrack) -> PlotPanel:
     joint = None if track.joint in body.hands else body.joints.get(track.joint)
-    scale = degrees if joint else float
+    slides = track.joint in body.slides
+    scale = _millimetres if slides else degrees if joint else float
     xs = tuple(motion.duration * i / (POINTS_PER_CURVE - 1) for i in range(POINTS_PER_CURVE))
     curve = PlotLine(xs, tuple(scale(track.at(x)) for x in xs))
     keys = motion.tracks[track.joint]
     dots = PlotLine(tuple(key.time for key in keys), tuple(scale(key.angle) for key in keys), points=True)
-    limits = (
-        (PlotMark(degrees(joint.minimum), level=True), PlotMark(degrees(joint.maximum), level=True)) if joint else ()
-    )
-    y = PlotAxis("angle [deg]") if joint else PlotAxis("open", -0.05, 1.05)
+    limits = (PlotMark(scale(joint.minimum), level=True), PlotMark(scale(joint.maximum), level=True)) if joint else ()
+    y = PlotAxis("length [mm]" if slides else "angle [deg]") if joint else PlotAxis("open", -0.05, 1.05)
     return PlotPanel(track.joint, PlotAxis("time [s]", 0.0, motion.duration), y, (curve, dots), limits)
+
+
+def _millimetres(length: float) -> float:
+    return 1000 * length
 
 
 def _place(body: Body, joint: str) -> tuple[int, str]:
