@@ -20,6 +20,7 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 from lumen.project.expressions import place_within
 from lumen.project.memoization import Same, memoize
+from lumen.project.role_names import LEFT_OUT
 from lumen.project.schema import faults
 from lumen.statechart.nesting import ID_SEPARATOR, resolutions
 from lumen.statechart.type_checks import fits, refusal, type_checks
@@ -144,7 +145,10 @@ class _Script:
 
     def sensor(self, path: NodePath, sensor: str) -> None:
         body = self.draft.body
-        if body and sensor not in body.tactile:
+        if body and not body.tactile:
+            hint = "a rehearsal of this story fails here: leave the story to robots with such sensors"
+            self.report(LEFT_OUT, path, f"{body.name} has no touch sensors, so nobody can touch `{sensor}`", hint)
+        elif body and sensor not in body.tactile:
             hint = did_you_mean(sensor, body.tactile, f"{body.name} has")
             self.report(UNKNOWN_SENSOR, path, f"there is no tactile sensor `{sensor}`", hint)
 
