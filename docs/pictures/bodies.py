@@ -27,6 +27,7 @@ SHOWN = {
     "greeter": ("goodbye", 2.0, 0.62, 2.7),
     "sprout": ("dance", 8.0, 0.2, 0.95),
     "lantern": ("goodbye", 0.9, 0.18, 0.85),
+    "reachy_mini": ("goodbye", 1.3, 0.16, 0.72),
 }
 """Of each body: a motion, how far into it [s], how high its middle is, and from how far one looks [m]."""
 FLOOR, AROUND, DOWN = 0.5, 24.0, -8.0
