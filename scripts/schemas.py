@@ -1,9 +1,9 @@
 """Write schemas/*.json from their sources: `python scripts/schemas.py`; `make check` compares them.
 
-A schema of a file that features have sections in is `engine/lumen/project/NAME.schema.json`. Where the value of a key is
-the folder of a feature, as in `"alerts": "features/alerts"`, the key's schema is in `schema.json` there, under the same
-key. A schema that belongs to one feature alone, as fleet.schema.json, is in its folder. All other schemas are their own
-sources.
+The schema of a file in which features have sections is `engine/lumen/project/NAME.schema.json`. If the value of a key
+is the folder of a feature, as in `"alerts": "features/alerts"`, the key's schema is in `schema.json` there, under the
+same key. A schema that belongs to one feature alone, as fleet.schema.json, is in its folder. All other schemas are
+their own sources.
 """
 
 import re
@@ -17,7 +17,7 @@ WRITTEN_BY_A_FEATURE = re.compile(r'^( *)"([^"]+)": "(features/\w+)"(,?)$')
 
 
 def composed() -> Iterator[tuple[Path, str]]:
-    """Yield the path and the text of each schema that is written from sources. Raises KeyError for a key without any."""
+    """Yield the path and the text of each schema that has sources. Raises KeyError for a key without any."""
     for source in sorted(PACKAGE.glob("project/*.schema.json")):
         lines = [_expanded(line) for line in source.read_text(encoding="utf-8").splitlines()]
         yield SCHEMAS / source.name, "\n".join(lines) + "\n"

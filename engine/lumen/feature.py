@@ -407,6 +407,12 @@ class Feature(NamedTuple):
     It gets the checked data of a file, its `DocumentReport`, and `name` and `languages` as keywords, and returns None
     if the file does not describe a usable verb.
     """
+    new_files: Mapping[str, str] = {}
+    """For `lumen new KIND NAME`, the function that writes the files of such a thing into a project.
+
+    It gets the project's folder and the name, and returns the paths of the files, the one to read first in front. It
+    raises UsageError if there can't be such a thing.
+    """
     modules: Mapping[str, ModuleRow] = {}
     robots: Mapping[str, RobotRow] = {}
     functions: Mapping[str, FunctionRow] = {}

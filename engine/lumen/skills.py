@@ -106,6 +106,7 @@ class _Server:
         self._lock, self._come = threading.Lock(), threading.Condition()
         self._orders: deque[dict[str, Any]] = deque()
         self._call: CurrentCall | None = None
+        self._current = 0
         self._file = ""
 
     def run(self) -> None:
@@ -122,17 +123,15 @@ class _Server:
     def _read(self) -> None:
         for line in self._input:
             message = json.loads(line)
-            call = self._call
-            if "go" in message and call:
-                call._go()
-            elif "cancel" in message and call:
-                call._cancel()
-            elif "load" in message or "call" in message:
+            if "skill" in message:  # set here: its cancel may be the next line
+                self._call = CurrentCall(message["skill"], message["arguments"], self._sender(message["call"]))
+                self._current = message["call"]
+            if "skill" in message or "load" in message:
                 with self._come:
-                    if "call" in message:  # set here: a cancel may be the next line
-                        self._call = CurrentCall(message["skill"], message["arguments"], self._sender(message["call"]))
                     self._orders.append(message)
                     self._come.notify()
+            elif (call := self._call) and message.get("call") == self._current:
+                call._go() if "go" in message else call._cancel()
         os._exit(0)  # the exhibition has ended, whatever the code does now
 
     def _load(self, source: str, file: str) -> None:

@@ -1,13 +1,15 @@
-"""`lumen new DIR`: a project to be made one's own."""
+"""`lumen new DIR`: a project to be made one's own; `lumen new KIND NAME`: something for a project."""
 
 import argparse
 from pathlib import Path
 
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import UsageError
+from lumen.feature import resolve, table
 from lumen.language.diagnostics import did_you_mean
 from lumen.project.building import main_settings
 from lumen.project.lending import shipped_models
+from lumen.project.own_project import own_project
 from lumen.run.starting import STARTERS, start_project
 
 ACTION = "OWNER/lumen@COMMIT"
@@ -15,7 +17,14 @@ ACTION = "OWNER/lumen@COMMIT"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("folder", metavar="DIR", type=Path, help="the new folder; it must be empty or not exist yet")
+    kinds = ", ".join(table("new_files"))
+    parser.add_argument(
+        "words",
+        nargs="+",
+        metavar="DIR | KIND NAME",
+        help=f"the new folder, which must be empty or not exist yet; or a kind ({kinds}) and a name: files of that kind"
+        " in the project of this folder",
+    )
     which = parser.add_mutually_exclusive_group()
     summary = "; ".join(f"{name}: {what}" for name, what in STARTERS.items())
     which.add_argument(
@@ -37,7 +46,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    folder: Path = options.folder
+    kind, *names = options.words
+    if kind in table("new_files"):
+        return _add(kind, names, options.format)
+    if names:
+        kinds = table("new_files")
+        raise UsageError(f"`{kind}` is nothing that a project can be given: {did_you_mean(kind, kinds, 'there are')}")
+    folder = Path(kind)
     try:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             raise UsageError(f"{folder} already exists and is not empty: name a new folder")
@@ -57,4 +72,27 @@ def run(options: argparse.Namespace) -> int:
     print(f"  {f'lumen run --story {story}':<29}a scripted visitor meets the robot")
     print("  lumen lint                   after every change: what is wrong, and where")
     print(f"  {f'behaviors/{behavior}.yaml':<29}what the robot does and says; you can change it during a run")
+    return 0
+
+
+def _add(kind: str, names: list[str], format: str) -> int:
+    """Write the files of something new into the project of this folder."""
+    if len(names) != 1:
+        raise UsageError(
+            f"write `lumen new {kind} NAME`; for a project in a folder `{kind}` write `lumen new ./{kind}`"
+        )
+    root = own_project(None)
+    try:
+        files: list[str] = resolve(table("new_files")[kind])(root, names[0])
+    except OSError as error:
+        raise UsageError(f"can't write {error.filename or root}: {error.strerror}") from None
+    if format == "json":
+        print_object({"kind": kind, "name": names[0], "files": files})
+        return 0
+    print(f"the {kind} `{names[0]}` is in {', '.join(files)}. Next:")
+    print("  lumen lint                   what is wrong, and where")
+    for file in files:
+        if file.startswith("behaviors/stories/"):
+            story = Path(file).stem
+            print(f"  {f'lumen test {story}':<29}plays its story")
     return 0

@@ -10,7 +10,9 @@ from lumen.cli.formats import configure_format
 from lumen.cli.jsonc import added
 from lumen.cli.writing import write_result
 from lumen.errors import UsageError
-from lumen.project.files import MAX_FILE_BYTES
+from lumen.project.added_verbs import NO_VERBS
+from lumen.project.building import draft
+from lumen.project.files import MAX_FILE_BYTES, read_files
 from lumen.project.packaged import find_project, schema_folder
 from lumen.project.project_folders import FILE_KINDS, KINDS
 from lumen.project.schema import load_schema
@@ -35,6 +37,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         metavar="KIND",
         help=f"one of {', '.join(FILE_KINDS)}; leave it out to list them",
     )
+    add("--project", metavar="DIR", type=Path, help="with KIND: a project whose skills the schema lists as well")
     add("--vscode", action="store_true", help="print the VS Code settings that assign a schema to each file")
     configure_format(parser)
     add(
@@ -48,6 +51,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """0. Raises UsageError where something can't be written, or both a kind and settings are asked for."""
+    if options.project and not options.kind:
+        raise UsageError("--project is for the schema of one kind: write KIND, such as `behavior`")
     if options.vscode and options.kind:
         raise UsageError("--vscode prints the settings for all kinds: leave out the kind")
     if options.vscode:
@@ -55,7 +60,8 @@ def run(options: argparse.Namespace) -> int:
         text = _added(options.output, ours) if options.output else _json(ours)
         write_result(text, options.output, folders=True)
     elif options.kind:
-        write_result(_json(load_schema(options.kind)), options.output)
+        verbs = draft(read_files(find_project(options.project))).verbs if options.project else NO_VERBS
+        write_result(_json(load_schema(options.kind, verbs)), options.output)
     else:
         write_result(_json(_kinds()) if options.format == "json" else _list(), options.output)
     return 0

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from lumen.language.commands import Do
 from lumen.language.events import FALLEN, Event
 from lumen.language.machines import MachineDefinition
-from lumen.language.stories import Expect, Happen, Story
+from lumen.language.stories import Expect, Happen, SetSkills, Story
 
 
 class UnmetExpectation(NamedTuple):
@@ -105,7 +105,7 @@ def expects_fall(story: Story, machine: MachineDefinition) -> bool:
 
 
 def expects_error(story: Story, machine: MachineDefinition) -> bool:
-    """Whether a story is about an error of a `do`: its `robot` sets a failure, or it expects a state of errors only."""
+    """Whether a story is about an error of a `do`: it sets one itself, or it expects a state of errors only."""
     transitions = [t for m in (machine, *machine.invoked.values()) for s in m.states.values() for t in s.transitions]
     names = {path: state.name for m in (machine, *machine.invoked.values()) for path, state in m.states.items()}
     failed, other = set[str](), set[str]()
@@ -113,7 +113,8 @@ def expects_error(story: Story, machine: MachineDefinition) -> bool:
         into = failed if transition.event.startswith("error.") else other
         into.update(names[target] for target in transition.targets)
     expected = {s for step in story.steps if isinstance(step.action, Expect) for s in step.action.states}
-    return bool(story.robot) or any(name.rpartition("/")[2] in failed - other for name in expected)
+    ends = [end for step in story.steps if isinstance(step.action, SetSkills) for end in step.action.ends.values()]
+    return bool(story.robot) or "fails" in ends or any(name.rpartition("/")[2] in failed - other for name in expected)
 
 
 def _holds(body: Any, wanted: Any) -> bool:

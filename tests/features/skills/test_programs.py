@@ -121,6 +121,16 @@ def test_a_stop_never_waits_for_a_skill_and_one_that_hangs_is_killed(
     assert acting.reported == (told if killed else [])
 
 
+def test_a_cancel_that_comes_too_late_does_no_harm(acting: Stage) -> None:
+    code(acting, "print(os.getpid())")
+    acting.perform("act")
+    (process,) = acting.workshop.processes("act")
+    process.order(cancel=True)
+    process.order(go=True)
+    acting.perform("act")
+    assert len(set(acting.told)) == 1
+
+
 def test_all_children_of_a_killed_program_end_whatever_they_do_to_get_away(acting: Stage) -> None:
     child = "import os, time; os.setsid(); print(os.getpid(), flush=True); time.sleep(600)"
     code(acting, f"for _ in range(3): subprocess.Popen([sys.executable, '-c', {child!r}])\ntime.sleep(600)")

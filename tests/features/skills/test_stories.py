@@ -30,8 +30,8 @@ def failure_of(root: Path, steps: str) -> str:
         ("[{visitor: arrives}, {expect: {state: sprayed, context: {litres: 0.1}}}]", ""),
         ("[{skills: {spray: {litres: 0.5}}}, {visitor: arrives}, {expect: {context: {litres: 0.5}}}]", ""),
         (
-            "[{skills: {spray: fails}}, {visitor: arrives}, {expect: {state: sprayed}}]",
-            ": an error ended the `do` of `spraying`",
+            "[{skills: {spray: fails}}, {visitor: arrives}, {expect: {state: sprayed, within: 5s}}]",
+            "state `sprayed`",
         ),
         ("[{skills: {spray: hangs}}, {visitor: arrives}, {expect: {state: sprayed, within: 5s}}]", "state `sprayed`"),
         (

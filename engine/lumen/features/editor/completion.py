@@ -79,6 +79,7 @@ class _Completion:
     def __init__(self, analysis: Analysis, kind: str, file: str, here: Cursor, at: tuple[int, int]) -> None:
         self.analysis, self.kind, self.file, self.here, self.at = analysis, kind, file, here, at
         self.index: NameIndex = analysis.names(file)
+        self.verbs = analysis.draft.verbs
         self.scope = str(here.path[0]) if kind == "sayings" and here.path else self.index.behavior(file)
 
     def items(self) -> Iterator[Item]:
@@ -109,14 +110,14 @@ class _Completion:
                 pass
             case _:
                 yield from self.names(named, path)
-        yield from (Item(value, "value", len(here.word)) for value in values_at(self.kind, path))
+        yield from (Item(value, "value", len(here.word)) for value in values_at(self.kind, path, self.verbs))
         if not here.before and named is None:
             yield from self.keys(path)
 
     def keys(self, path: NodePath) -> Iterator[Item]:
         there = self.here.document.value(path)
         taken = there if isinstance(there, dict) else {}
-        for key, schema in keys_at(self.kind, path).items():
+        for key, schema in keys_at(self.kind, path, self.verbs).items():
             if key not in taken:
                 yield Item(f"{key}: ", "key", len(self.here.word), str(schema.get("description", "")))
 

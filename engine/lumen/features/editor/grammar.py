@@ -196,6 +196,16 @@ def value_kind(kind: str, path: NodePath) -> NameKind | None:
     return _found(_VALUES.get(kind, {}), steps)
 
 
+def names_verb(kind: str, path: NodePath) -> bool:
+    """Return whether the key at a path is that of a verb, or of a verb's end in a story; so a skill may be meant."""
+    steps = [step for step in path[:-1] if isinstance(step, str)]
+    if kind == "story":
+        return steps[-1:] in (["skills"], ["did"]) or steps == ["robot"]
+    while steps and steps[-1] in ("then", "else", "parallel", "ask"):
+        steps.pop()
+    return kind == "behavior" and steps[-1:] in (["do"], ["entry"], ["exit"], ["actions"])
+
+
 def defines(kind: str, path: NodePath, what: NameKind) -> bool:
     """Whether the name at that path is where the thing is made known."""
     steps = _steps(path)

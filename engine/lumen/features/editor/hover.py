@@ -66,6 +66,8 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
             motion = draft.motions.get(use.name)
             moves = f"{motion.duration:g} s, moves {counted(len(motion.tracks), 'joint')}" if motion else ""
             return f"{moves}{f', begins in {motion.start}' if motion and motion.start else ''}"
+        case NameKind.SKILL:
+            return _skill(draft, use.name)
         case NameKind.JOINT:
             return _joint(draft, use.name)
         case NameKind.CONTEXT:
@@ -91,6 +93,15 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
             schema = draft.messages.get(use.name, {})
             return str(schema.get("description", schema.get("title", "")))
     return ""
+
+
+def _skill(draft: ProjectDraft, name: str) -> str:
+    """What a skill does, its arguments, and how long it takes."""
+    if (row := draft.verbs.rows.get(name)) is None:
+        return ""
+    arguments = ", ".join(f"`{each}`" for each in row.arguments.get("properties", ()))
+    facts = [f"arguments: {arguments}" if arguments else "", f"takes `{row.takes}`" if row.takes != "0s" else ""]
+    return "\n\n".join(filter(None, [row.description, "; ".join(filter(None, facts))]))
 
 
 def _some(texts: Sequence[str]) -> str:
@@ -138,7 +149,7 @@ def _described(analysis: Analysis, file: str, line: int, column: int) -> str:
         return ""
     kind = kind_of(file)
     if found := key_at(document, line, column):
-        text = description_at(kind, found)
+        text = description_at(kind, found, analysis.draft.verbs)
         return f"`{found[-1]}`: {text}" if text else ""
     phrases = (p for p, span in document.spans.items() if is_phrase(kind, p) and covers(span.value, line, column))
     return next(filter(None, (of_phrase_at(analysis, file, path) for path in phrases)), "")

@@ -5,7 +5,7 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from typing import Any
 
-from lumen.features.editor.grammar import defines, key_kind, value_kind
+from lumen.features.editor.grammar import defines, key_kind, names_verb, value_kind
 from lumen.features.editor.heard_rows import names_in
 from lumen.features.editor.locating import DocumentText, NameInText, in_expression, in_template
 from lumen.features.editor.names import BODY_KINDS, KIND_FOLDERS, SCOPED_KINDS, NameKind, NameUse, covers
@@ -63,8 +63,14 @@ class NameIndex:
             for w in (scope, *self.words.get(scope, ()))
             for kind in WORD_KINDS
         ]
-        given = document.text, scopes, states, known, self.other_body(document.file)
+        given = document.text, scopes, states, known, self.other_body(document.file), self.skills
         return memoize(("uses", document.file), given, lambda: tuple(_Reader(self, document).uses()))
+
+    @cached_property
+    def skills(self) -> frozenset[str]:
+        """The skills of the project."""
+        folder = KIND_FOLDERS[NameKind.SKILL]
+        return frozenset(stem(file) for file in self.files if file.startswith(f"{folder}/") and file.endswith(".yaml"))
 
     def at(self, file: str, line: int, column: int) -> NameUse | None:
         """The name at that line and column, from 1; the shortest where several stand there."""
@@ -167,11 +173,17 @@ class _Reader:
                 self.outline = self.index.outlines.get(self.scope)
             if span.key and isinstance(path[-1], str) and (kind := key_kind(self.kind, path)):
                 yield from self.keyed(kind, path)
+            elif span.key and path[-1] in self.index.skills and names_verb(self.kind, path):
+                yield from self.named(NameKind.SKILL, path, key=True)
             if span.key and path[-2:-1] == ("after",):
                 yield from self.parts(path, str(path[-1]), in_template(str(path[-1])), key=True)
             value = self.document.value(path)
             if isinstance(value, str) and value and (kind := value_kind(self.kind, path)):
                 yield from self.valued(kind, path, value)
+            elif (
+                path[-1:] == ("did",) and self.kind == "story" and isinstance(value, str) and value in self.index.skills
+            ):
+                yield from self.named(NameKind.SKILL, path)
             elif isinstance(value, str) and path[-1:] == ("id",) and path[-3:-2] == ("states",):
                 yield from self.alias(path, value)
 

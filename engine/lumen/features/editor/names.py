@@ -5,7 +5,16 @@ from typing import NamedTuple
 
 from lumen.language.diagnostics import Place
 from lumen.language.folders import FUNCTIONS_FOLDER
-from lumen.project.project_folders import BEHAVIORS, CONTROLLERS, MESSAGES, MODELS, MOTIONS, STORIES, WORDS_FOLDER
+from lumen.project.project_folders import (
+    BEHAVIORS,
+    CONTROLLERS,
+    MESSAGES,
+    MODELS,
+    MOTIONS,
+    SKILLS,
+    STORIES,
+    WORDS_FOLDER,
+)
 
 
 class NameKind(StrEnum):
@@ -27,6 +36,7 @@ class NameKind(StrEnum):
     FUNCTION = "function"
     STORY = "story"
     MODEL = "robot"
+    SKILL = "skill"
     JOINT = "joint"
     SENSOR = "sensor"
     LANGUAGE = "language"
@@ -46,6 +56,7 @@ KIND_FOLDERS = {
     NameKind.CONTROLLER: CONTROLLERS,
     NameKind.MODEL: MODELS,
     NameKind.MESSAGE: MESSAGES,
+    NameKind.SKILL: SKILLS,
 }
 """The kinds that are files, and where those are."""
 

@@ -1,54 +1,58 @@
 """What the JSON Schema of a kind of file says about a node: its keys, its values, its description."""
 
 from collections.abc import Iterator, Mapping
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 from lumen.language.diagnostics import NodePath
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.project_folders import FILE_KINDS
-from lumen.project.schema import load_schema
+from lumen.project.schema import MAX_SCHEMAS, load_schema
 
 _SAME = ("allOf", "anyOf", "oneOf")
 _BRANCHES = ("then", "else", "$ref")
 
 
-@cache
-def _root(kind: str) -> Mapping[str, Any]:
-    return load_schema(kind) if kind in FILE_KINDS else {}
+@lru_cache(maxsize=MAX_SCHEMAS)
+def _root(kind: str, verbs: OwnVerbs) -> Mapping[str, Any]:
+    return load_schema(kind, verbs) if kind in FILE_KINDS else {}
 
 
-def schemas_at(kind: str, path: NodePath) -> list[Mapping[str, Any]]:
-    """All schemas that speak of the node at a path, whichever branch it takes; the nearest first."""
-    root = _root(kind)
+def schemas_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[Mapping[str, Any]]:
+    """All schemas that speak of the node at a path, whichever branch it takes; the nearest first.
+
+    `verbs` are those that the project declares.
+    """
+    root = _root(kind, verbs)
     found = list(_here(root, root))
     for step in path:
         found = [inner for schema in found for child in _children(schema, step) for inner in _here(child, root)]
     return found
 
 
-def keys_at(kind: str, path: NodePath) -> dict[str, Mapping[str, Any]]:
+def keys_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> dict[str, Mapping[str, Any]]:
     """The keys that a map at that path may have, each with its schema."""
     found: dict[str, Mapping[str, Any]] = {}
-    for schema in schemas_at(kind, path):
+    for schema in schemas_at(kind, path, verbs):
         for name, inner in schema.get("properties", {}).items():
             if isinstance(inner, dict):
                 found.setdefault(name, inner)
     return found
 
 
-def values_at(kind: str, path: NodePath) -> list[str]:
+def values_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[str]:
     """The values that the schemas of a node list, as they are written in YAML."""
     values: list[str] = []
-    for schema in schemas_at(kind, path):
+    for schema in schemas_at(kind, path, verbs):
         values += map(_written, schema.get("enum", ()))
         if schema.get("type") == "boolean":
             values += ["true", "false"]
     return list(dict.fromkeys(values))
 
 
-def description_at(kind: str, path: NodePath) -> str:
+def description_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> str:
     """What the schemas say of a node, with an example."""
-    schemas = schemas_at(kind, path)
+    schemas = schemas_at(kind, path, verbs)
     text = next((s["description"] for s in schemas if "description" in s), "")
     default = next((s["default"] for s in schemas if "default" in s), None)
     return f"{text} Default: `{default}`." if text and default is not None else text

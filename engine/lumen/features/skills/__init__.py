@@ -4,6 +4,7 @@ from lumen.feature import Feature, PartRow, Phase
 
 FEATURE = Feature(
     name="skills",
+    new_files={"skill": "lumen.features.skills.new_skill:write_skill"},
     parts=(
         PartRow("skills", Phase.WORLD, "lumen.features.skills.part:skills", "whole", after="robot"),
         PartRow("hosted skills", Phase.WORLD, "lumen.features.skills.part:skills", "role:robot", after="hosted robot"),

@@ -109,7 +109,7 @@ def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report:
     """The JSON Schema under `in` or `out`, empty (and reported) if it can't be that of a verb."""
     if not isinstance(schema := data.get(key), Mapping):
         return {}
-    plain: Mapping[str, Any] = _with_texts(schema, languages)
+    plain: dict[str, Any] = _with_texts(schema, languages)
     if plain.get("type", "object") != "object":
         message = f"`{key}` must describe an object with names and values, not `{plain['type']}`"
         report(SKILL_SCHEMA, (key, "type"), message, "write `type: object`, or leave it out")
@@ -125,9 +125,17 @@ def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report:
         if name not in properties:
             hint = did_you_mean(name, properties, "`properties` has") if properties else "list it under `properties`"
             report(SKILL_SCHEMA, (key, "required", i), f"`{name}` is required, and not described", hint)
+    if properties:  # a value of an enumeration of texts can be written short, as every text can
+        plain["properties"] = properties = {name: _typed(inner) for name, inner in properties.items()}
     for name, inner in properties.items():
         _check_default(inner, (key, "properties", name, "default"), report)
     return plain
+
+
+def _typed(schema: Any) -> Any:
+    """The schema of a property with the type that its `enum` implies if that contains texts only."""
+    values = schema.get("enum") if isinstance(schema, Mapping) and "type" not in schema else None
+    return {"type": "string", **schema} if values and all(isinstance(value, str) for value in values) else schema
 
 
 def _check_default(schema: Any, where: NodePath, report: DocumentReport) -> None:

@@ -44,11 +44,15 @@ def code_faults(content: bytes, file: str, skill: str, arguments: Mapping[str, A
     functions = [node for node in ast.walk(ast.parse(content, file)) if isinstance(node, _FUNCTIONS) and _marked(node)]
     function = next((each for each in functions if each.name == skill), None)
     if function is None:
-        names = [each.name for each in functions]
-        hint = (
-            did_you_mean(skill, names, "the file marks") if names else f"write `@skill` above `def {skill}(call, …):`"
+        message, example = (
+            f"no function `{skill}` is marked with `@skill` here",
+            f"`@skill` above `def {skill}(call, …):`",
         )
-        yield CodeFault(1, 1, 2, f"no function `{skill}` is marked with `@skill` here", hint)
+        if len(functions) == 1:
+            (other,) = functions
+            yield _at(other, len("def"), message, f"rename `{other.name}` to `{skill}`, or write {example}")
+        else:
+            yield CodeFault(1, 1, 2, message, f"write {example}")
     elif isinstance(function, ast.AsyncFunctionDef):
         message = f"`{skill}` is an `async` function, which no skill can be"
         yield _at(function, len("async"), message, f"write `def {skill}(…):`; `call.wait` waits")
