@@ -1,4 +1,4 @@
-"""What is wrong is seen on every page, and nothing that is only remembered looks as if it were so now."""
+"""Alarms are seen on every page, and the last known state of a robot does not look like its present one."""
 
 import re
 from contextlib import closing

@@ -25,6 +25,7 @@ NEVER_ON_A_PAGE = (
     "entry_words.py",
     "part.py",
     "people.py",
+    "proxies.py",
     "reading.py",
     "rules.py",
     "serving.py",

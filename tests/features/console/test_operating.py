@@ -174,7 +174,7 @@ def test_what_waits_for_go_is_asked_about_and_goes_or_stays(viewer: Viewer, hall
     viewer.shows("hall → stage", ".approvals")
     viewer.shows("“dance”", ".approval .visitor-said")
     viewer.shows("says “Here I am.”", ".approval .would")
-    viewer.shows("Nothing happens until a person decides.", ".approval .countdown")
+    viewer.shows("The robot waits until a person decides.", ".approval .countdown")
     viewer.shows("dance", ".talk .visitor-said")
     assert viewer.driver.execute_async_script("axe.run().then((found) => arguments[0](found.violations))") == []
     assert viewer.text(".leaf .state-name") == "hall"

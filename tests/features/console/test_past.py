@@ -67,7 +67,7 @@ def test_a_passage_in_all_languages_makes_no_warning(copy: Path) -> None:
         half = {**passage, "also": {"id": {"question": "apa itu cinta"}}}
         assert "`answer`" in served.browser.post("/api/passages", half).data["reason"]
         wrong = served.browser.post("/api/passages", {**passage, "also": ["id"]})
-        assert (wrong.status, "`also` must look like" in wrong.data["reason"]) == (400, True)
+        assert (wrong.status, "`also` must be an object" in wrong.data["reason"]) == (400, True)
 
 
 def test_the_day_is_there_without_the_exhibition(copy: Path) -> None:

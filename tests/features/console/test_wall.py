@@ -89,7 +89,7 @@ def badges(viewer: Viewer) -> dict[str, list[str]]:
 
 
 def test_a_robot_that_needs_a_person_is_never_green(viewer: Viewer, wall: str, robots: dict[str, Hosted]) -> None:
-    """One has fallen and waits for GO, one waits for Resume and is hot; the window's title and icon say so, too."""
+    """The tile, the title and the icon show a fall, a hot motor, and a robot that waits for Resume or for GO."""
     viewer.open(wall, ready=".tile:nth-child(3)")
     assert badges(viewer) == {name: ["runs"] for name in NAMES}
     assert "⚠" not in viewer.driver.title

@@ -187,7 +187,7 @@ class Past:
 def _others(said: Any) -> dict[str, tuple[str, str]]:
     """The question and the answer in other languages, by their codes. Raises UsageError."""
     if not isinstance(said, dict | None):
-        raise UsageError('`also` must look like `{"id": {"question": "…", "answer": "…"}}`')
+        raise UsageError("`also` must be an object with a `question` and an `answer` for each language")
     found = {}
     for language, texts in (said or {}).items():
         one = texts if isinstance(texts, dict) else {}

@@ -48,6 +48,8 @@ export default [
   ["`from` and `to` must be positions of entries: whole numbers", "`from` dan `to` harus posisi catatan: bilangan bulat"],
   ["the exhibition sent an answer that cannot be shown", "pameran mengirim jawaban yang tidak dapat ditampilkan"],
   ["`date` must be a day, such as 2026-11-23", "`date` harus sebuah tanggal, misalnya 2026-11-23"],
+  ["`also` must be an object with a `question` and an `answer` for each language", "`also` harus berupa objek dengan `question` dan `answer` untuk tiap bahasa"],
+  ["no exhibition of this project is running on this machine: start it with `lumen run`, or pass --bus URL", "tidak ada pameran proyek ini yang berjalan di komputer ini: jalankan dengan `lumen run`, atau berikan --bus URL"],
   ["the exhibition did not send this day: {0}", "pameran tidak mengirim hari ini: {0}"],
   ["the exhibition did not send its entries: {0}", "pameran tidak mengirim catatannya: {0}"],
   ["the exhibition does not answer: {0}", "pameran tidak menjawab: {0}"],
@@ -123,6 +125,7 @@ export default [
   // What became of saved files.
   ["the saved files are those that run", "berkas tersimpan sama dengan berkas yang berjalan"],
   ["the saved files are active", "berkas tersimpan sudah aktif"],
+  ["revision {0#} runs ({1_}){2}, the project's folder still has the newer files ({3}): nothing saved there is activated until a person applies it", "revisi {0} berjalan ({1}); folder proyek masih berisi berkas yang lebih baru ({3}): yang disimpan di sana tidak diaktifkan sampai seseorang menerapkannya"],
   ["revision {0#} runs ({1_}), staged", "revisi {0} berjalan ({1}), berkas baru siap"],
   ["revision {0#} runs ({1_}), waiting: {2}", "revisi {0} berjalan ({1}), menunggu: {2}"],
   ["revision {0#} runs ({1_})", "revisi {0} berjalan ({1})"],
