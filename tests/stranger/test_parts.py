@@ -101,10 +101,17 @@ def test_an_exhibition_runs_without_a_part_that_cannot_be_made(
     make: str, told: str, installed: Installed, minimal: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     write(installed, make)
-    with caplog.at_level(logging.ERROR), lumen.open(minimal, robot="recording") as exhibition:
+    project, stopped = lumen.load(minimal), list[str]()
+    with (
+        caplog.at_level(logging.ERROR),
+        Exhibition(Plan(project, set_up("recording", project, "max"))) as exhibition,
+    ):
+        exhibition.services.add(0, Witness(stopped))
+        exhibition.start()
         exhibition.run(seconds=1)
         assert exhibition.node.now >= 1
     assert f"the part `counter` is left out: {FAULTY}{told}" in caplog.text
+    assert stopped == ["the part `counter` of the package lumen-counter 1.0"]
 
 
 FAULTS = {
@@ -273,7 +280,7 @@ def test_an_alert_about_a_stopped_part_names_its_package(tmp_path: Path) -> None
     with closing(AlertPart(desk, validated(MemoryBus(), lumen.load(ROOT)), tmp_path, ())) as alerts:
         alerts.part_stopped("the part `counter` of the package lumen-counter 1.0")
     name = "the part `counter` of the package lumen-counter 1.0"
-    assert told == [("lost", f"{name} failed and was stopped", name)]
+    assert told == [("lost", f"{name} failed and is not running", name)]
 
 
 def test_a_package_refuses_the_start_with_an_error_of_lumen(installed: Installed, minimal: Path) -> None:

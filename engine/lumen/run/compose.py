@@ -52,6 +52,9 @@ def begin(exhibitions: Sequence[Services]) -> None:
     """Make the parts of exhibitions that have claimed what they are, and begin all parts."""
     for one in exhibitions:
         _make(one, claimed=True)
+        for missing in one.left_out:
+            for part in one.node.parts:
+                part.part_stopped(missing)
         one.node.begin()
 
 
@@ -77,6 +80,7 @@ def _add(services: Services, place: int, row: PartRow) -> None:
             raise
         fault = f"the part `{row.name}` is left out: {blamed(feature, row.make, error)}"
         services.node.faults.append(fault)
+        services.left_out.append(f"the part `{row.name}` of the package {distribution_of(feature)}")
         _log.exception("%s", fault)
 
 

@@ -51,6 +51,8 @@ class Services:
             before=plan.before,
             time_passes=NodeTime(plan.speed if plan.roles else None, plan.leaps, self._pace),
         )
+        self.left_out: list[str] = []
+        """The parts of packages that could not be made, each with its package; the others are told when they begin."""
         self._provided: list[object] = []
         self._places: dict[Part, int] = {}
 

@@ -189,7 +189,7 @@ class AlertPart(Part, Observer):
         self._desk("crashed", "a part of Lumen failed. The robot rests, because nobody could have stopped it any more")
 
     def part_stopped(self, part: str) -> None:
-        self._desk("lost", f"{part} failed and was stopped", part)
+        self._desk("lost", f"{part} failed and is not running", part)
 
     def close(self) -> None:
         self._disk.close()

@@ -65,7 +65,10 @@ class Part:
         """Nobody can reach this process any more: what moves has to rest."""
 
     def part_stopped(self, part: str) -> None:
-        """Another part, which a package added, failed and was stopped; `part` is its name and its package."""
+        """Another part, which a package added, could not be made, or failed and was stopped.
+
+        `part` is its name and its package.
+        """
 
     def marking(self) -> str:
         """Return what the part keeps of the minutes around a mark that an operator set now; empty for nothing."""
