@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 import yaml
-from lumen.features.formats_robots.offers import read_robot
 
 import lumen
 from lumen.cli.main import main
+from lumen.features.formats_robots.reading import read_robot
 from lumen.language.commands import Look, Wake
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.events import Event

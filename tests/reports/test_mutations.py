@@ -6,12 +6,11 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from lumen.features.formats_robots.offers import read_robot
-
 import lumen
 from lumen.features.formats_fuzzy.fcl import read_fcl
 from lumen.features.formats_fuzzy.fis import read_fis
 from lumen.features.formats_fuzzy.fll import read_fll
+from lumen.features.formats_robots.reading import read_robot
 from lumen.project.formats.conversion_findings import ForeignFileError
 from lumen.project.formats.imported_motions import read_gesture
 from lumen.project.packaged import shipped_root

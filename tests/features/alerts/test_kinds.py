@@ -10,8 +10,8 @@ import pytest
 import lumen
 from lumen.cli.main import main
 from lumen.errors import BusUnreachableError
-from lumen.features.alerts import disk
 from lumen.features.alerts import part as alerting
+from lumen.features.alerts.part import room
 from lumen.features.alerts.settings import KINDS, Alerts
 from lumen.language.events import Event
 from lumen.project.home import Home
@@ -140,7 +140,7 @@ def test_a_disk_that_takes_nothing(hall: Hall, monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_room_is_looked_for_where_there_is_no_folder_yet(tmp_path: Path) -> None:
-    assert disk.room(tmp_path / "not/there") == ""
+    assert room(tmp_path / "not/there") == ""
 
 
 @pytest.fixture

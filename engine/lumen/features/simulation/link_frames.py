@@ -5,13 +5,15 @@ from math import cos, sin
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lumen.features.simulation.model import alone
 from lumen.features.simulation.physics import mjcf, mujoco
 from lumen.language.robots import Body
 from lumen.ports import Joints
-from lumen.robot.links import FLOOR, LinkFrame, LinkNumbers, LinkShape
+from lumen.robot.links import FLOOR, LinkFrame, LinkShape
 
+LinkNumbers = NDArray[np.float64]
 SEEN_GROUP = 2
 """The geoms that one sees."""
 
