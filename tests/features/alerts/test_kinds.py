@@ -319,7 +319,7 @@ def test_a_fault_of_our_own_is_told_without_what_it_says(hall: Hall, monkeypatch
     def fail(*_: object, **__: object) -> None:
         raise ZeroDivisionError("Ani said so")
 
-    monkeypatch.setattr("lumen.cli.run.set_up_robot", fail)
+    monkeypatch.setattr("lumen.cli.run.robot_of", fail)
     with pytest.raises(ZeroDivisionError):
         main(["run", str(hall.folder), "--robot", "recording"])
     assert hall.web.told("crashed")[0]["text"].endswith("it ended because of a fault in Lumen (ZeroDivisionError)")
