@@ -174,7 +174,8 @@ class SkillProcess:
     def _read(self) -> None:
         """Read what it prints until it has ended; this thread waits, and costs nothing, while it prints nothing."""
         with closing(self._stream(self._popen.stdout)) as answers, closing(self._stream(self._popen.stderr)) as prints:
-            takers = {answers.fileno(): _Lines(self._line), prints.fileno(): _Lines(self._print)}
+            # Prints come first: what a program printed before an answer is then shown before the answer has an effect.
+            takers = {prints.fileno(): _Lines(self._print), answers.fileno(): _Lines(self._line)}
             while answers.fileno() in takers and not self.ended:
                 self._take(takers)
             if prints.fileno() in takers:  # what it wrote before it closed its standard output
@@ -263,11 +264,12 @@ class _Lines:
 
 
 def _ready(streams: Iterable[int], event: int, timeout: float | None) -> list[int]:
-    """Return the streams that can be read or written, after at most `timeout` [s]; None waits for ever."""
+    """Return those that can be read or written, in their order, after at most `timeout` [s]; None waits for ever."""
     poll = select.poll()
     for stream in streams:
         poll.register(stream, event)
-    return [stream for stream, _ in poll.poll(None if timeout is None else timeout * 1_000)]
+    found = {stream for stream, _ in poll.poll(None if timeout is None else timeout * 1_000)}
+    return [stream for stream in streams if stream in found]
 
 
 def _pages(pid: int) -> int:
