@@ -144,8 +144,10 @@ class Services:
         body: dict[str, Any] = {"bundle": self.project.hash}
         if self.plan.roles:
             body["speed"] = self.plan.speed
+        for part in self.node.parts:
+            body |= part.said
         if robot:
-            body |= {**robot.said, "time": round(self.node.now, 3), "realtime": self.node.pace.realtime}
+            body |= {"time": round(self.node.now, 3), "realtime": self.node.pace.realtime}
         return body
 
     def _pace(self, realtime: float) -> None:

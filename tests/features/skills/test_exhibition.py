@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import lumen
+from lumen.features.skills.part import SkillsPart
 from lumen.language.events import Event
 from lumen.lint import check_files
 from lumen.project.files import read_files
@@ -98,3 +99,13 @@ def test_a_changed_manifest_is_used_after_a_reload_and_the_program_of_a_removed_
         (root / MANIFEST).unlink()
         assert exhibition.reload().verdict == "applied"
         live(exhibition, lambda: not threads("lumen-program-spray"))
+
+
+def test_the_presence_has_the_hash_of_each_skills_code(tmp_path: Path) -> None:
+    root = project_in(tmp_path)
+    with lumen.open(root, robot=Obedient()) as exhibition:
+        part = exhibition.services[SkillsPart]
+        until(lambda: part.said)
+        before = part.said["skills"]["spray"]
+        edit(root, CODE, "litres", "liters")
+        until(lambda: part.said["skills"]["spray"] != before)

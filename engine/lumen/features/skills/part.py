@@ -1,7 +1,8 @@
 """The part of an exhibition that keeps the workshop of its robot's skills."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from lumen.errors import BusError
 from lumen.features.skills.workshop import Workshop, open_workshop
@@ -41,6 +42,12 @@ class SkillsPart(Part):
         self._ending = threading.Event()
         self._thread = WatchedThread("lumen-skills", self._look)
         self._begun = False
+
+    @property
+    def said(self) -> Mapping[str, Any]:
+        """The hashes of the code of skills: whether two houses have the same."""
+        hashes = self.workshop.hashes
+        return {"skills": hashes} if hashes else {}
 
     def begin(self, now: float) -> None:
         self._begun = True

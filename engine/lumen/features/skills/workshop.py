@@ -49,6 +49,8 @@ class _Bench:
 
     row: VerbRow
     code: _Code | None = None
+    """The code that calls use, once one has used it."""
+    seen: _Code | None = None
     refused: tuple[tuple[str, int, int], ...] = ()
     idle: list[SkillProcess] = field(default_factory=list)
     busy: list[SkillProcess] = field(default_factory=list)
@@ -117,16 +119,18 @@ class Workshop:
         for name, bench in list(self._benches.items()):
             if bench.code and bench.skill.kind != "module":
                 self._refresh(name, bench)
+            elif bench.skill.kind != "module" and (
+                not bench.seen or bench.seen.stamp != _stamp(self._root, bench.skill)
+            ):
+                bench.seen = _read(self._root, bench.skill)
         self.warm()
 
+    @property
     def hashes(self) -> dict[str, str]:
-        """Return the hash of each skill's code, as it would be used now."""
-        found = {}
-        for name, bench in self._benches.items():
-            if bench.skill.kind != "module":
-                code = bench.code or _read(self._root, bench.skill)
-                found[name] = code.hash
-        return found
+        """The hash of each skill's code, as it is used or would be at the first call; without those never looked at."""
+        with self._lock:
+            found = {name: bench.code or bench.seen for name, bench in self._benches.items()}
+        return {name: code.hash for name, code in found.items() if code}
 
     def processes(self, name: str) -> list[SkillProcess]:
         """Return the processes of a skill that have not ended."""

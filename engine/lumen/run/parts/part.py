@@ -1,7 +1,8 @@
 """What a node is made of."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import inf
+from typing import Any
 
 from lumen.language.events import Event
 from lumen.language.projects import Project
@@ -34,6 +35,11 @@ class Part:
     def trouble(self) -> str:
         """Why what the part should keep can't be written; empty if nothing is lost."""
         return ""
+
+    @property
+    def said(self) -> Mapping[str, Any]:
+        """The fields that it adds to the presence of this process."""
+        return {}
 
     def begin(self, now: float) -> None:
         """What it needs is there, at `now` [s]."""
