@@ -31,6 +31,16 @@ def test_mistakes_are_told_where_they_are_with_what_to_do_and_once() -> None:
     assert min(found.percent()) >= 98, wrong
 
 
+@for_each("row", list(rows("skills")), ids=lambda row: row.name)
+def test_mistakes_with_skills_are_told_where_they_are_with_what_to_do_and_once(row: Row) -> None:
+    found = judge(row)
+    assert (found.placed, found.named, found.single) == (True, True, True), told(found)
+
+
+def test_there_are_many_mistakes_with_skills() -> None:
+    assert sum(1 for _ in rows("skills")) >= 40
+
+
 @for_each("row", list(rows("legal")), ids=lambda row: row.name)
 def test_nothing_is_said_of_what_is_right(row: Row) -> None:
     assert [str(d) for d in findings(row.root, row.files)] == []

@@ -28,6 +28,8 @@ DEFAULT_MEMORY = 512
 """The memory that a skill's program may use if its manifest has no `memory` [MB]."""
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
+_WORD = re.compile(r"(?<![\w.'\"])(?!(?:and|or|not|in|if|else|true|false|null)\b)[A-Za-z_]\w*(?!\w*\s*\()")
+"""A name in an expression that is neither a function nor a word of the language."""
 _UNUSABLE = {"$ref": "write the definition in its place", "$defs": "write each definition where it is used"}
 
 ProgramKind = Literal["python", "command", "module"]
@@ -54,7 +56,6 @@ def build_skill(data: Any, report: DocumentReport, *, name: str, languages: Sequ
     """
     if not isinstance(data, Mapping):
         return None
-    before = len(report.diagnostics)
     _check_name(name, report)
     skill = _performed(data.get("performed-by"), data, report)
     arguments = _schema(data, "in", languages, report)
@@ -71,9 +72,9 @@ def build_skill(data: Any, report: DocumentReport, *, name: str, languages: Sequ
         cancel=bool(data.get("cancel", True)),
         details=skill,
     )
-    if len(report.diagnostics) == before:
+    if not report.diagnostics:
         _check_takes(row, report)
-    return row if skill and len(report.diagnostics) == before else None
+    return row if skill and not report.diagnostics else None
 
 
 def _check_name(name: str, report: DocumentReport) -> None:
@@ -165,18 +166,17 @@ def _unusable(schema: Any, path: NodePath = ()) -> Iterator[NodePath]:
 def _check_takes(row: VerbRow, report: DocumentReport) -> None:
     """Report `takes` if it is no duration, or if its expressions use something else than arguments."""
     properties = row.arguments.get("properties", {})
+    sources = [part.source for part in split_template(row.takes) if not isinstance(part, str)]
     if fault := takes_fault(row):
-        if "{{" in row.takes:
+        names = (name for source in sources for name in _WORD.findall(source))
+        if unknown := next((name for name in names if name not in properties), ""):
+            hint = did_you_mean(unknown, properties, "its arguments are") if properties else "add it to `in`"
+            report(SKILL_TAKES, ("takes",), f"`{unknown}` is no argument of this skill", hint)
+        elif sources:
             report(SKILL_TAKES, ("takes",), fault, "write a duration, maybe with expressions of the arguments")
         else:
             report(BAD_DURATION, ("takes",), f"`{row.takes}` is not a duration", duration_hint(row.takes))
         return
-    sources = [part.source for part in split_template(row.takes) if not isinstance(part, str)]
-    for source in sources:
-        if (name := source.strip()).isidentifier() and name not in properties:
-            hint = did_you_mean(name, properties, "its arguments are") if properties else "add it to `in`"
-            report(SKILL_TAKES, ("takes",), f"`{name}` is no argument of this skill", hint)
-            return
     given = {name: inner.get("default") for name, inner in properties.items() if isinstance(inner, Mapping)}
     missing = [name for name, value in given.items() if value is None and name not in row.arguments.get("required", ())]
     for name in missing:
