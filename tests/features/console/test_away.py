@@ -152,7 +152,7 @@ def test_a_network_that_was_cut(house: House, chromium: Chromium) -> None:
 def test_a_server_that_was_started_again_before_its_broker_was_there(
     house_on_a_broker: House, chromium: Chromium
 ) -> None:
-    """Pages come back to a console that knows of no robot yet."""
+    """Pages come back to a console that has reached no robot yet."""
     house = house_on_a_broker
     assert house.wire
     wire = house.wire
@@ -163,8 +163,9 @@ def test_a_server_that_was_started_again_before_its_broker_was_there(
 
     def back() -> None:
         house.begin(CONSOLE)
-        until(lambda: house.listens() and not house.browser.robots, HANG)
-        until(lambda: chromium.run("return live.state === 'live' && live.robots.size === 0"), HANG)
+        until(lambda: house.listens() and [one["connected"] for one in house.browser.robots] == [False], HANG)
+        unreached = "return live.state === 'live' && [...live.robots.values()].every((one) => !one.connected)"
+        until(lambda: chromium.run(unreached), HANG)
         wire.mend()
 
     away(house, chromium, "console killed, and its broker away,", SHORT, leave, back)

@@ -61,6 +61,25 @@ def test_a_visit_that_begins_is_in_the_day_that_is_shown(viewer: Viewer, own: tu
     assert len(viewer.all(".line .bar")) == 1
 
 
+def test_the_page_begins_with_the_situation_in_a_sentence(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
+    """The deed, for whom, since when, and how long it still takes; then the words, and how sure the ears were."""
+    hosted, served = own
+    viewer.open(served.console.address, "robot/NAO", ready=".leaf")
+    viewer.shows("Waits, 0:", ".situation")
+    visit(hosted, "Budi")
+    hosted.send("heard", {"result": "blue cheese", "language": "en", "confidence": 0.41})
+    viewer.shows("blue cheese (the ears are 41% sure)", ".talk-lines")
+    viewer.shows("for Budi, 0:", ".situation")
+    height = "return document.querySelector('.declared').getBoundingClientRect().top"
+    before = viewer.run(height)
+    served.browser.command("goto", state="dance")
+    viewer.shows("Plays dance for Budi, 0:", ".situation")
+    viewer.shows(" s left", ".situation")
+    viewer.shows("Robot: With pleasure!", ".talk-lines")
+    assert viewer.run(height) == before
+    assert len(viewer.all(".talk-lines li")) <= 10
+
+
 def test_the_day_is_shown_after_a_crash(viewer: Viewer, copy: Path) -> None:
     with closing(Hosted(copy)) as hosted:
         visit(hosted, "Budi")

@@ -23,7 +23,7 @@ function sound() {
   });
 }
 
-/** Show alarms, `[robot, kind, when]` each, before the title; one that is new is heard. While they are not known: null. */
+/** Show alarms, `[robot, kind, when]` each, before the title; a new one is heard. While they are not known: null. */
 function show(alarms, title) {
   const unheard = alarms !== null && !heard(alarms.map((one) => one.join(" ")));
   if (unheard && kept("lumen.sound") === "on") sound();

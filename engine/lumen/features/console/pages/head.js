@@ -1,31 +1,41 @@
-// What stands above each page: which robot, whether the page is live, what is wrong, where one may go, and how it is shown.
+// The header of each page: which robot, whether the page is live, alarms, the other pages, and the settings.
 import { alarm } from "./alarm.js";
 import { consoleNow, live } from "./live.js";
 import { MILD, alarmsOf, lostBody, waitsForResume } from "./now/troubles.js";
 import { inPageLanguage } from "./quoted.js";
 import { Resume } from "./resume.js";
 import { ROLES, askPin, leave, mode, show } from "./session.js";
-import { LANGUAGES, Since, html, keep, kept, language, redraw, speak, t, useEffect, useRedraw, useRef, useState } from "./ui.js";
+import {
+  LANGUAGES, Since, html, keep, kept, language, redraw, speak, t, useEffect, useRedraw, useRef, useState,
+} from "./ui.js";
 
 const PAGES = ["", "day", "files", "see"];
 
-/** What is wrong with the robots, `[robot, kind, when]` each: another fall is another alarm. What only waits is left out. */
-const wrong = (robots) => robots.flatMap(({ robot, ...more }) => alarmsOf({ robot, ...more })
-  .filter((kind) => !MILD.includes(kind)).map((kind) => [robot, kind, live.alarms.get(`${robot} ${kind}`)?.at_time ?? ""]));
+/** The alarms of robots, `[robot, kind, when]` each: another fall is another alarm. Mild ones are left out. */
+const wrong = (robots) => robots.flatMap((one) => alarmsOf(one).filter((kind) => !MILD.includes(kind))
+  .map((kind) => [one.robot, kind, live.alarms.get(`${one.robot} ${kind}`)?.at_time ?? ""]));
+
+/** How the page and its robot are, in a word. */
+function connection(robot, alarms) {
+  if (live.state !== "live") return live.state;
+  if (robot?.connected === false) return "robot-away";
+  if (robot && lostBody(robot)) return "robot-lost";
+  return alarms.length ? "alarm" : "live";
+}
 
 function Connection({ robot, alarms }) {
-  const state = live.state !== "live" ? live.state : robot?.connected === false ? "robot-away" : robot && lostBody(robot) ? "robot-lost" : alarms.length ? "alarm" : "live";
-  const at = state === "robot-away" ? robot.heard : new Date(live.since).toISOString();
+  const state = connection(robot, alarms), away = state === "robot-away";
+  const at = away ? robot.heard : new Date(live.since).toISOString();
   return html`<p class="connection" data-state=${state} role="status"><span class="dot" aria-hidden="true"></span>${t(`connection.${state}`)}
     ${["live", "alarm", "robot-lost"].includes(state) ? null
-      : html`<span aria-hidden="true"> <${Since} at=${at} now=${state === "robot-away" ? consoleNow : Date.now} /></span>`}</p>`;
+      : html`<span aria-hidden="true"> <${Since} at=${at} now=${away ? consoleNow : Date.now} /></span>`}</p>`;
 }
 
 /** The alarms in the header of a page that does not show them itself; each leads to the page that says what to do. */
 function Alarms({ alarms, name }) {
   const shown = name !== null && lumen.page !== "" ? alarms : [];
-  return html`<div class="alarms" role="alert">${shown.map(([robot, kind]) => html`<p key=${robot + kind}><b>${robot}: ${t(`alarm.${kind}`)}.</b>
-    <a href="/robot/${encodeURIComponent(robot)}">${t("alarm.open")}</a></p>`)}</div>`;
+  return html`<div class="alarms" role="alert">${shown.map(([robot, kind]) => html`
+    <p key=${robot + kind}><b>${robot}: ${t(`alarm.${kind}`)}.</b> <a href="/robot/${encodeURIComponent(robot)}">${t("alarm.open")}</a></p>`)}</div>`;
 }
 
 function Stopped({ robot }) {
@@ -50,7 +60,8 @@ function Theme() {
 function Sound() {
   const on = kept("lumen.sound") === "on";
   const set = (wanted) => { keep("lumen.sound", wanted ? "on" : null); if (wanted) alarm.sound(); redraw(); };
-  return html`<label class="check"><input type="checkbox" checked=${on} onChange=${(e) => set(e.target.checked)} /> ${t("sound")}</label>`;
+  return html`<label class="check">
+    <input type="checkbox" checked=${on} onChange=${(e) => set(e.target.checked)} /> ${t("sound")}</label>`;
 }
 
 function Settings() {
@@ -89,9 +100,11 @@ export function Head() {
   useRedraw();
   const names = [...live.robots.keys()], name = lumen.robot ?? (names.length === 1 ? names[0] : null);
   const robot = name === null ? null : live.robots.get(name);
-  const alarms = live.state === "live" && live.role !== "nobody" ? wrong(robot ? [robot] : [...live.robots.values()]) : [];
+  const looks = live.state === "live" && live.role !== "nobody";
+  const alarms = looks ? wrong(robot ? [robot] : [...live.robots.values()]) : [];
   useEffect(() => {
-    alarm.show(live.state === "live" ? alarms : null, name ? `${name}: ${t(`page.${lumen.page || "now"}`)} · Lumen` : "Lumen");
+    const title = name ? `${name}: ${t(`page.${lumen.page || "now"}`)} · Lumen` : "Lumen";
+    alarm.show(looks ? alarms : null, title);
     document.getElementById("skip").textContent = t("skip");
     document.querySelector("rest-button[main]").toggleAttribute("several", name === null && names.length > 1);
   });

@@ -44,7 +44,10 @@ export const consoleNow = () => Date.now() + live.skew;
 
 function took(robot) {
   const skew = live.skew + 1000 * (robot.ahead ?? 0);
-  const last = () => (live.state !== "live" ? live.since : robot.connected === false && robot.heard ? Date.parse(robot.heard) - live.skew : Date.now());
+  const last = () => {
+    if (live.state !== "live") return live.since;
+    return robot.connected === false && robot.heard ? Date.parse(robot.heard) - live.skew : Date.now();
+  };
   live.robots.set(robot.robot, { ...robot, skew, now: () => last() + skew });
   for (const button of document.querySelectorAll("rest-button")) button.heed?.([...live.robots.values()]);
 }

@@ -72,7 +72,7 @@ export function span(seconds) {
   return h ? `${h}:${pad(m)}:${pad(s)}` : `${m}:${pad(s)}`;
 }
 
-/** Redraws each half second; used by what counts. `now` returns the time of the clock that `at` is on [ms since 1970]. */
+/** Redraws each half second; used by what counts. `now` returns the time of the clock of `at` [ms since 1970]. */
 export function useSeconds() {
   const [, set] = useState(0);
   useEffect(() => { const timer = setInterval(() => set((n) => n + 1), 500); return () => clearInterval(timer); }, []);

@@ -8,9 +8,9 @@ import { LOW, MILD, alarmsOf, batteryOf } from "./now/troubles.js";
 
 /** How a robot is, as badges: what is wrong, what it waits for, that it rests; else that it runs. */
 function badges(robot) {
-  const alarms = alarmsOf(robot).map((kind) => [MILD.includes(kind) ? "warn" : kind === "away" || kind === "lost" ? kind : "bad", t(`alarm.${kind}`)]);
-  const rests = robot.stopped && isHere(robot) ? [["stopped", t("tile.stopped", { by: inPageLanguage(robot.stopped_by ?? "?") })]] : [];
-  const all = [...alarms, ...rests];
+  const all = alarmsOf(robot).map((kind) => [MILD.includes(kind) ? "warn" : "bad", t(`alarm.${kind}`)]);
+  const by = inPageLanguage(robot.stopped_by ?? "?");
+  if (robot.stopped && isHere(robot)) all.push(["stopped", t("tile.stopped", { by })]);
   return all.length ? all : [["well", t("tile.well")]];
 }
 
@@ -27,7 +27,8 @@ function Tile({ robot }) {
     <p class="line">${saying ? html`“${saying.text}”` : html`<span class="quiet">${t("says.nothing")}</span>`}</p>
     <dl class="facts"><div><dt>${t("visitor")}</dt><dd>${robot.visitor || t("nobody.here")}</dd></div>
       <div><dt>${t("battery")}</dt><dd>${battery === null ? t("unknown") : percent(battery)}
-        ${battery !== null && battery < LOW && html` <span class="badge" data-state="bad">${t("battery.low")}</span>`}</dd></div>
+        ${battery !== null && battery < LOW && html` <span class="badge" data-state="bad">
+          ${t("battery.low")}</span>`}</dd></div>
       <div><dt>${t("realtime")}</dt><dd>${robot.realtime == null ? t("unknown") : percent(robot.realtime * 100)}</dd></div></dl></li>`;
 }
 

@@ -84,7 +84,8 @@ export default function DayPage({ name }) {
     const inside = parts.filter((one) => Date.parse(one.began) <= at).at(-1) ?? parts[0];
     if (inside && inside.from !== visit?.from) choose(inside);
   };
-  const parts = day ? stretches(day) : [], shown = parts.find((one) => one.from === visit?.from) ?? visit; // as it is by now
+  const parts = day ? stretches(day) : [];
+  const shown = parts.find((one) => one.from === visit?.from) ?? visit; // as it is by now
   if (failed) return html`<h1 class="hidden">${t("day")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;
   if (!day) return html`<p class="notice">${t("loading")}</p>`;
   return html`<div class="page-head"><h1>${t("page.day")}</h1>

@@ -37,8 +37,8 @@ function Row({ name, one, saved }) {
   };
   return html`<li><span>${one.text}</span> <span class="quiet">${languageName(one.language)} · ${fixed(one.count)}×</span>
     ${may("author") && html`<button type="button" aria-expanded=${open} onClick=${() => setOpen(!open)}>${t("day.passage")}</button>`}
-    ${open && html`<form class="cue" onSubmit=${save}>${languages.map((code, n) => html`<${Pair} key=${code} code=${code} own=${n === 0}
-        texts=${texts[code] ?? {}} write=${(pair) => write({ ...texts, [code]: pair })} first=${n === 0 ? field : null} />`)}
+    ${open && html`<form class="cue" onSubmit=${save}>${languages.map((code, n) => html`
+        <${Pair} key=${code} code=${code} own=${n === 0} texts=${texts[code] ?? {}} write=${(pair) => write({ ...texts, [code]: pair })} first=${n === 0 ? field : null} />`)}
       ${languages.length > 1 && html`<p class="quiet">${t("day.passage.more")}</p>`}
       <button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`}
     <p class="bad" role="alert"><${Quote} text=${wrong} /></p></li>`;

@@ -37,7 +37,9 @@ const noChanges = (report, mode) => (mode === "off" || report.verdict === "refus
 function Changes({ report, mode }) {
   const changes = report.changes ?? [];
   return html`<${Part} title=${t("files.diff")} kind="changes" aside=${report.risk && html`<span class="badge" data-state=${report.risk === "cosmetic" ? "open" : "warn"}>${t("files.risk", { risk: t(`risk.${report.risk}`) })}</span>`}>
-    ${changes.length ? html`<${InEnglish} /><ul class="diff" lang="en">${changes.map((change, n) => html`<${Change} change=${change} detail=${report.details?.[n]} />`)}</ul>` : html`<p class="quiet">${t(noChanges(report, mode))}</p>`}
+    ${changes.length ? html`<${InEnglish} /><ul class="diff" lang="en">${changes.map((change, n) => html`
+        <${Change} change=${change} detail=${report.details?.[n]} />`)}</ul>`
+      : html`<p class="quiet">${t(noChanges(report, mode))}</p>`}
     ${report.restart?.length > 0 && html`<ul class="diff" lang="en">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`}</${Part}>`;
 }
 
@@ -77,7 +79,8 @@ export default function FilesPage({ name }) {
   return html`<h1>${t("page.files")}</h1>
     <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge" data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}>${t(`verdict.${verdict}`)}</span>
         ${" "}<${Quote} text=${files.last?.reason ?? ""} /> <${Quote} text=${report.hint ?? ""} /> ${verdict === "refused" && t("files.goes.on")}</p>
-      ${lines.length > 0 && html`<${InEnglish} /><ul class="lines" lang="en">${lines.map((line) => html`<li>${line}</li>`)}</ul>`}
+      ${lines.length > 0 && html`<${InEnglish} />
+        <ul class="lines" lang="en">${lines.map((line) => html`<li>${line}</li>`)}</ul>`}
       <p class="quiet"><${Quote} text=${files.reason ?? ""} /></p>${may("author") && html`<${Actions} name=${name} files=${files} />`}</${Part}>
     <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report} mode=${files.mode} /><${Replay} replay=${files.replay} /></div>`;
 }

@@ -6,9 +6,12 @@ import { Part, Place, Until, Usable, html, t } from "../ui.js";
 import { isHere } from "../live.js";
 
 /** What a command of a robot is called: its verb, and the first text that says which. */
-const named = ({ verb, ...fields }) => [inPageLanguage(verb), Object.values(fields).find((one) => typeof one === "string")].join(" ");
+function named({ verb, ...fields }) {
+  const which = Object.values(fields).find((one) => typeof one === "string");
+  return [inPageLanguage(verb), which].join(" ");
+}
 
-/** What a person decides on: the visitor's words or what else came, what the robot will do, and what happens by itself. */
+/** What a person decides on: the visitor's words or other data, what the robot will do, and what happens by itself. */
 function Matter({ robot, one }) {
   const { result, ...data } = one.data ?? {}, would = one.would ?? [];
   return html`${typeof result === "string" && html`<p class="bubble visitor-said">
@@ -17,7 +20,8 @@ function Matter({ robot, one }) {
       <span>${name} = <b>${JSON.stringify(value)}</b></span> `)}</p>`}
     <p>${t(would.length ? "approve.would" : "approve.would.nothing")}</p>
     ${would.length > 0 && html`<ul class="would">${would.map((deed) => html`<li>
-      ${deed.verb === "say" ? html`${t("approve.says")} <b lang=${deed.language}>“${deed.text}”</b>` : named(deed)}</li>`)}</ul>`}
+      ${deed.verb === "say" ? html`${t("approve.says")} <b lang=${deed.language}>“${deed.text}”</b>`
+        : named(deed)}</li>`)}</ul>`}
     <p class="countdown">${one.until ? html`${t(one.else === "go" ? "approve.goes" : "approve.stays")}
       <strong><${Until} at=${one.until} now=${robot.now} /></strong>` : t("approve.waits")}</p>`;
 }
@@ -26,7 +30,8 @@ function Waiting({ robot, one }) {
   const answer = (go) => command(robot.robot, "approve", { approval: one.id, go }, `${inPageLanguage(one.event)} → ${one.targets.join(", ")}: ${t(go ? "approve.go" : "approve.stay")}`);
   return html`<li class="approval"><p><b>${inPageLanguage(one.event)}</b>: ${one.source} → ${one.targets.join(", ")} <${Place} file=${one.file} line=${one.line} /></p>
     <${Matter} robot=${robot} one=${one} />
-    <${Usable} when=${isHere(robot)}><div class="actions"><button type="button" class="go" onClick=${() => answer(true)}>${t("approve.go")}</button>
+    <${Usable} when=${isHere(robot)}><div class="actions">
+      <button type="button" class="go" onClick=${() => answer(true)}>${t("approve.go")}</button>
       <button type="button" onClick=${() => answer(false)}>${t("approve.stay")}</button></div></${Usable}></li>`;
 }
 

@@ -7,7 +7,8 @@ import { Dialog, Part, html, inLanguage, t, useEffect, useRef, useState } from "
 const HELD = 1000; // [ms]
 
 /** A button as it can be used now: none while the robot does not answer. */
-const usable = (robot, button) => (isHere(robot) ? button : { ...button, enabled: false, reason: t("robot.silent", { name: robot.robot }) });
+const usable = (robot, button) => (isHere(robot) ? button
+  : { ...button, enabled: false, reason: t("robot.silent", { name: robot.robot }) });
 
 function Button({ robot, button: declared }) {
   const button = usable(robot, declared);

@@ -7,18 +7,20 @@ import { Body } from "./body.js";
 import { Buttons } from "./buttons.js";
 import { Cues } from "./cues.js";
 import { Entries } from "./entries.js";
+import { Situation } from "./situation.js";
 import { States } from "./states.js";
-import { Talk } from "./talk.js";
+import { Lines, Talk } from "./talk.js";
 import { Troubles } from "./troubles.js";
 import { Ways } from "./ways.js";
 
-/** Buttons come first: what is pressed does not move when somebody speaks. */
+/** The buttons are below parts of a fixed height: what is pressed does not move when somebody speaks. */
 export function NowPage({ name }) {
   useRedraw();
   const robot = robotOf(name);
   return html`<h1 class="hidden">${t("page.now")}: ${name}</h1>
     <${Troubles} robot=${robot} />
-    <div class="now" data-stale=${isHere(robot) ? null : "true"}><div class="column"><${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} /><${Entries} robot=${robot} /></div>
+    <${Situation} robot=${robot} />
+    <div class="now" data-stale=${isHere(robot) ? null : "true"}><div class="column"><${Lines} robot=${robot} /><${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} /><${Entries} robot=${robot} /></div>
       <div class="column"><${States} robot=${robot} /><${Ways} robot=${robot} /></div>
       <div class="column"><${Body} robot=${robot} />
         ${may("author") && html`<${Usable} when=${isHere(robot)}><${Cues} robot=${robot} /></${Usable}>`}</div></div>`;

@@ -1,9 +1,32 @@
-// The conversation: what the robot says and does, what the visitor said, and a text for it to say.
+// The conversation: its last lines, what the robot says and does now, and a text for it to say.
 import { command } from "../commands.js";
-import { isHere } from "../live.js";
+import { isHere, live } from "../live.js";
 import { inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
-import { Part, Since, Usable, html, languageName, percent, t, useState } from "../ui.js";
+import { Part, Since, Usable, clock, html, languageName, percent, t, useEffect, useRef, useState } from "../ui.js";
+
+const LINES = 10;
+
+/** The lines that an entry of the journal is in the conversation: what the visitor said, then what the robot says. */
+function linesOf({ position, at_time: at, data, heard, commands = [] }) {
+  const speech = heard && typeof data?.result === "string";
+  const words = speech ? [{ at, text: data.result, sure: data.confidence ?? null }] : [];
+  const said = commands.map((one) => one.Start?.command?.Say).filter(Boolean);
+  return [...words, ...said.map((say) => ({ at, robot: true, ...say }))].map((line, n) => ({ ...line, key: `${position} ${n}` }));
+}
+
+/** The last lines: who spoke, when, and how sure the ears were. The list has one height, so nothing below it moves. */
+export function Lines({ robot }) {
+  const list = useRef(null), mine = live.told.filter((one) => one.robot === robot.robot);
+  const lines = mine.flatMap(linesOf).slice(-LINES), last = lines.at(-1)?.key;
+  useEffect(() => { list.current.scrollTop = list.current.scrollHeight; }, [last]);
+  return html`<${Part} title=${t("talk")} kind="lines-of-talk">
+    <ol class="talk-lines" ref=${list} tabindex="0" aria-label=${t("talk")}>${lines.map((line) => html`
+      <li key=${line.key}><time datetime=${line.at}>${clock(line.at)}</time>
+        ${" "}<b>${t(line.robot ? "talk.robot" : "talk.visitor")}</b> <span lang=${line.language ?? null}>${line.text}</span>
+        ${line.sure != null && html` <span class="quiet">${t("talk.sure", { percent: percent(line.sure * 100) })}</span>`}
+      </li>`)}</ol></${Part}>`;
+}
 
 function SayForm({ robot }) {
   const languages = robot.languages?.length ? robot.languages : [robot.language ?? "en"];
@@ -25,7 +48,7 @@ function SayForm({ robot }) {
 
 export function Talk({ robot }) {
   const { saying, visitor_said: heard, motion, now } = robot;
-  return html`<${Part} title=${t("talk")} kind="talk"
+  return html`<${Part} title=${t("talk.now")} kind="talk"
       aside=${html`<p class="visitor"><span>${t("visitor")}: <b>${robot.visitor || t("nobody.here")}</b></span><span>${t("language")}: <b>${robot.language ? languageName(robot.language) : ""}</b></span></p>`}>
     <p class="bubble robot" data-quiet=${!saying}><span class="speaker">${t("robot.says")} ${saying && html`<${Since} at=${saying.since} now=${now} />`}</span>
       <span lang=${saying?.language}>${saying ? saying.text : t("says.nothing")}</span></p>

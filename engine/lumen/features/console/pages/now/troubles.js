@@ -40,18 +40,19 @@ export const waitsForResume = (robot) => !robot.stopped && (robot.ways ?? []).so
 const shown = (data) => Object.fromEntries(Object.entries(data ?? {}).map(([key, value]) => [key, typeof value === "number" ? fixed(value) : value]));
 
 /** The last time that the robot felt each of what is wrong with it, as far as nobody has read that. */
-const felt = (robot) => ALARMS.map((kind) => live.alarms.get(`${robot.robot} ${kind}`)).filter((one) => one && !isRead(one)
-  && Date.now() + robot.skew - Date.parse(one.at_time) < RECENT);
+const felt = (robot) => ALARMS.map((kind) => live.alarms.get(`${robot.robot} ${kind}`))
+  .filter((one) => one && !isRead(one) && Date.now() + robot.skew - Date.parse(one.at_time) < RECENT);
 
 /** The greatest number in a reading, however its joints or sides are called: the number, or its name and the number. */
 export function greatest(reading) {
   if (typeof reading === "number") return reading;
-  return Object.entries(reading ?? {}).filter(([, value]) => typeof value === "number").sort((a, b) => b[1] - a[1])[0] ?? null;
+  const numbers = Object.entries(reading ?? {}).filter(([, value]) => typeof value === "number");
+  return numbers.sort((a, b) => b[1] - a[1])[0] ?? null;
 }
 export const hottest = (robot) => [greatest(robot.senses?.temperatures)].flat().at(-1);
 export const batteryOf = (robot) => robot.battery ?? robot.senses?.battery?.percentage ?? null;
 
-/** What a person has to see of a robot, the worst first, each a text `alarm.…`; `MILD` ones wait for a person and are no fault. */
+/** The alarms of a robot, the worst first, each a text `alarm.…`; `MILD` ones wait for a person and are no fault. */
 export function alarmsOf(robot) {
   if (robot.connected === false) return ["away"];
   const battery = batteryOf(robot), known = new Set(felt(robot).map((one) => one.heard));
