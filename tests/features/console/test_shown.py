@@ -1,4 +1,4 @@
-"""What the pages of the day, the files and the hall show is whole and of now."""
+"""The pages of the day, the files and the hall show whole texts and the present state."""
 
 from collections.abc import Iterator
 from contextlib import closing
@@ -33,7 +33,7 @@ Response.prototype.json = async function () {
   return said.numbers ? { ...said, numbers: { ...said.numbers, unanswered: asked } } : said;
 };
 """
-"""A question that nobody has answered is among the numbers of the day."""
+"""An unanswered question is among the numbers of the day."""
 DRAWN = "return document.querySelector('canvas')?.scene?.robot.visible"
 
 

@@ -38,7 +38,7 @@ class Gate:
     """Refuses what a foreign page, a rebound name or a careless program may send; adds headers to every answer.
 
     `hosts` are names and addresses under which the console is reached, besides the address of the connection itself.
-    What `proxies` say about where a request comes from is believed.
+    The addresses that `proxies` report are believed.
     """
 
     def __init__(self, app: ASGIApp, hosts: Iterable[str], proxies: TrustedProxies | None = None) -> None:

@@ -1,4 +1,4 @@
-"""The proxies before the console whose word counts: where a request comes from, and whether it came encrypted."""
+"""The proxies before the console that it believes: the address of a request, and whether it was encrypted."""
 
 import ipaddress
 from collections.abc import Iterable, MutableMapping
@@ -44,7 +44,7 @@ class TrustedProxies:
         return seen
 
     def _first_stranger(self, addresses: list[str]) -> str:
-        """The last address that no trusted proxy has, empty if there is none: each proxy adds its peer at the end."""
+        """Return the last address that no trusted proxy has, else an empty text. Each proxy appends its peer."""
         for text in reversed(addresses):
             address = _address(text)
             if address is None:
@@ -64,7 +64,7 @@ def _values(scope: Scope, name: bytes) -> list[str]:
 
 
 def _address(text: str) -> Address | None:
-    """An address with or without its port, None if it is none; one of IPv4 within IPv6 is that of IPv4."""
+    """Return the address in a text, without its port; None for other texts. IPv4 within IPv6 becomes IPv4."""
     host = text
     if text.startswith("["):
         host = text[1:].partition("]")[0]

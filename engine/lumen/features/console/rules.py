@@ -1,4 +1,4 @@
-"""The console: nobody can use it from elsewhere without a PIN, no PIN is in a file, and proxies have addresses."""
+"""The console: other machines need a PIN, no PIN is in a file, and trusted proxies are addresses."""
 
 import re
 

@@ -29,7 +29,7 @@ class Console:
     """Listens at `address` from the beginning, and serves while it is `run`, until a signal or `end`.
 
     `reach` opens the bus of the project in `root`. `pins` are those of the roles; without any everybody may do
-    everything, so that it has to be on loopback and behind no proxy. `hosts` are other names of this machine, `proxies`
+    everything, so that it must be on loopback and behind no proxy. `hosts` are other names of this machine, `proxies`
     the addresses of trusted proxies. Port 0 is any that is free. Raises UsageError.
     """
 

@@ -11,8 +11,8 @@ class ConsoleSettings:
     """`lumen run` has a console beside it where this is `wanted`.
 
     `pins` names for a role (`show`, `operator`, `author`) the variable of the environment that holds its PIN; `hosts`
-    are other names under which it is reached. `proxies` are addresses or networks of proxies before it, which say where
-    a request comes from.
+    are other names under which it is reached. `proxies` are addresses or networks of proxies before it, whose
+    headers about a request are believed.
     """
 
     wanted: bool = False

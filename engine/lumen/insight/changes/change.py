@@ -28,7 +28,7 @@ class Risk(IntEnum):
 class Change:
     """One difference: what `kind` it is (`text`, `state`, `route`, …), what it is `about`, a sentence, and its risk.
 
-    `file` is where it stands, relative to the project, `where` the place in it; `was` and `now` are a text that
+    `file` is its file, relative to the project, `where` the place in it; `was` and `now` are a text that
     changed, whole. Two changes are equal if their sentences, files and risks are.
     """
 

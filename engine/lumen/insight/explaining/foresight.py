@@ -1,4 +1,4 @@
-"""What a robot would do if an event were taken now."""
+"""The commands of a robot if an event were processed now."""
 
 from collections import deque
 from typing import Any

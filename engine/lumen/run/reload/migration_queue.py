@@ -59,7 +59,7 @@ class MigrationQueue:
     """Holds at most one bundle, `staged`; `tick` makes it active, waits for what it has to wait for, or refuses it.
 
     `revision` counts how often another bundle became active, `applied` is told of it. What has just come is on
-    `probation`. `restore` brings the files of a roll back into the project's folder, then tells of it.
+    `probation`. `restore` brings the files of a roll back into the project's folder, then reports it.
     """
 
     def __init__(

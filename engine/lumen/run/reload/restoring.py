@@ -21,7 +21,7 @@ _NEW = ".restored"
 
 
 class Restored(NamedTuple):
-    """What was done to the folder: the paths that differ now, `kept` where their newer versions are.
+    """The result of a restoration: the paths that changed, and the folder `kept` with their newer versions.
 
     `trouble` is why nothing was done, empty otherwise.
     """
