@@ -36,7 +36,7 @@ class Group(NamedTuple):
 GROUPS = {
     "core": Group("lint, stories, the editor, the buses and modules, and what builds Lumen", (), ("build",)),
     "run": Group("the engine and the simulated robot", ("simulation", "plot", "recording", "console", "fleet"), ()),
-    "test": Group("the tests", ("test", "naoqi"), ("test",)),
+    "test": Group("the tests", ("test", "naoqi", "reachy"), ("test",)),
     "docs": Group("the site of the documentation", (), ("docs",)),
 }
 """A group needs all groups before it."""

@@ -21,6 +21,7 @@ BUILT_IN = (
     "lumen.features.expressions:FEATURE",
     "lumen.features.simulation:FEATURE",
     "lumen.features.naoqi:FEATURE",
+    "lumen.features.reachy:FEATURE",
     "lumen.features.robots:FEATURE",
     "lumen.features.senses:FEATURE",
     "lumen.features.memory_bus:FEATURE",
@@ -82,6 +83,8 @@ class RobotRow(NamedTuple):
     the robot is in a process of its own. `set_up_house` is for several robots at once: from a mapping of requests by
     the robots' names to one of setups; if it is empty, `set_up` is called for each. `real_time`: its time can't be
     hurried. `bounded`: it keeps within the limits and speeds of its body itself; Lumen does that for others.
+    `examine` is the import string of a function for `lumen doctor --robot NAME`: from the given options by name to
+    triples of what was looked at, `ok`, `note`, `warning` or `error`, and a text.
     """
 
     set_up: str = ""
@@ -89,6 +92,7 @@ class RobotRow(NamedTuple):
     real_time: bool = False
     bounded: bool = False
     options: tuple[RobotOption, ...] = ()
+    examine: str = ""
 
 
 class BaseRow(NamedTuple):

@@ -5,7 +5,7 @@ import json
 import os
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import closing, suppress
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
@@ -17,15 +17,20 @@ from lumen.bus.validated import by_key
 from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
+from lumen.feature import owner, table
+from lumen.features.rabbitmq.probe import BrokerProbe
+from lumen.features.rabbitmq.queues import SIDE_QUEUES
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
 from lumen.lint import check_files
 from lumen.ports import Bus
+from lumen.project.broken_features import called
 from lumen.project.files import read_files
 from lumen.project.own_project import own_project
 from lumen.robot.robot_routes import COMMAND_ROUTE
 from lumen.run.attendance import RobotAttendance
 from lumen.run.delegated_tracking import MOTION_ROUTE as MOTION
+from lumen.run.setup import robot_options
 
 LISTENING = 2.0
 SKEW = 1.0
@@ -45,6 +50,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Check the bus of an exhibition: whether the broker is running, is new enough and lets Lumen read and send,"
         " whether the clocks agree, and which routes no process serves."
+        " With --robot, check whether that robot can be reached."
     )
     parser.add_argument(
         "project", nargs="?", metavar="PROJECT", help="the project's folder (default: this folder or one above)"
@@ -52,16 +58,35 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--bus", metavar="URL", help="the bus (default: LUMEN_BUS, then the one in lumen.yaml, then this machine)"
     )
+    robots = [name for name, row in table("robots").items() if row.examine]
+    parser.add_argument("--robot", choices=robots, help="check whether this robot can be reached, in place of the bus")
+    for option in robot_options():
+        parser.add_argument(option.flag, dest=option.destination, metavar=option.metavar, help=option.help)
     parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
     """0 all well, 1 something is wrong; raises BusError where there is nothing to look at."""
+    if options.robot:
+        return _told(options, [Finding(*found) for found in _robot(options)])
     root = own_project(options.project)
     project = check_files(root, read_files(root))[0]
     url = options.bus or os.environ.get("LUMEN_BUS") or (project.bus if project else "memory://")
     probe = probe_of(url)
-    findings = list(_broker(probe, url, project) if probe else _other(options, url, project))
+    return _told(options, list(_broker(probe, url, project) if probe else _other(options, url, project)))
+
+
+def _robot(options: argparse.Namespace) -> Iterable[tuple[str, str, str]]:
+    """What the robot's feature finds."""
+    given = {option.name: value for option in robot_options() if (value := getattr(options, option.destination))}
+    found: Iterable[tuple[str, str, str]] = called(
+        owner("robots", options.robot), table("robots")[options.robot].examine, given
+    )
+    return found
+
+
+def _told(options: argparse.Namespace, findings: list[Finding]) -> int:
+    """Print the findings; 1 if something is wrong."""
     bad = any(finding.severity in ("warning", "error") for finding in findings)
     if options.format == "json":
         print(json.dumps({"ok": not bad, "findings": [finding._asdict() for finding in findings]}))

@@ -150,11 +150,12 @@ def runs_in_real_time(kind: str) -> bool:
 
 
 def robot_options() -> tuple[RobotOption, ...]:
-    """Return the options that some robots take, one of each name."""
+    """Return the options that some robots take, one of each name; its help is that of all robots with the option."""
     found: dict[str, RobotOption] = {}
     for row in table("robots").values():
         for option in row.options:
-            found.setdefault(option.name, option)
+            first = found.get(option.name)
+            found[option.name] = first._replace(help=f"{first.help}; {option.help}") if first else option
     return tuple(found.values())
 
 

@@ -1,0 +1,148 @@
+"""Calls of Reachy Mini's daemon over HTTP: one after the other on a thread of their own, or at once."""
+
+import http.client
+import json
+import logging
+import re
+import uuid
+from collections.abc import Callable
+from queue import SimpleQueue
+from threading import Event
+from typing import Any
+from urllib.parse import urlsplit
+
+from lumen.errors import RobotError, RobotFailedError, RobotLostError, UsageError
+from lumen.upkeep.threads import WatchedThread
+
+PORT = 8000
+PATIENCE = 5.0
+"""How long the daemon may take for an answer [s]."""
+UPLOAD_PATIENCE = 15.0
+
+_log = logging.getLogger(__name__)
+
+
+class DaemonAddress:
+    """The address of a daemon. Raises UsageError if `url` is none."""
+
+    def __init__(self, url: str) -> None:
+        try:
+            parts = urlsplit(url if "://" in url else f"http://{url}")
+            host, port = parts.hostname, parts.port or PORT
+        except ValueError:
+            host, port, parts = None, 0, urlsplit("")
+        if not host or parts.scheme != "http" or parts.path not in ("", "/") or re.search(r"\s", url):
+            raise UsageError(f"`{url}` is no address of a daemon: write it as http://reachy-mini.local:{PORT}")
+        self.host, self.port = host, port
+        self.authority = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
+
+    def __str__(self) -> str:
+        return f"http://{self.authority}"
+
+
+class DaemonCall:
+    """A call under way."""
+
+    def __init__(self, work: Callable[[], Any]) -> None:
+        self._work, self._over = work, Event()
+        self._answer: Any = None
+        self._error: RobotError | None = None
+
+    @property
+    def done(self) -> bool:
+        return self._over.is_set()
+
+    def run(self) -> None:
+        """Make the call, on the thread that may wait for it."""
+        try:
+            self._answer = self._work()
+        except RobotError as error:
+            self._error = error
+        except Exception as error:  # whoever waits for the call must not wait for ever
+            _log.exception("a call of the robot's daemon failed")
+            self._error = RobotFailedError(f"the call failed: {error!r}")
+        finally:
+            self._over.set()
+
+    def result(self) -> Any:
+        """Return the answer of a call that is done. Raises RobotError if it failed."""
+        if self._error:
+            raise self._error
+        return self._answer
+
+
+class DaemonApi:
+    """The daemon at an address."""
+
+    def __init__(self, address: DaemonAddress) -> None:
+        self.address = address
+        self._calls: SimpleQueue[DaemonCall | None] = SimpleQueue()
+        self._thread = WatchedThread("lumen-reachy-calls", self._serve)
+
+    def post(self, path: str, body: Any = None) -> DaemonCall:
+        """Begin a POST; it follows those that were begun before."""
+        return self.later(lambda: self.ask("POST", path, body))
+
+    def get(self, path: str) -> DaemonCall:
+        """Begin a GET."""
+        return self.later(lambda: self.ask("GET", path))
+
+    def later(self, work: Callable[[], Any]) -> DaemonCall:
+        """Begin any work that waits for the daemon."""
+        call = DaemonCall(work)
+        if not self._thread.started:
+            self._thread.start()
+        self._calls.put(call)
+        return call
+
+    def ask(self, method: str, path: str, body: Any = None, patience: float = PATIENCE) -> Any:
+        """Return the JSON data that the daemon answers.
+
+        Raises RobotLostError if it can't be reached, RobotFailedError if it refuses.
+        """
+        content = None if body is None else json.dumps(body).encode()
+        return self._request(method, path, content, {"Content-Type": "application/json"} if content else {}, patience)
+
+    def upload(self, name: str, wav: bytes) -> None:
+        """Store a sound under a name on the robot. Raises RobotError if the daemon does not accept it."""
+        mark = uuid.uuid4().hex
+        head = f'--{mark}\r\nContent-Disposition: form-data; name="file"; filename="{name}"\r\n'
+        content = head.encode() + b"Content-Type: audio/wav\r\n\r\n" + wav + f"\r\n--{mark}--\r\n".encode()
+        kind = {"Content-Type": f"multipart/form-data; boundary={mark}"}
+        self._request("POST", "/api/media/sounds/upload", content, kind, UPLOAD_PATIENCE)
+
+    def close(self) -> None:
+        if self._thread.started:
+            self._calls.put(None)
+            self._thread.join(2.0)
+
+    def _serve(self) -> None:
+        while (call := self._calls.get()) is not None:
+            call.run()
+
+    def _request(self, method: str, path: str, content: bytes | None, headers: dict[str, str], patience: float) -> Any:
+        connection = http.client.HTTPConnection(self.address.host, self.address.port, timeout=patience)
+        try:
+            connection.request(method, path, content, headers)
+            answer = connection.getresponse()
+            text = answer.read()
+        except (OSError, http.client.HTTPException) as error:
+            raise RobotLostError(f"the daemon at {self.address} does not answer: {error}") from error
+        finally:
+            connection.close()
+        if answer.status >= 400:
+            raise RobotFailedError(f"the daemon refused {path}: {answer.status} {_detail(text)}")
+        try:
+            return json.loads(text) if text else None
+        except ValueError as error:
+            raise RobotFailedError(f"what answers at {self.address} is no daemon of a Reachy Mini") from error
+
+
+def _detail(text: bytes) -> str:
+    """Return why the daemon refused a call, as far as it says so."""
+    try:
+        data = json.loads(text)
+    except ValueError:
+        return text.decode("utf-8", "replace")[:100]
+    detail = data.get("detail") if isinstance(data, dict) else data
+    return str(detail)[:100]

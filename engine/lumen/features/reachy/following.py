@@ -1,0 +1,34 @@
+"""The body of Reachy Mini follows its head, and the head stays within what its rods reach."""
+
+from collections.abc import Mapping
+from math import radians
+
+from lumen.features.reachy.pose import BODY, JOINTS
+from lumen.features.reachy.rods import MOST_AGAINST_BODY, within_reach
+from lumen.language.robots import Body
+
+FREE = radians(55)
+"""How far the head turns against the body before the body follows [rad]: less than the 65 degrees that end it."""
+
+
+def possible(joints: Mapping[str, float], body: Body) -> dict[str, float]:
+    """Return the nearest positions that the robot can take [rad, m]: limits, the body behind the head, and the rods."""
+    found = {name: min(max(joints[name], body.joints[name].minimum), body.joints[name].maximum) for name in JOINTS}
+    trunk, yaw = body.joints[BODY], found["head_yaw"]
+    followed = min(max(found[BODY], yaw - FREE), yaw + FREE)
+    found[BODY] = min(max(followed, trunk.minimum), trunk.maximum)
+    return within_reach(found)
+
+
+def limited(goal: Mapping[str, float], last: Mapping[str, float], body: Body, dt: float) -> dict[str, float]:
+    """Return how far the joints come from `last` towards `goal` in `dt` [s] at their greatest speeds.
+
+    The head waits for the slower body where its cables would end, and stays within what the rods reach.
+    """
+    found = {}
+    for name in JOINTS:
+        most, way = body.joints[name].speed * dt, goal[name] - last[name]
+        found[name] = last[name] + min(max(way, -most), most)
+    trunk = found[BODY]
+    found["head_yaw"] = min(max(found["head_yaw"], trunk - MOST_AGAINST_BODY), trunk + MOST_AGAINST_BODY)
+    return within_reach(found)

@@ -1,0 +1,59 @@
+"""Where Reachy Mini's joints should be at each moment: what commands want, what aims want, and its life beside."""
+
+from collections.abc import Callable, Collection, Mapping
+
+from lumen.features.reachy.following import limited, possible
+from lumen.features.reachy.pose import JOINTS
+from lumen.language.robots import Body
+from lumen.ports import Aim
+
+SENT_TOLERANCE = 1e-5
+"""Targets that differ by less than this [rad, m] are not sent again: the daemon holds the last one."""
+
+
+class Mover:
+    """`goal` is where commands want each joint [rad, m], `sent` the last target that went to the robot.
+
+    While it is not `awake`, nothing is sent.
+    """
+
+    def __init__(self, body: Body) -> None:
+        self.body = body
+        self.goal: dict[str, float] = {name: body.postures["Stand"].get(name, 0.0) for name in JOINTS}
+        self.sent: dict[str, float] = dict(self.goal)
+        self.awake = False
+        self._aims: dict[str, tuple[float, float]] = {}
+
+    def stand(self, joints: Mapping[str, float]) -> None:
+        """The robot was moved by something else, and stands there now: go on from there."""
+        self.goal, self.sent = dict(joints), dict(joints)
+        self._aims.clear()
+
+    def aim(self, aim: Aim, free: Callable[[str], bool]) -> None:
+        """Move these joints there, as far as no command owns them, at most at a share of their greatest speed."""
+        self._aims |= {
+            name: (angle, aim.speed) for name, angle in aim.angles.items() if name in self.goal and free(name)
+        }
+
+    def drop_aims(self, joints: Collection[str]) -> None:
+        """A command owns these joints now."""
+        for name in joints:
+            self._aims.pop(name, None)
+
+    def target(self, offsets: Mapping[str, float], dt: float) -> dict[str, float] | None:
+        """Return the next target, `dt` [s] after the last; None if the robot has it already.
+
+        `offsets` [rad, m] are those of its life. No joint leaves its limits or is faster than it may be.
+        """
+        for name, (angle, speed) in list(self._aims.items()):
+            most = speed * self.body.joints[name].speed * dt
+            way = angle - self.goal[name]
+            self.goal[name] += min(max(way, -most), most)
+            if abs(way) <= most:
+                del self._aims[name]
+        wanted = {name: angle + offsets.get(name, 0.0) for name, angle in self.goal.items()}
+        target = limited(possible(wanted, self.body), self.sent, self.body, dt)
+        if all(abs(target[name] - self.sent[name]) < SENT_TOLERANCE for name in JOINTS):
+            return None
+        self.sent = target
+        return target

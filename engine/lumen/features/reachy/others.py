@@ -1,0 +1,122 @@
+"""What Lumen asks the daemon of Reachy Mini again and again: who else moves the robot, and where somebody speaks.
+
+Programs that stream targets, as Lumen does, are found by what is measured.
+"""
+
+import logging
+from collections import deque
+from collections.abc import Mapping
+from math import pi, radians
+from threading import Event
+
+from lumen.errors import RobotError
+from lumen.features.reachy.daemon_api import DaemonApi
+from lumen.features.reachy.pose import distance
+from lumen.upkeep.threads import WatchedThread
+
+LOOK_PERIOD = 0.4
+"""How often Lumen asks the daemon for its moves [s]."""
+STRAY_ANGLE, STRAY_PLACE = radians(14), 0.014
+"""How far the head is from all that Lumen sent lately if something else moves it [rad], [m]."""
+LATELY = 0.5
+"""How long what was sent may take to be measured [s]."""
+STRAYS, STRAY_TIME = 6, 1.0
+"""So many strange measurements within that time [s] are no accident."""
+STILL_ANGLE, STILL_PLACE, STILL_TIME = radians(1.5), 0.002, 2.0
+"""The head has been left alone if it moved by less than this [rad], [m] for so long [s]."""
+
+_log = logging.getLogger(__name__)
+
+
+class DaemonMoves:
+    """The moves that the daemon runs, and the sounds that it heard; a thread asks for them.
+
+    `ours` are the moves that Lumen began.
+    """
+
+    def __init__(self, api: DaemonApi) -> None:
+        self._api = api
+        self.ours: set[str] = set()
+        self._running: frozenset[str] = frozenset()
+        self.app = ""
+        self._sounds: deque[float] = deque(maxlen=3)
+        self._ending = Event()
+        self._thread = WatchedThread("lumen-reachy-moves", self._look)
+
+    def start(self) -> None:
+        self._thread.start()
+
+    @property
+    def foreign(self) -> bool:
+        """Whether a move runs that Lumen did not begin."""
+        return not self._running <= self.ours
+
+    def sounds(self) -> list[float]:
+        """Return how far to the left of the head's front somebody spoke [rad] since the last call."""
+        return [self._sounds.popleft() for _ in range(len(self._sounds))]
+
+    def now(self) -> list[str]:
+        """Ask the daemon which moves run. Raises RobotError if it does not answer."""
+        running = self._api.ask("GET", "/api/move/running", patience=2.0)
+        return [str(move.get("uuid")) for move in running if isinstance(move, dict)]
+
+    def close(self) -> None:
+        self._ending.set()
+        if self._thread.started:
+            self._thread.join(2.0)
+
+    def _look(self) -> None:
+        while not self._ending.wait(LOOK_PERIOD):
+            try:
+                running = self.now()
+                lock = self._api.ask("GET", "/api/daemon/robot-app-lock-status", patience=2.0)
+                sound = self._api.ask("GET", "/api/state/doa", patience=2.0)
+            except RobotError:
+                self._running = frozenset()  # the link reports that the daemon is gone
+                continue
+            self._running = frozenset(running)
+            if isinstance(sound, dict) and sound.get("speech_detected"):
+                self._sounds.append(pi / 2 - float(sound.get("angle", pi / 2)))  # 0 is left, pi right
+            self.app = str(lock.get("holder_name") or "") if isinstance(lock, dict) else ""
+
+
+class Strays:
+    """Finds out from measured positions whether something else moves the head, a program or a hand."""
+
+    def __init__(self) -> None:
+        self._sent: deque[tuple[float, Mapping[str, float]]] = deque()
+        self._strange: deque[float] = deque(maxlen=STRAYS)
+        self._still: tuple[float, Mapping[str, float]] | None = None
+        self.taken = False
+
+    def sent(self, joints: Mapping[str, float], now: float) -> None:
+        """Note what Lumen sends at `now` [s]."""
+        self._sent.append((now, joints))
+        while len(self._sent) > 1 and self._sent[1][0] < now - LATELY:
+            self._sent.popleft()
+
+    def forget(self) -> None:
+        """Nothing is known any more: Lumen begins to stream, or has stopped."""
+        self._sent.clear()
+        self._strange.clear()
+        self._still, self.taken = None, False
+
+    def measured(self, joints: Mapping[str, float], now: float) -> None:
+        """Note what was measured at `now` [s]; `taken` tells whether something else moves the head."""
+        if self.taken:
+            self._wait_for_stillness(joints, now)
+        elif self._sent and all(_far(joints, sent, STRAY_ANGLE, STRAY_PLACE) for _, sent in self._sent):
+            self._strange.append(now)
+            if len(self._strange) == STRAYS and now - self._strange[0] <= STRAY_TIME:
+                self.taken, self._still = True, (now, joints)
+
+    def _wait_for_stillness(self, joints: Mapping[str, float], now: float) -> None:
+        if self._still is None or _far(joints, self._still[1], STILL_ANGLE, STILL_PLACE):
+            self._still = now, joints
+        elif now - self._still[0] >= STILL_TIME:
+            self.forget()
+
+
+def _far(joints: Mapping[str, float], others: Mapping[str, float], angle: float, place: float) -> bool:
+    angles, places = distance(joints, others)
+    return angles > angle or places > place

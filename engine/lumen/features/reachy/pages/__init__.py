@@ -1,0 +1,1 @@
+"""What lint found about Reachy Mini, and what to do: a page for each code."""

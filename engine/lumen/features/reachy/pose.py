@@ -1,0 +1,64 @@
+"""Where Reachy Mini's joints are, and the messages of its daemon that say the same."""
+
+from collections.abc import Mapping, Sequence
+from math import asin, atan2, cos, hypot, sin
+from typing import Any
+
+HEAD = ("head_x", "head_y", "head_z", "head_roll", "head_pitch", "head_yaw")
+"""The joints of the head, in the order of the daemon's x, y, z, roll, pitch and yaw: [m], then [rad]."""
+BODY, LEFT, RIGHT = "body_yaw", "left_antenna", "right_antenna"
+JOINTS = (*HEAD, BODY, LEFT, RIGHT)
+
+LYING_HEIGHT, LYING_PITCH = -0.035, 0.3
+"""The head of a robot that sleeps is lower than this [m], and tilted farther [rad]; it sinks more with time."""
+
+Matrix3 = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
+
+
+def rotation(roll: float, pitch: float, yaw: float) -> Matrix3:
+    """Return the rows of Rz(yaw) Ry(pitch) Rx(roll); angles in [rad]."""
+    cr, sr, cp, sp, cy, sy = cos(roll), sin(roll), cos(pitch), sin(pitch), cos(yaw), sin(yaw)
+    return (
+        (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+        (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+        (-sp, cp * sr, cp * cr),
+    )
+
+
+def target_message(joints: Mapping[str, float]) -> dict[str, Any]:
+    """Return the daemon's `set_full_target` for the positions of all joints [rad, m].
+
+    `head` is the pose of the head against the base, a matrix of 4 x 4 row by row; `antennas` are right, left.
+    """
+    x, y, z, roll, pitch, yaw = (joints[name] for name in HEAD)
+    rows = zip(rotation(roll, pitch, yaw), (x, y, z), strict=True)
+    head = [number for row, along in rows for number in (*row, along)] + [0.0, 0.0, 0.0, 1.0]
+    antennas = [joints[RIGHT], joints[LEFT]]
+    return {"type": "set_full_target", "head": head, "antennas": antennas, "body_yaw": joints[BODY]}
+
+
+def head_joints(pose: Sequence[Sequence[float]]) -> dict[str, float]:
+    """Return the joints of the head [rad, m] in a pose of 4 x 4. Raises ValueError or TypeError if it is none."""
+    (r00, _, _, x), (r10, _, _, y), (r20, r21, r22, z), _ = (tuple(map(float, row)) for row in pose)
+    roll, pitch, yaw = atan2(r21, r22), asin(min(max(-r20, -1.0), 1.0)), atan2(r10, r00)
+    return dict(zip(HEAD, (x, y, z, roll, pitch, yaw), strict=True))
+
+
+def motor_joints(message: Mapping[str, Any]) -> dict[str, float]:
+    """Return body and antennas [rad] of the daemon's `joint_positions`. Raises ValueError, TypeError or KeyError."""
+    right, left = map(float, message["antennas_joint_positions"])
+    return {BODY: float(message["head_joint_positions"][0]), LEFT: left, RIGHT: right}
+
+
+def lies(joints: Mapping[str, float]) -> bool:
+    """Return whether the head lies on the body, as it does while the robot sleeps."""
+    return joints["head_z"] < LYING_HEIGHT and joints["head_pitch"] > LYING_PITCH
+
+
+def distance(joints: Mapping[str, float], others: Mapping[str, float]) -> tuple[float, float]:
+    """Return how far two heads with bodies are apart: the greatest of their angles [rad], and their place [m].
+
+    Antennas are left out: they swing.
+    """
+    angles = max(abs(joints[name] - others[name]) for name in (*HEAD[3:], BODY))
+    return angles, hypot(*(joints[name] - others[name] for name in HEAD[:3]))

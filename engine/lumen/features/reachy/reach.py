@@ -1,0 +1,64 @@
+"""Where a motion asks for more than the rods of Reachy Mini reach."""
+
+from collections.abc import Mapping
+from math import degrees, radians
+from typing import NamedTuple
+
+from lumen.features.reachy.following import possible
+from lumen.features.reachy.pose import HEAD, JOINTS
+from lumen.language.motions import MotionDefinition
+from lumen.language.robots import Body
+from lumen.motion.trajectories import Trajectory
+
+SHORT_ANGLE, SHORT_LENGTH = radians(1.0), 0.001
+"""How far a joint has to stay behind its goal to be short of it [rad], [m]."""
+SAMPLE_PERIOD = 0.05
+"""How often a motion is looked at [s]."""
+
+
+class Shortage(NamedTuple):
+    """A joint that stays short of its goal [rad, m], and when in the motion that is [s]."""
+
+    joint: str
+    goal: float
+    reached: float
+    time: float = 0.0
+
+    @property
+    def share(self) -> float:
+        """How many times the least shortage it is."""
+        return abs(self.goal - self.reached) / (SHORT_LENGTH if self.joint in HEAD[:3] else SHORT_ANGLE)
+
+    def __str__(self) -> str:
+        return f"its rods let `{self.joint}` come to {self._shown(self.reached)}, not to {self._shown(self.goal)}"
+
+    def _shown(self, value: float) -> str:
+        return f"{1000 * value:.1f} mm" if self.joint in HEAD[:3] else f"{degrees(value):.1f} deg"
+
+
+def shortest(goal: Mapping[str, float], near: Mapping[str, float], time: float = 0.0) -> Shortage | None:
+    """Return the joint of the head that is the shortest of its goal; None if all are there."""
+    worst = max((Shortage(name, goal[name], near[name], time) for name in HEAD), key=lambda short: short.share)
+    return worst if worst.share > 1.0 else None
+
+
+def worst_of(motion: MotionDefinition, body: Body) -> Shortage | None:
+    """Return where a motion is the shortest of what it asks for; None if the robot reaches all of it.
+
+    Joints that it does not move are where the robot stands.
+    """
+    course, stand = Trajectory(motion), {name: body.postures["Stand"][name] for name in JOINTS}
+    found = []
+    for i in range(int(motion.duration / SAMPLE_PERIOD) + 1):
+        time = i * SAMPLE_PERIOD
+        sampled = {name: angle for name, angle in course.sample(time).items() if name in stand}
+        goal = {**stand, **sampled}
+        if short := shortest(goal, possible(goal, body), time):
+            found.append(short)
+    return max(found, key=lambda short: short.share, default=None)
+
+
+def shortfall(motion: MotionDefinition, body: Body) -> str:
+    """Return what of a motion the robot does not reach, in words; empty if it reaches all of it."""
+    worst = worst_of(motion, body)
+    return f"`{motion.name}` falls short at {worst.time:.1f} s: {worst}" if worst else ""

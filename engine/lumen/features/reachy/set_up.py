@@ -1,0 +1,41 @@
+"""Reachy Mini with its clock."""
+
+from pathlib import Path
+
+from lumen.clock.real import RealClock
+from lumen.errors import UsageError
+from lumen.features.reachy.offers import ReachyRobot
+from lumen.language.stories import Visitor
+from lumen.run.setup import RobotRequest, Setup
+
+ADDRESS = "http://reachy-mini.local:8000"
+
+
+class TypedVisitors:
+    """A `Hall` in which visitors are real: a person who types is heard, and seen only if a visual module sees them."""
+
+    def place(self, visitor: Visitor | None) -> None:
+        """They stand wherever they stand."""
+
+    def face(self) -> tuple[float, float] | None:
+        """Return None: a module sees faces, and not the hall."""
+        return None
+
+
+def set_up(request: RobotRequest) -> Setup:
+    """Return the robot whose daemon is at the option `url`. Raises UsageError for a story, or for another speed."""
+    if request.speed != "1":
+        raise UsageError("a real robot runs in real time: leave out --speed")
+    if request.story:
+        raise UsageError("a story needs a simulated visitor: leave out --robot reachy")
+    project, clock = request.project, RealClock()
+    language = project.languages[0] if project.languages else "en"
+    robot = ReachyRobot(
+        project.body,
+        request.options.get("url", ADDRESS),
+        clock.now,
+        voice=request.options.get("voice", "espeak"),
+        language=language,
+        root=Path(project.root),
+    )
+    return Setup(robot, clock, TypedVisitors())

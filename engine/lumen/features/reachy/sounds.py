@@ -1,0 +1,115 @@
+"""Speech and sound files of Reachy Mini: each becomes a WAV file that is uploaded to its daemon and played there."""
+
+import hashlib
+import io
+import logging
+import tempfile
+import wave
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from lumen.errors import LumenError, RobotError, RobotFailedError, UsageError
+from lumen.feature import resolve, table
+from lumen.features.reachy.daemon_api import DaemonApi
+from lumen.language.diagnostics import did_you_mean
+from lumen.project.files import on_disk
+from lumen.robot.command_table import speech_duration
+from lumen.run.sound import Sound
+from lumen.upkeep.once_log import OnceLog
+
+MUTE = "none"
+"""The name of no voice: texts take their time, and are on the bus for a module that speaks."""
+_log = logging.getLogger(__name__)
+
+
+class Loaded(NamedTuple):
+    """A sound that the daemon can play: how long it takes [s], and its `file` there; empty if it stays silent."""
+
+    duration: float
+    file: str = ""
+
+
+class RobotSounds:
+    """Makes sounds and uploads them; each only once. Its methods wait for the daemon.
+
+    `voice` is a row of `voices` of a feature, or `none`; `language` is spoken if a text names none. Sound files are in
+    the folder `root`. `volume`, from 0 to 1, makes sounds quieter before they are uploaded: the robot's own volume
+    stays as it is. Raises UsageError if there is no such voice.
+    """
+
+    def __init__(self, api: DaemonApi, voice: str, language: str, root: Path) -> None:
+        voices = (*table("voices"), MUTE)
+        if voice not in voices:
+            raise UsageError(f"there is no voice `{voice}`: {did_you_mean(voice, voices, 'there are')}")
+        self._api, self._language, self._root = api, language, root
+        self._voice: Callable[..., Any] | None = None if voice == MUTE else resolve(table("voices")[voice])
+        self.volume = 1.0
+        self._has_media: bool | None = None
+        self._uploaded: set[str] = set()
+        self._warnings = OnceLog(_log)
+
+    def renew(self) -> None:
+        """The daemon may be another one now."""
+        self._has_media = None
+        self._uploaded.clear()
+
+    def speech(self, text: str, language: str) -> Loaded:
+        """Return a text as sound; silent if it can't be had, which is logged once. Raises RobotError."""
+        silent = Loaded(speech_duration(text))
+        if self._voice is None or not text.strip() or not self._media():
+            return silent
+        try:
+            with tempfile.TemporaryDirectory(prefix="lumen-") as folder:
+                file = Path(folder) / "said.wav"
+                voice = self._voice(self._language, file, None)
+                seconds = voice.begin(text, language, self.volume, 0.0)
+                voice.end(seconds)
+                voice.close()
+                return Loaded(seconds, self._upload(file.read_bytes()))
+        except RobotError:
+            raise
+        except (LumenError, OSError) as error:
+            self._warnings([f"the robot does not speak: {error}"])
+            return silent
+
+    def sound(self, file: str, length: float) -> Loaded:
+        """Return a sound file of the project; silent if the robot plays none. Raises RobotError."""
+        if not self._media():
+            return Loaded(length)
+        try:
+            content = on_disk(self._root, file).read_bytes()
+            return Loaded(length, self._upload(quieter(content, self.volume)))
+        except (OSError, wave.Error, EOFError) as error:
+            raise RobotFailedError(f"the sound {file} can't be read: {error}") from error
+
+    def _media(self) -> bool:
+        """Return whether the daemon plays sounds: without its media server it answers `ok` and plays nothing."""
+        if self._has_media is None:
+            status = self._api.ask("GET", "/api/media/status")
+            self._has_media = isinstance(status, dict) and bool(status.get("available"))
+            if not self._has_media:
+                self._warnings(["the robot plays no sounds: its daemon runs without its media server"])
+        return self._has_media
+
+    def _upload(self, wav: bytes) -> str:
+        name = f"lumen-{hashlib.sha256(wav).hexdigest()[:16]}.wav"
+        if name not in self._uploaded:
+            self._api.upload(name, wav)
+            self._uploaded.add(name)
+        return name
+
+
+def quieter(content: bytes, volume: float) -> bytes:
+    """Return a WAV file of 16 bits with each sample times `volume`. Raises wave.Error or EOFError if it is none."""
+    if volume == 1.0:
+        return content
+    with wave.open(io.BytesIO(content)) as read:
+        parameters, frames = read.getparams(), read.readframes(read.getnframes())
+    if parameters.sampwidth != 2:
+        raise wave.Error(f"it has {8 * parameters.sampwidth} bits, not 16")
+    out = io.BytesIO()
+    with wave.open(out, "wb") as written:
+        written.setparams(parameters)
+        written.writeframes(Sound(parameters.framerate, frames).at_volume(volume).samples)
+    return out.getvalue()

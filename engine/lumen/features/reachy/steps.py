@@ -1,0 +1,54 @@
+"""An activity of Reachy Mini as steps, none of which waits: it hands over a call, or waits for the next tick."""
+
+from collections.abc import Callable, Generator
+from typing import Any
+
+from lumen.errors import RobotError
+from lumen.features.reachy.daemon_api import DaemonCall
+
+Steps = Generator[DaemonCall | None, Any, None]
+"""A call is answered with its result; `None` with the time of the next tick [s]."""
+
+
+class StepActivity:
+    """An activity of the executor made of steps; `stop` is called if it is cancelled, and ends it at once.
+
+    `missed` says what it did not reach, if it came to its end nevertheless.
+    """
+
+    def __init__(self, steps: Steps, stop: Callable[[], None] = lambda: None) -> None:
+        self._steps, self._stop = steps, stop
+        self._call: DaemonCall | None = None
+        self._begun = self._cancelled = False
+        self.missed = ""
+
+    def advance(self, now: float) -> bool:
+        if self._cancelled:
+            return True
+        try:
+            self._call = self._steps.send(now) if self._begun and self._call is None else self._next()
+            while self._call is not None and self._call.done:
+                self._call = self._answered(self._call)
+        except StopIteration:
+            return True
+        return False
+
+    def cancel(self) -> None:
+        if not self._cancelled:
+            self._cancelled = True
+            self._steps.close()
+            self._stop()
+
+    def _next(self) -> DaemonCall | None:
+        """Begin; or keep waiting for the call that is under way."""
+        if self._begun:
+            return self._call
+        self._begun = True
+        return next(self._steps)
+
+    def _answered(self, call: DaemonCall) -> DaemonCall | None:
+        try:
+            answer = call.result()
+        except RobotError as error:
+            return self._steps.throw(error)
+        return self._steps.send(answer)

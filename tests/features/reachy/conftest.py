@@ -1,0 +1,36 @@
+from collections.abc import Iterator
+
+import pytest
+
+from lumen.language.projects import Project
+from tests.features.reachy.driving import Driven, reachy_project
+from tests.features.reachy.fake import FakeDaemon
+
+
+@pytest.fixture(scope="session")
+def project() -> Project:
+    return reachy_project()
+
+
+@pytest.fixture
+def daemon() -> Iterator[FakeDaemon]:
+    one = FakeDaemon()
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def robot(project: Project, daemon: FakeDaemon) -> Iterator[Driven]:
+    """A robot that sleeps."""
+    one = Driven(project, daemon.url)
+    yield one
+    one.close()
+
+
+@pytest.fixture
+def awake(robot: Driven) -> Driven:
+    """The same, woken."""
+    from lumen.language.commands import Wake
+
+    assert robot.answer("wake", Wake()).name == "done.command.wake"
+    return robot
