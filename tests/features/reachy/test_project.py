@@ -1,0 +1,68 @@
+"""The shipped tour, the example and new projects with the body of Reachy Mini, without a robot."""
+
+from pathlib import Path
+
+import pytest
+
+import lumen
+from lumen.cli.main import main
+from lumen.features.reachy.pose import JOINTS
+from lumen.features.reachy.reach import shortfall
+from lumen.language.diagnostics import has_errors
+from lumen.language.motions import Keyframe, MotionDefinition
+from lumen.language.projects import Project
+from lumen.project.chosen_model import MODEL_VARIABLE
+from lumen.run.rehearsal import rehearse
+from tests import ROOT
+from tests.copying import copied_project
+from tests.scanning import matching
+
+EXAMPLE = ROOT / "examples/reachy"
+
+
+def test_the_shipped_tour_lints_and_guides_a_visitor(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(MODEL_VARIABLE, "reachy_mini")
+    found = lumen.check(ROOT)
+    assert not has_errors(found)
+    assert {d.code for d in found} == {"left-out", "unused-file"}
+    touched = [d.message for d in found if "touch" in d.message]
+    assert touched
+    assert all(message.startswith("Reachy Mini has no touch sensors") for message in touched)
+    project = lumen.load(ROOT)
+    assert not rehearse(project, project.stories["visitor"]).failed
+
+
+def test_the_example_is_sound_and_its_story_passes() -> None:
+    assert not lumen.check(EXAMPLE)
+    project = lumen.load(EXAMPLE)
+    assert not rehearse(project, project.stories["visitor"]).failed
+    assert {"head_z", "head_roll"} <= project.life["calm"].amplitudes.keys()
+
+
+def test_the_motions_of_the_example_are_the_shipped_ones() -> None:
+    for file in matching(EXAMPLE / "motions", "*.yaml"):
+        shipped = (ROOT / "motions/reachy_mini" / file.name).read_text()
+        assert file.read_text().partition("\n")[2] == shipped.partition("\n")[2], file.name
+
+
+def test_a_new_project_has_its_motions(tmp_path: Path) -> None:
+    assert main(["new", str(tmp_path / "show"), "--robot", "reachy_mini"]) == 0
+    project = lumen.load(tmp_path / "show")
+    assert project.body.name == "Reachy Mini"
+    assert {"greet", "nod", "shake", "dance", "sing", "goodbye", "curious", "sleepy"} <= project.motions.keys()
+
+
+def test_lint_names_a_pose_beyond_the_rods(tmp_path: Path) -> None:
+    folder = copied_project(EXAMPLE, tmp_path / "host")
+    file = folder / "motions/greet.yaml"
+    file.write_text(file.read_text().replace("head_z: 12, head_pitch: -14", "head_z: 22, head_pitch: -30"))
+    [finding] = [d for d in lumen.check(folder) if d.code == "beyond-rods"]
+    assert finding.place.file == "motions/greet.yaml"
+    assert "its rods let `head_" in finding.message
+
+
+def test_a_motion_says_where_it_falls_short(project: Project) -> None:
+    tracks = {"head_z": (Keyframe(1.0, 0.022),), "head_pitch": (Keyframe(1.0, 0.6), Keyframe(2.0, 0.0))}
+    short = shortfall(MotionDefinition("far", 2.0, tracks), project.body)
+    assert short.startswith("`far` falls short at ")
+    assert set(project.body.joints) == set(JOINTS)
