@@ -1,4 +1,5 @@
-"""Makes bodies.png: the bodies beside NAO that come with Lumen, each a moment into a motion, at honest physics.
+"""Makes bodies.png: the bodies beside NAO that come with Lumen, each a moment into a motion, at honest physics;
+and reachy_mini.png: four moments of that robot.
 
     python docs/pictures/bodies.py [--sheets FOLDER]
 
@@ -30,6 +31,8 @@ SHOWN = {
     "reachy_mini": ("goodbye", 1.3, 0.16, 0.72),
 }
 """Of each body: a motion, how far into it [s], how high its middle is, and from how far one looks [m]."""
+REACHY = (("greet", 1.4), ("curious", 1.4), ("goodbye", 1.4), ("sleepy", 5.8))
+CROP = 40, 120, 380, 480
 FLOOR, AROUND, DOWN = 0.5, 24.0, -8.0
 SIZE = 420, 520
 MOMENTS = 6
@@ -83,8 +86,11 @@ def main() -> None:
     if reason := available():
         sys.exit(reason)
     if sheets is None:
-        shots = [moments(name, motion, [at])[0] for name, (motion, at, *_) in SHOWN.items()]
+        shown = {name: moment for name, moment in SHOWN.items() if name != "reachy_mini"}
+        shots = [moments(name, motion, [at])[0] for name, (motion, at, *_) in shown.items()]
         row(shots).save(HERE / "bodies.png", optimize=True)
+        reachy = [moments("reachy_mini", motion, [at])[0].crop(CROP) for motion, at in REACHY]
+        row(reachy).save(HERE / "reachy_mini.png", optimize=True)
         return
     for name in SHOWN:
         choose(name)

@@ -18,8 +18,6 @@ from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
 from lumen.feature import owner, table
-from lumen.features.rabbitmq.probe import BrokerProbe
-from lumen.features.rabbitmq.queues import SIDE_QUEUES
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
 from lumen.lint import check_files
