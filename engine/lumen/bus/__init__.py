@@ -1,4 +1,4 @@
-"""Messages by topic: the buses behind `lumen.ports.Bus`, to be had from `lumen.bus.connect`.
+"""Messages by topic: the buses behind `lumen.ports.Bus`, from `lumen.bus.connect`; for modules, `lumen.bus.join`.
 
     memory.py         the embedded bus, in this process
     local/            the embedded bus of another process of this machine: a server, its clients
@@ -19,10 +19,14 @@ Each name is imported when it is first used. `__init__.pyi` has the same names f
 
 from lumen.upkeep.lazy_names import lazy
 
-__all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
+__all__ = ["Bus", "BusError", "JoinedModule", "Message", "Refused", "connect", "join"]
 
 _HOMES = {
     "lumen.standalone.bus": ("connect",),
+    "lumen.run.joining": (
+        "JoinedModule",
+        "join",
+    ),
     "lumen.errors": (
         "BusError",
         "Refused",

@@ -3,6 +3,7 @@
 import argparse
 import json
 import os
+import shutil
 import sys
 import threading
 from collections.abc import Iterable, Iterator
@@ -18,6 +19,7 @@ from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
 from lumen.feature import owner, table
+from lumen.language.modules import own_modules
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
 from lumen.lint import check_files
@@ -111,6 +113,7 @@ def _broker(opened: Probe, url: str, project: Project | None) -> Iterator[Findin
             attendance = RobotAttendance(bus, project)
             yield from _life(bus, project)
             yield from _obeying(probe, attendance, project)
+            yield from _modules(attendance, project)
         yield from _served(probe, project)
         faults = list(probe.misdeclared())
         yield from (Finding("dead letters", "error", fault) for fault in faults)
@@ -128,7 +131,9 @@ def _other(options: argparse.Namespace, url: str, project: Project | None) -> It
         if project is None:
             yield Finding("project", "error", "its saved files have errors: run `lumen lint`")
         else:
+            attendance = RobotAttendance(bus, project)
             yield from _life(bus, project)
+            yield from _modules(attendance, project)
 
 
 def _permissions(probe: Probe, project: Project) -> Iterator[Finding]:
@@ -184,6 +189,28 @@ def _obeying(probe: Probe, attendance: RobotAttendance, project: Project) -> Ite
         taken = f"a process receives `{COMMAND_ROUTE}`"
         text = f"{taken}, but {project.robot} shows no sign of life: end that process and start it again"
         yield Finding("robot", "warning", text)
+
+
+def _modules(attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
+    """Whether the project's own modules show signs of life, and can be started."""
+    own = own_modules(project.modules)
+    lacking = attendance.lacking(own) if own else set[str]()
+    for name, module in own.items():
+        program = module.command[0]
+        if name not in lacking:
+            yield Finding("modules", "ok", f"`{name}` shows signs of life")
+        elif module.here and not _found(program, project):
+            yield Finding("modules", "error", f"`{name}` can't be started: there is no program `{program}`")
+        else:
+            hint = "`lumen status` prints why" if module.here else f"start it: {' '.join(module.command)}"
+            yield Finding("modules", "warning", f"`{name}` shows no sign of life: {hint}")
+
+
+def _found(program: str, project: Project) -> bool:
+    if os.path.basename(program) != program:
+        program = os.path.join(project.root, program)
+    path = os.pathsep.join((os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)))
+    return shutil.which(program, path=path) is not None
 
 
 def _served(probe: Probe, project: Project) -> Iterator[Finding]:

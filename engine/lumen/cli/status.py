@@ -102,6 +102,9 @@ def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
         yield "battery", f"{status['battery']} %"
     if ears := status["ears"]:
         yield "ears", EARS.get(ears["because"], f"{'listen' if ears['listening'] else 'deaf'}: {ears['because']}")
+    for module in status.get("modules", ()):
+        reason = f": {module['reason']}" if module["reason"] else ""
+        yield "module", f"{module['module']} is {module['state']} since {_ago(module['since'], now)}{reason}"
     for timer in status["timers"]:
         yield "timer", f"{timer['event']}: due {_ahead(timer['due'], now)}"
     if status["stopped"]:

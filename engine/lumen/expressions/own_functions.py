@@ -50,7 +50,7 @@ def called(tree: ExpressionNode, functions: OwnFunctions) -> list[FunctionCall]:
 
 
 def expanded(source: str, functions: OwnFunctions) -> str:
-    """Return the source with each call of these functions replaced; the source itself if there is none.
+    """Return the source with each call of these functions replaced; without a call, the same source.
 
     Raises BrokenFunctionError for a call of a broken function, ExpressionError if the result is longer or deeper than
     an expression may be. The source must be sound: each call has the right number of arguments.
@@ -111,7 +111,7 @@ def _too_large(call: FunctionCall) -> ExpressionError:
 
 
 def with_arguments(body: ExpressionNode, arguments: Mapping[str, ExpressionNode]) -> ExpressionNode:
-    """Return the tree with each name of an argument replaced by what is passed for it."""
+    """Return the tree with each name of an argument replaced by the value of that name."""
     if isinstance(body, Identifier):
         return arguments.get(body.name, body)
     return rebuilt(body, lambda child: with_arguments(child, arguments))

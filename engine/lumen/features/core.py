@@ -25,6 +25,14 @@ FEATURE = Feature(
         PartRow("typed visitor", Phase.VISIT, TYPED, "whole option:greeting"),
         PartRow("modules", Phase.MODULES, f"{MAKING}.modules:modules", "option:modules", claimed=True),
         PartRow(
+            "own modules",
+            Phase.MODULES,
+            f"{MAKING}.modules:own_modules",
+            "brain option:modules",
+            after="modules",
+            claimed=True,
+        ),
+        PartRow(
             "troubles",
             Phase.MODULES,
             f"{MAKING}.modules:troubles",
@@ -50,6 +58,7 @@ FEATURE = Feature(
         "lumen.lint.events:check",
         "lumen.lint.published_fields:check",
         "lumen.lint.routes:check",
+        "lumen.lint.own_modules:check",
         "lumen.lint.house:check",
         "lumen.lint.shared:check",
         "lumen.lint.speech:check",

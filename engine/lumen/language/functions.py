@@ -18,7 +18,7 @@ class FunctionExample:
 
 @dataclass(frozen=True, slots=True)
 class FunctionDefinition:
-    """What a file of functions/ says.
+    """The content of a file of functions/.
 
     `parameters` maps each argument to the kinds of values that it accepts, such as `("text", "number")`, in the order
     of a call; `returns` are the kinds that the value can have. `description` maps languages (`""` for any) to texts.
@@ -39,6 +39,6 @@ class FunctionDefinition:
         return f"{self.name}({', '.join(self.parameters)})"
 
     def described(self, language: str) -> str:
-        """Return the description in a language, else in English or the first one; empty if there is none."""
+        """Return the description in a language, else in English or the first one; empty without texts."""
         texts = self.description
         return texts.get(language) or texts.get("") or texts.get("en") or next(iter(texts.values()), "")

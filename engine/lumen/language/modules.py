@@ -15,10 +15,36 @@ VISITOR_KEY = "visitor"
 
 @dataclass(frozen=True, slots=True)
 class ModuleSettings:
-    """What `lumen.yaml` says of a module: whether `lumen run` has it inside (`here`), and its own options."""
+    """The settings of a module in lumen.yaml: whether `lumen run` has it inside (`here`), and its own options.
+
+    A module of the project's own is a program: the `command` that starts it, and the `health`, the longest time
+    between two of its signs of life [s], 0 if it gives none.
+    """
 
     here: bool = False
     options: Mapping[str, Any] = field(default_factory=dict)
+    command: tuple[str, ...] = ()
+    health: float = 0.0
+
+    @property
+    def own(self) -> bool:
+        """Whether it is a program of the project's own."""
+        return bool(self.command)
+
+
+def own_modules(modules: Mapping[str, ModuleSettings]) -> dict[str, ModuleSettings]:
+    """Return the modules that are programs of the project's own."""
+    return {name: module for name, module in modules.items() if module.own}
+
+
+def own_module_events(modules: Mapping[str, ModuleSettings]) -> dict[str, Mapping[str, object]]:
+    """Return the events of the project's own modules, each with the JSON Schema of its data."""
+    number, text = {"type": "number"}, {"type": "string"}
+    lost = {"type": "object", "properties": {"seconds": number, "reason": text}, "required": ["seconds", "reason"]}
+    found = {"type": "object", "properties": {"seconds": number}, "required": ["seconds"]}
+    return {
+        f"{name}.{what}": schema for name in own_modules(modules) for what, schema in (("lost", lost), ("found", found))
+    }
 
 
 def module_names() -> tuple[str, ...]:

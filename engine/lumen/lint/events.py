@@ -12,6 +12,7 @@ from lumen.language.diagnostics import ERROR, WARNING, Code, NodePath, did_you_m
 from lumen.language.events import robot_events
 from lumen.language.json_paths import values_in
 from lumen.language.machines import MachineDefinition, StateKind, Transition
+from lumen.language.modules import own_module_events
 from lumen.lint.endings import ending_fault
 from lumen.lint.lookups import first
 from lumen.lint.recipients import recipients, sent_to
@@ -70,7 +71,9 @@ def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
             schema = draft.messages.get(route.schema)
             found[route.event] = schema if found.get(route.event, schema) == schema else None
     pressed = {b.event: None for other in draft.behaviors.values() for s in other.states.values() for b in s.buttons}
-    return {**pressed, **controller_events(draft.controllers.values()), **robot_events(), **found, **machine.events}
+    modules = own_module_events(draft.settings.modules) if draft.settings else {}
+    steady = {**controller_events(draft.controllers.values()), **robot_events(), **modules}
+    return {**pressed, **steady, **found, **machine.events}
 
 
 def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any] | None:

@@ -45,6 +45,11 @@ def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
     `root` is the whole schema: it tells where a key belongs that stands in the wrong place.
     """
     keyword, path = error.validator, tuple(error.absolute_path)
+    if meant := _misspelt_entry(error, path, root):
+        if keyword == "required":
+            here, message = path, f"`{path[-1]}` is not a key of {node(path[:-1])}"
+            yield Complaint(UNKNOWN_KEY, here, message, mean(path[-1], meant), path[:-1], here, True, suggestion=meant)
+        return
     if keyword in ("anyOf", "oneOf") and error.context:
         for inner in _likeliest(error.context):
             yield from complaints(inner, root)
@@ -60,6 +65,19 @@ def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
         yield _verbs(error, path)
     else:
         yield _wrong(error, path)
+
+
+def _misspelt_entry(error: Error, path: NodePath, root: Any) -> str:
+    """Return the entry that was probably meant by one that lacks a key which every entry of another name needs.
+
+    `modules` of lumen.yaml has entries with names of their own, and any others, which need a `command`.
+    """
+    section = root.get("properties", {}).get(path[0]) if isinstance(root, Mapping) and len(path) == 2 else None
+    known = section.get("properties", ()) if isinstance(section, Mapping) else ()
+    if not known or path[1] in known or not isinstance(error.instance, Mapping):
+        return ""
+    lacks = any(key not in error.instance for key in error.schema.get("required", ()))
+    return nearest(path[1], known) if lacks else ""
 
 
 def _spared(path: NodePath) -> NodePath | None:

@@ -38,7 +38,7 @@ _EXPRESSION: NodePath = ("expression",)
 
 @dataclass(frozen=True)
 class FunctionFile:
-    """What one file says, before the other functions are known; `tree` is None if its expression can't be read."""
+    """The content of one file, before the other functions are known; `tree` is None for an unreadable expression."""
 
     name: str
     parameters: Mapping[str, tuple[str, ...]]
@@ -49,7 +49,7 @@ class FunctionFile:
 
 
 def build_function(data: Any, report: DocumentReport, *, name: str) -> FunctionFile | None:
-    """What the data of `functions/NAME.yaml` holds, None if it has no expression."""
+    """Return the function in the data of `functions/NAME.yaml`, or None without an expression."""
     if not isinstance(data, Mapping) or not isinstance(data.get("expression"), str):
         return None
     _check_name(name, report)
@@ -78,7 +78,7 @@ def joined(
 ) -> tuple[dict[str, FunctionDefinition], dict[str, OwnFunction | None]]:
     """Return the sound functions, and all of them as expressions see them.
 
-    What is wrong is reported in the function's file. `names` are all files, those that can't be read among them.
+    Faults are reported in the function's file. `names` are all files, also those that can't be read.
     """
     return _Joining(files, names).join()
 
@@ -219,7 +219,7 @@ def _examples(
 def _misfits(
     given: Mapping[str, Any], parameters: Mapping[str, tuple[str, ...]], where: NodePath
 ) -> Iterator[tuple[NodePath, str, str, bool]]:
-    """What is wrong with the arguments of an example: path, message, hint, and whether the key is wrong."""
+    """Yield each fault of the arguments of an example: path, message, hint, and whether the key is wrong."""
     unknown = [name for name in given if name not in parameters]
     for name in unknown:
         hint = did_you_mean(name, parameters, "the arguments are") if parameters else "the function has no arguments"

@@ -96,7 +96,7 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
         stage=_stage(data, report),
         bus=data.get("bus", Settings.bus),
         patience=_patience(data, report),
-        modules={name: _module(name, row) for name, row in modules.items()},
+        modules={name: _module(name, row, report) for name, row in modules.items()},
         stand=own.stand,
         aliases=False if several else data.get("aliases"),
         sections=read_sections(data, report),
@@ -129,10 +129,13 @@ def other_vocabulary(settings: Settings, report: DocumentReport) -> Diagnostic |
     return None
 
 
-def _module(name: str, row: Mapping[str, Any]) -> ModuleSettings:
+def _module(name: str, row: Mapping[str, Any], report: DocumentReport) -> ModuleSettings:
     """Return the settings of a module; a module with a section of its own has its options there."""
-    options = {} if is_section(f"modules.{name}") else {key: value for key, value in row.items() if key != "here"}
-    return ModuleSettings(row.get("here", False), options)
+    here = row.get("here", False)
+    if "command" in row:
+        health = duration(row, "health", report, ("modules", name)) if "health" in row else None
+        return ModuleSettings(here, {}, tuple(map(str, row["command"])), health or 0.0)
+    return ModuleSettings(here, {} if is_section(f"modules.{name}") else {k: v for k, v in row.items() if k != "here"})
 
 
 def _patience(data: Mapping[str, Any], report: DocumentReport) -> float:

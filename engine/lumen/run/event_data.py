@@ -7,6 +7,7 @@ from lumen.bus.checking import SchemaCheck
 from lumen.insight.explaining.names import machines_in
 from lumen.language.controller_events import controller_events
 from lumen.language.events import robot_events
+from lumen.language.modules import own_module_events
 from lumen.language.projects import Project
 
 
@@ -32,8 +33,8 @@ def _schemas(project: Project, name: str) -> Iterator[Mapping[str, Any]]:
     """The JSON Schemas of that event's data; several where behaviours that run within another declare it, too."""
     own = [machine.events[name] for _, machine in machines_in(project.machine) if name in machine.events]
     routed = [project.messages.get(route.schema) for route in project.routes.values() if route.event == name]
-    by_itself = robot_events().get(name) or controller_events(project.controllers.values()).get(name)
-    for schema in own or routed or [by_itself]:
+    steady = {**controller_events(project.controllers.values()), **own_module_events(project.modules), **robot_events()}
+    for schema in own or routed or [steady.get(name)]:
         if isinstance(schema, Mapping):
             yield schema
 

@@ -13,6 +13,7 @@ from lumen.language.controller_events import controller_events
 from lumen.language.diagnostics import Place
 from lumen.language.events import robot_events
 from lumen.language.machines import MachineDefinition
+from lumen.language.modules import own_module_events
 from lumen.language.projects import Project
 from lumen.run.coverage import Gap, described
 from lumen.run.story_time import story_epoch
@@ -86,7 +87,8 @@ def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
     """The events that come to a behaviour from outside, each with the JSON Schema of its data, None for any."""
     routes = {r.event: project.messages.get(r.schema) for r in project.routes.values() if r.event}
     pressed = {button.event: None for state in machine.states.values() for button in state.buttons}
-    return {**controller_events(project.controllers.values()), **robot_events(), **routes, **pressed, **machine.events}
+    steady = {**controller_events(project.controllers.values()), **robot_events(), **own_module_events(project.modules)}
+    return {**steady, **routes, **pressed, **machine.events}
 
 
 def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:

@@ -134,7 +134,7 @@ class Services:
 
     def _presence(self) -> Presence:
         plan = self.plan
-        here = tuple(name for name, said in plan.project.modules.items() if said.here)
+        here = tuple(name for name, said in plan.project.modules.items() if said.here and not said.own)
         roles = plan.roles or (ROBOT_PART, BRAIN, MOTION, *here)
         return presence_of(plan.project, self.bus, roles, self._said)
 

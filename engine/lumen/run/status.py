@@ -1,6 +1,6 @@
 """How an exhibition is, in one object: for `lumen status`, and for whoever else shows it."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
 from typing import Any, NamedTuple
 
@@ -33,12 +33,13 @@ def status_of(
     realtime: float = 1.0,
     reloaded: LastReload | None = None,
     ears: Mapping[str, Any] | None = None,
+    modules: Sequence[Mapping[str, Any]] = (),
 ) -> dict[str, Any]:
     """The status of an exhibition whose states were last changed at `since` [s]; JSON data.
 
     Times are ISO 8601 in UTC, on the exhibition's clock, but those of stops and reloads, which people make. What is not
     known is None: the `visitor` who has not said a name, the `battery` of a robot that has none, the `ears` where there
-    are none.
+    are none. `modules` are those of the project's own, absent if it has none.
     """
     return {
         "robot": project.robot,
@@ -56,6 +57,7 @@ def status_of(
         "realtime": realtime,
         "bundle": project.hash,
         "last_reload": _reload(reloaded) if reloaded else None,
+        **({"modules": [*modules]} if modules else {}),
     }
 
 

@@ -15,6 +15,7 @@ from lumen.features.editor.schemas import keys_at, values_at
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
 from lumen.language.diagnostics import NodePath
 from lumen.language.events import robot_events
+from lumen.language.modules import own_module_events
 from lumen.language.routes import Route
 from lumen.lint.events import BUILT_IN_FAMILIES, hears
 from lumen.project.lending import shipped_message
@@ -234,6 +235,7 @@ class _Completion:
         yield from ((name, "") for name in names)
         if waits:
             yield from ((name, "the robot's") for name in robot_events() if name not in names)
+            yield from ((name, "of a module") for name in self.module_events())
             routed = (route for route in self.routes().values() if route.event and route.event not in names)
             yield from ((route.event, f"from the route `{route.name}`") for route in routed)
             yield from ((f.removesuffix(".") + ".*", "the engine's") for f in BUILT_IN_FAMILIES)
@@ -303,8 +305,14 @@ class _Completion:
         own = self.index.documents.get(self.file)
         yield from ((route.event, self.schema(name)) for name, route in self.routes().items())
         yield from robot_events().items()
+        yield from self.module_events().items()
         events = own.data.get("events") if own and isinstance(own.data, dict) else None
         yield from events.items() if isinstance(events, dict) else ()
+
+    def module_events(self) -> Mapping[str, Any]:
+        """The events of the project's own modules."""
+        settings = self.analysis.settings.settings
+        return own_module_events(settings.modules) if settings else {}
 
     def routes(self) -> Mapping[str, Route]:
         """The project's routes, and those that come with Lumen and that it does not remove."""

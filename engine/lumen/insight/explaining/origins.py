@@ -7,6 +7,7 @@ from lumen.insight.explaining.history import RecordedStep
 from lumen.insight.explaining.links import LinkKind
 from lumen.language.causes import Cause
 from lumen.language.events import Event, robot_events
+from lumen.language.modules import own_module_events
 
 
 class EventOrigin(NamedTuple):
@@ -32,6 +33,8 @@ def origin(one: RecordedStep, event: Event) -> EventOrigin | None:
         return EventOrigin("message", f"a message on {key}", "", {"key": key})
     if event.name in robot_events():
         return EventOrigin("event", "the robot detected it")
+    if project and event.name in own_module_events(project.modules):
+        return EventOrigin("event", "the exhibition watches this module")
     return None
 
 

@@ -3,10 +3,13 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from lumen.bus.addresses import within_process
 from lumen.errors import LumenError
 from lumen.language.modules import EYES, module_names
+from lumen.language.modules import own_modules as own_modules_of
 from lumen.run.parts.module import ModulePart
 from lumen.run.parts.module_troubles import ModuleTroublesPart
+from lumen.run.parts.own_module import OwnModulePart
 from lumen.run.parts.part import Part
 from lumen.run.parts.robot import RobotPart
 from lumen.run.presence import BRAIN, MOTION, ROBOT_PART
@@ -26,12 +29,25 @@ class ModulesPlan:
 
 def modules(services: Services) -> list[Part]:
     """Make the modules that `lumen.yaml` wants here, or those that this process is."""
-    here = [name for name, said in services.project.modules.items() if said.here]
+    here = [name for name, said in services.project.modules.items() if said.here and not said.own]
     wanted = [role for role in services.plan.roles if role in module_names()] if services.plan.roles else here
     begun = [part for name in wanted if (part := _module(services, name))]
     if not services.plan.roles:
         _share(services, [part.name for part in begun])
     return begun
+
+
+def own_modules(services: Services) -> list[OwnModulePart]:
+    """Make the parts that watch the programs of the project's own; a story is played without them."""
+    if services.plan.story is not None:
+        return []
+    url = "" if within_process(services.plan.url) else services.plan.url
+    return [
+        OwnModulePart(
+            name, services.project, services.bus, services.narrator.line, services.behavior.loop.happen, bus_url=url
+        )
+        for name in own_modules_of(services.project.modules)
+    ]
 
 
 def troubles(services: Services) -> ModuleTroublesPart:

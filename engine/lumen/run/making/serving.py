@@ -7,6 +7,7 @@ from lumen.run.forgetting.added import FeatureForgetter
 from lumen.run.parts.forgetting import ForgettingPart
 from lumen.run.parts.hosted_robot import HostedRobotPart, stopped_there
 from lumen.run.parts.operating import OperatorPart, RunState
+from lumen.run.parts.own_module import statuses as own_module_statuses
 from lumen.run.parts.robot import RobotPart
 from lumen.run.recovery.recording import record_inputs
 from lumen.run.recovery.run_directory import RunDirectory
@@ -69,7 +70,9 @@ def operator(services: Services) -> OperatorPart:
         services.narrator,
         services[JournalWriter],
         services[RunRecords],
-        RunState(stopped, lambda: services.node.pace.realtime, reloaded),
+        RunState(
+            stopped, lambda: services.node.pace.realtime, reloaded, lambda: own_module_statuses(services.node.parts)
+        ),
         marking=marking,
         kept=directory.home.folder if directory and directory.home and services.lasts else None,
         needs=services.needs,

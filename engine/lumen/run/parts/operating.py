@@ -64,11 +64,12 @@ Responder = Callable[[Message, float], dict[str, Any]]
 
 @dataclass(frozen=True, slots=True)
 class RunState:
-    """The state of the run: the person who stopped the robot, the share of real time that is kept, the last reload."""
+    """The state of the run: who stopped the robot, the share of real time, the last reload, the own modules."""
 
     stopped: Callable[[], StoppedBy | None]
     realtime: Callable[[], float]
     reloaded: Callable[[], LastReload | None] = lambda: None
+    modules: Callable[[], Sequence[Mapping[str, Any]]] = tuple
 
 
 class OperatorPart(Part, Observer):
@@ -204,6 +205,7 @@ class OperatorPart(Part, Observer):
             realtime=self._run.realtime(),
             reloaded=self._run.reloaded(),
             ears=self._ears,
+            modules=self._run.modules(),
         )
 
     def _moment(self) -> PresentMoment:

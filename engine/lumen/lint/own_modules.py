@@ -1,0 +1,52 @@
+"""The project's own modules: programs that lumen.yaml starts or waits for."""
+
+from lumen.language.diagnostics import ERROR, WARNING, Code
+from lumen.language.modules import own_modules
+from lumen.lint.events import BUILT_IN_FAMILIES
+from lumen.project.draft import ProjectDraft
+from lumen.project.files import on_disk
+
+BAD_MODULE = Code("bad-module", "routes", ERROR, "a module of the project's own can't have this name or setting")
+MISSING_PROGRAM = Code("missing-program", "routes", WARNING, "the program of a module is not in the project")
+
+_PARTS = ("robot", "brain", "motion", "visitor")
+_SCRIPTS = (".py", ".js", ".mjs", ".ts", ".sh", ".rb", ".pl", ".lua", ".jar")
+SHORTEST_HEALTH = 1.0
+"""The shortest time between two signs of life that can be watched [s]: programs send two a second."""
+
+
+def check(draft: ProjectDraft) -> None:
+    """Report names that other events have, signs of life that come too often, and programs that are not there."""
+    if draft.settings is None or draft.main is None:
+        return
+    families = {family.rstrip(".") for family in BUILT_IN_FAMILIES} | {"battery", "motors", "head"}
+    for name, module in own_modules(draft.settings.modules).items():
+        where = ("modules", name)
+        if name in _PARTS or name in families:
+            message = f"a module can't be called `{name}`: Lumen has events that begin with `{name}.`"
+            draft.main(BAD_MODULE, where, message, "choose another name", key=True)
+        elif not name.replace("-", "_").isidentifier():
+            message = f"a module can't be called `{name}`: its events begin with its name"
+            hint = "write a name of letters, digits, `_` and `-` that begins with a letter"
+            draft.main(BAD_MODULE, where, message, hint, key=True)
+        if 0 < module.health < SHORTEST_HEALTH:
+            message = f"`health` of `{name}` is {module.health:g} s, but signs of life come twice a second at most"
+            draft.main(BAD_MODULE, (*where, "health"), message, "write at least `1s`; `5s` is usual")
+        _program(draft, name, module.command)
+
+
+def _program(draft: ProjectDraft, name: str, command: tuple[str, ...]) -> None:
+    """Report a script or a program with a path that the project does not have."""
+    if draft.root is None or draft.main is None:
+        return
+    for i, word in enumerate(command):
+        named = "/" in word if i == 0 else word.endswith(_SCRIPTS) and not word.startswith("-")
+        if not named or word.startswith("/"):
+            continue
+        path = on_disk(draft.root, word)
+        draft.looks.at(path)
+        if not path.exists():
+            message = f"the project has no file `{word}`, which the module `{name}` runs"
+            hint = f"write the program, or correct the path; `lumen new module {name}` writes one"
+            draft.main(MISSING_PROGRAM, ("modules", name, "command", i), message, hint)
+            return

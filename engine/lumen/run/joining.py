@@ -1,0 +1,131 @@
+"""A program as a module of an exhibition: it reaches the bus, and sends signs of life."""
+
+import os
+import platform
+import signal
+import threading
+import time
+import uuid
+from contextlib import suppress
+from pathlib import Path
+from types import FrameType, TracebackType
+from typing import Any, Self
+
+from lumen.errors import BusError, BusUnreachableError, UsageError
+from lumen.language.routing_keys import default_key
+from lumen.ports import Bus, MessageHandler
+from lumen.project.building import main_settings
+from lumen.run.parts.own_module import BUS_VARIABLE, MODULE_VARIABLE, PROJECT_VARIABLE, ROBOT_VARIABLE
+from lumen.run.presence import HERE, LEAVES, PRESENCE_PERIOD, PRESENCE_ROUTE, PRESENCE_TTL
+from lumen.run.reaching import reach_exhibition
+from lumen.standalone.bus import connect
+from lumen.upkeep.arguments import need_text
+
+REACH_TIMEOUT = 30.0
+"""The time that an exhibition may need until its bus can be reached [s]."""
+REACH_PAUSE = 0.2
+
+
+class JoinedModule:
+    """A program that takes part in an exhibition under a name; `join` makes it.
+
+    `bus` is the exhibition's bus, `robot` the name of its robot. Use it in a `with` statement, or call `close`.
+    """
+
+    def __init__(self, name: str, robot: str, bus: Bus, project: Path | None) -> None:
+        self.name, self.robot, self.bus = name, robot, bus
+        settings = main_settings(project, robot) if project else None
+        self._routes = settings.routes if settings else {}
+        self._session, self._next = uuid.uuid4().hex[:12], 0.0
+        self._ending = threading.Event()
+        if threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGTERM, self._end)
+
+    def key(self, route: str) -> str:
+        """Return the routing key of a route of the project, or of one that comes with Lumen."""
+        row = self._routes.get(route)
+        return row.key_for(self.robot) if row else default_key(route, self.robot)
+
+    def publish(self, route: str, body: Any) -> None:
+        """Send a body on a route. Raises BusError if the bus is gone or refuses it."""
+        self.bus.publish(self.key(route), body)
+
+    def subscribe(self, route: str, handler: MessageHandler) -> None:
+        """Call `handler` with each message on a route, on the thread of the bus."""
+        self.bus.subscribe(self.key(route), handler)
+
+    def alive(self) -> None:
+        """Send a sign of life, at most two a second; `wait` does it too. Raises BusError if the bus is gone."""
+        if time.monotonic() >= self._next:
+            self._next = time.monotonic() + PRESENCE_PERIOD
+            self._say(HERE)
+
+    def wait(self, seconds: float) -> bool:
+        """Wait, sending signs of life; return False as soon as the exhibition ends this program, or its bus is gone."""
+        until = time.monotonic() + seconds
+        while not self._ending.is_set():
+            try:
+                self.alive()
+            except BusError:
+                return False
+            left = until - time.monotonic()
+            if left <= 0:
+                return True
+            self._ending.wait(min(left, PRESENCE_PERIOD))
+        return False
+
+    def close(self) -> None:
+        """Say that the program leaves, and disconnect; harmless when repeated."""
+        self._ending.set()
+        with suppress(BusError):
+            self._say(LEAVES)
+        self.bus.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+    def _end(self, number: int, frame: FrameType | None) -> None:
+        self._ending.set()
+
+    def _say(self, state: str) -> None:
+        body = {
+            "robot": self.robot,
+            "parts": [self.name],
+            "session": self._session,
+            "state": state,
+            "host": platform.node(),
+            "process": os.getpid(),
+        }
+        self.bus.publish(self.key(PRESENCE_ROUTE), body, ttl=PRESENCE_TTL)
+
+
+def join(name: str = "", *, robot: str = "", bus: str = "", project: str = "") -> JoinedModule:
+    """Take part in a running exhibition as the module `name` of lumen.yaml.
+
+    A program that `lumen run` starts needs no arguments. One that runs elsewhere passes its name, the name of the
+    robot, and the address of the bus, or for an exhibition on the same machine the folder of the project. Raises
+    UsageError if the name is missing, BusError if the bus can't be reached within 30 s.
+    """
+    name = name or os.environ.get(MODULE_VARIABLE, "")
+    if not name:
+        raise UsageError('a module needs its name in lumen.yaml: write `join("mood")`')
+    need_text(name, "the name of a module")
+    bus, project = bus or os.environ.get(BUS_VARIABLE, ""), project or os.environ.get(PROJECT_VARIABLE, "")
+    robot = robot or os.environ.get(ROBOT_VARIABLE, "")
+    folder = Path(project) if project else None
+    if bus:
+        settings = None if robot or folder is None else main_settings(folder)
+        return JoinedModule(name, robot or (settings.robot if settings else "NAO"), connect(bus, sender=name), folder)
+    until = time.monotonic() + REACH_TIMEOUT
+    while True:
+        try:
+            reached = reach_exhibition(project or None, None)
+        except BusUnreachableError:
+            if time.monotonic() > until:
+                raise
+            time.sleep(REACH_PAUSE)
+        else:
+            return JoinedModule(name, robot or reached.robot, reached.bus, folder)

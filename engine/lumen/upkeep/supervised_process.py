@@ -1,0 +1,188 @@
+"""A program of the user beside an exhibition: started, restarted with pauses, and ended with all that it has started.
+
+The program is in a process group of its own, together with a shell that waits for the end of a pipe from this process.
+If this process is gone, however it ended, the shell kills the group.
+"""
+
+import os
+import shutil
+import signal
+import subprocess
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import IO
+
+from lumen.upkeep.backoff import Backoff
+from lumen.upkeep.threads import WatchedThread
+
+FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
+"""The pauses before a program is started again [s]."""
+STEADY = 60.0
+"""A program that ran for so long begins again with the first pause [s]."""
+END_TIMEOUT = 2.0
+"""The time that a program has to end by itself after SIGTERM [s]."""
+MAX_LINES, MAX_LINE = 200, 4_000
+"""Lines of a program that wait to be printed, and bytes of a line; what is more is counted or cut."""
+
+_GUARD = """
+exec 3<&0
+( read -r _ <&3; kill -KILL 0 ) 2>/dev/null 1>&2 &
+exec "$@" 3<&- </dev/null
+"""
+"""The shell: a child waits for the end of standard input, and the shell itself becomes the program."""
+
+
+class SupervisedProcess:
+    """Keeps a program running; `tick` starts it, notices its end and hands on what it prints.
+
+    `command` is run in `folder`. All methods are called on one thread.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        command: Sequence[str],
+        folder: Path,
+        environment: Mapping[str, str],
+        *,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.name, self.command, self._folder, self._environment = name, tuple(command), folder, dict(environment)
+        self.began = 0.0
+        """When it was started last, by `clock` [s]."""
+        self._clock, self._next = clock, 0.0
+        self._backoff = Backoff(FIRST_PAUSE, LONGEST_PAUSE)
+        self._process: subprocess.Popen[bytes] | None = None
+        self._reader: WatchedThread | None = None
+        self._lines: deque[str] = deque()
+        self._left_out, self._lock, self._closed = 0, threading.Lock(), False
+        self._last = ""
+
+    @property
+    def running(self) -> bool:
+        return self._process is not None and self._process.poll() is None
+
+    @property
+    def next(self) -> float:
+        """When it will be started, by the clock [s]; meaningless while it runs."""
+        return self._next
+
+    def tick(self) -> str:
+        """Start it if it is time to; return why it has ended since the last call, empty if it has not."""
+        now = self._clock()
+        if self._closed or self.running:
+            return ""
+        if self._process:
+            return self._ended(self._process, now)
+        return self._start(now) if now >= self._next else ""
+
+    def lines(self) -> list[str]:
+        """Return what it has printed since the last call, with a line about what was left out."""
+        with self._lock:
+            found, left_out, self._left_out = list(self._lines), self._left_out, 0
+            self._lines.clear()
+        return [*found, *([f"{left_out:,} more lines are left out"] if left_out else [])]
+
+    def restart(self) -> None:
+        """Kill it; it is started again after a pause."""
+        if self._process:
+            _kill(self._process)
+
+    def close(self) -> None:
+        """End it and all that it has started: SIGTERM, and SIGKILL after END_TIMEOUT. Harmless when repeated."""
+        self._closed = True
+        if (process := self._process) is None:
+            return
+        self._process = None
+        if process.poll() is None:
+            _signal(process, signal.SIGTERM)
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(END_TIMEOUT)
+        _kill(process)
+        self._release(process)
+
+    def _start(self, now: float) -> str:
+        command = [self.command[0], *self.command[1:]]
+        if os.path.basename(command[0]) != command[0]:
+            command[0] = str(self._folder / command[0])
+        if shutil.which(command[0], path=self._environment.get("PATH")) is None:
+            self._next = now + self._backoff.next()
+            return f"can't be started: there is no program `{self.command[0]}`"
+        guarded = ["/bin/sh", "-c", _GUARD, self.name, *command] if os.name == "posix" else command
+        self.began = now
+        try:
+            self._process = subprocess.Popen(
+                guarded,
+                cwd=self._folder,
+                env=self._environment,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+        except (OSError, ValueError) as error:
+            self._next = now + self._backoff.next()
+            return f"can't be started: {getattr(error, 'strerror', None) or error}"
+        output = self._process.stdout
+        assert output
+        self._reader = WatchedThread(f"lumen-module-{self.name}", lambda: self._read(output))
+        self._reader.start()
+        return ""
+
+    def _ended(self, process: "subprocess.Popen[bytes]", now: float) -> str:
+        """Note the end of the process, and end what it has left behind."""
+        self._process = None
+        _kill(process)
+        self._release(process)
+        if now - self.began >= STEADY:
+            self._backoff.reset()
+        self._next = now + self._backoff.next()
+        with self._lock:
+            last = f": {self._last}" if self._last and process.returncode else ""
+        return f"{_ending(process.returncode)}{last}"
+
+    def _read(self, output: IO[bytes]) -> None:
+        with suppress(OSError, ValueError):
+            while part := output.readline(MAX_LINE):
+                text = part.decode("utf-8", "replace").rstrip()
+                if not text:
+                    continue
+                with self._lock:
+                    self._last = text[:200]
+                    if len(self._lines) < MAX_LINES:
+                        self._lines.append(text[:500])
+                    else:
+                        self._left_out += 1
+
+    def _release(self, process: "subprocess.Popen[bytes]") -> None:
+        """Close the pipes, once their reader has read to the end."""
+        process.wait()
+        if self._reader:
+            self._reader.join(END_TIMEOUT)
+            self._reader = None
+        for pipe in (process.stdin, process.stdout):
+            if pipe:
+                with suppress(OSError):
+                    pipe.close()
+
+
+def _ending(code: int) -> str:
+    if code >= 0:
+        return f"ended with exit code {code}"
+    with suppress(ValueError):
+        return f"was ended by {signal.Signals(-code).name}"
+    return f"was ended by signal {-code}"
+
+
+def _kill(process: "subprocess.Popen[bytes]") -> None:
+    """Kill the process and its group, also what is left of a group whose first process has ended."""
+    _signal(process, signal.SIGKILL)
+
+
+def _signal(process: "subprocess.Popen[bytes]", number: signal.Signals) -> None:
+    with suppress(OSError):
+        os.killpg(process.pid, number) if hasattr(os, "killpg") else process.kill()

@@ -1,0 +1,299 @@
+"""Modules of the project's own: watched by their signs of life, started, restarted and ended for certain."""
+
+import os
+import re
+import shutil
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from lumen.bus.memory import MemoryBus
+from lumen.language.events import Event
+from lumen.language.modules import ModuleSettings
+from lumen.language.projects import Project
+from lumen.project import load
+from lumen.run.parts.own_module import OwnModulePart
+from lumen.upkeep.supervised_process import FIRST_PAUSE, MAX_LINES, SupervisedProcess
+from tests import ROOT
+from tests.guarded import PIPE, STDOUT, Guarded
+from tests.waiting import until
+
+pytestmark = pytest.mark.process
+
+
+class Time:
+    """A clock that a test sets."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def alive(pid: int) -> bool:
+    """Whether a process runs; one that has ended and was not waited for does not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+# The process
+
+
+@pytest.fixture
+def time() -> Time:
+    return Time()
+
+
+@pytest.fixture
+def processes(tmp_path: Path, time: Time) -> Iterator["Starter"]:
+    starter = Starter(tmp_path, time)
+    yield starter
+    starter.close()
+
+
+class Starter:
+    """Makes processes that end with the test."""
+
+    def __init__(self, folder: Path, time: Time) -> None:
+        self.folder, self.time = folder, time
+        self.made: list[SupervisedProcess] = []
+
+    def __call__(self, *command: str) -> SupervisedProcess:
+        self.made.append(SupervisedProcess("mood", command, self.folder, dict(os.environ), clock=self.time))
+        return self.made[-1]
+
+    def close(self) -> None:
+        for process in self.made:
+            process.close()
+
+
+def ended(process: SupervisedProcess) -> str:
+    reasons: list[str] = []
+    until(lambda: reasons.append(process.tick()) or reasons[-1])
+    return reasons[-1]
+
+
+def printed(process: SupervisedProcess, count: int) -> list[str]:
+    lines: list[str] = []
+
+    def enough() -> bool:
+        lines.extend(process.lines())
+        return len(lines) >= count
+
+    until(enough)
+    return lines
+
+
+def test_a_program_is_started_again_with_growing_pauses(processes: "Starter", time: Time) -> None:
+    process = processes("sh", "-c", "echo a line; echo the reason >&2; exit 3")
+    pauses = []
+    for _ in range(4):
+        assert process.tick() == ""
+        assert ended(process) == "ended with exit code 3: the reason"
+        pauses.append(process.next - time.now)
+        assert process.tick() == ""
+        assert not process.running
+        time.now = process.next
+    assert pauses == [FIRST_PAUSE, 2 * FIRST_PAUSE, 4 * FIRST_PAUSE, 8 * FIRST_PAUSE]
+    assert process.lines() == ["a line", "the reason"] * 4
+
+
+def test_a_program_that_ran_long_begins_with_the_first_pause(processes: "Starter", time: Time) -> None:
+    process = processes("sh", "-c", "exit 1")
+    for _ in range(3):
+        process.tick()
+        ended(process)
+        time.now = process.next
+    process.tick()
+    until(lambda: not process.running)
+    time.now += 100.0
+    ended(process)
+    assert process.next - time.now == FIRST_PAUSE
+
+
+def test_a_program_that_is_not_there_is_told(processes: "Starter") -> None:
+    assert processes("no-such-program").tick() == "can't be started: there is no program `no-such-program`"
+    assert processes("./mood").tick() == "can't be started: there is no program `./mood`"
+
+
+def test_a_flood_of_lines_is_bounded(processes: "Starter") -> None:
+    process = processes("sh", "-c", "head -c 3000000 /dev/zero | tr '\\0' 'x'; yes | head -n 5000")
+    process.tick()
+    ended(process)
+    lines = process.lines()
+    assert len(lines) == MAX_LINES + 1
+    assert lines[-1].endswith("more lines are left out")
+    assert max(map(len, lines)) <= 500
+
+
+def test_close_ends_all_that_the_program_has_started(processes: "Starter") -> None:
+    """Even what ignores SIGTERM, and what was started in the background."""
+    process = processes("sh", "-c", "trap '' TERM; sleep 1000 & echo $$ $!; wait")
+    process.tick()
+    pids = [int(word) for word in printed(process, 1)[0].split()]
+    assert all(map(alive, pids))
+    process.close()
+    until(lambda: not any(map(alive, pids)))
+
+
+def test_the_program_ends_with_an_exhibition_that_is_killed(tmp_path: Path) -> None:
+    code = (
+        "import os, pathlib, time\n"
+        "from lumen.upkeep.supervised_process import SupervisedProcess\n"
+        "command = 'sh', '-c', 'sleep 1000 & echo $$ $!; wait'\n"
+        "process = SupervisedProcess('mood', command, pathlib.Path('.'), os.environ)\n"
+        "process.tick()\n"
+        "while not (lines := process.lines()): time.sleep(0.01)\n"
+        "print(lines[0], flush=True)\n"
+        "time.sleep(1000)\n"
+    )
+    with Guarded([sys.executable, "-c", code], stdout=PIPE, text=True, cwd=tmp_path) as exhibition:
+        assert exhibition.stdout
+        pids = [int(word) for word in exhibition.stdout.readline().split()]
+        assert all(map(alive, pids))
+        exhibition.kill()
+    until(lambda: not any(map(alive, pids)))
+
+
+# The part
+
+
+class Watched:
+    """A part without an exhibition around it."""
+
+    def __init__(self, project: Project, settings: ModuleSettings, time: Time) -> None:
+        self.project = project
+        self.bus, self.time = MemoryBus(), time
+        self.lines: list[str] = []
+        self.events: list[Event] = []
+        with_module = type(project)(**{**vars(project), "modules": {"mood": settings}})
+        self.part = OwnModulePart(
+            "mood", with_module, self.bus, lambda _, line: self.lines.append(line), self.events.append, clock=time
+        )
+        self.part.begin(0.0)
+
+    def tick(self, seconds: float = 0.0) -> list[str]:
+        """The events of a tick so much later."""
+        self.time.now += seconds
+        before = len(self.events)
+        self.part.tick(0.0, ())
+        return [event.name for event in self.events[before:]]
+
+    def says(self, state: str = "here", session: str = "a") -> None:
+        body = {"robot": self.project.robot, "parts": ["mood"], "session": session, "state": state}
+        self.bus.publish(self.project.key_of("presence"), body)
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory: pytest.TempPathFactory) -> Project:
+    root = tmp_path_factory.mktemp("hall") / "hall"
+    shutil.copytree(ROOT / "examples/minimal", root, ignore=shutil.ignore_patterns(".lumen"))
+    return load(root)
+
+
+def test_a_program_elsewhere_is_awaited_then_lost_and_found(project: Project, time: Time) -> None:
+    watched = Watched(project, ModuleSettings(command=("mood",), health=3.0), time)
+    assert watched.tick(60.0) == []
+    assert watched.part.status["state"] == "awaited"
+    watched.says()
+    assert watched.tick() == []
+    assert watched.part.status["state"] == "here"
+    assert watched.tick(3.0) == []
+    assert watched.tick(0.1) == ["mood.lost"]
+    assert watched.events[-1].data == {"seconds": 0.1, "reason": "it sent no sign of life for 3 s"}
+    assert watched.part.status["state"] == "lost"
+    assert watched.tick(60.0) == []
+    watched.says()
+    assert watched.tick() == ["mood.found"]
+    assert watched.events[-1].data == {"seconds": 60.0}
+
+
+def test_a_program_elsewhere_that_leaves_is_lost_at_once(project: Project, time: Time) -> None:
+    watched = Watched(project, ModuleSettings(command=("mood",)), time)
+    watched.says()
+    assert watched.tick() == []
+    watched.says("leaves")
+    assert watched.tick() == ["mood.lost"]
+    assert watched.events[-1].data["reason"] == "it has left"
+
+
+def test_the_signs_of_another_robots_module_do_not_count(project: Project, time: Time) -> None:
+    watched = Watched(project, ModuleSettings(command=("mood",), health=3.0), time)
+    watched.bus.publish(
+        project.key_of("presence"), {"robot": "Other", "parts": ["mood"], "session": "b", "state": "here"}
+    )
+    watched.tick()
+    assert watched.part.status["state"] == "awaited"
+
+
+def test_a_program_that_ends_is_lost_and_found_once_it_runs_again(project: Project, time: Time) -> None:
+    watched = Watched(project, ModuleSettings(here=True, command=("sh", "-c", "echo hello; exit 7")), time)
+    assert watched.tick() == []
+    until(lambda: watched.tick() == ["mood.lost"])
+    assert watched.events[-1].data["reason"] == "ended with exit code 7: hello"
+    assert watched.lines == ["hello", "ended with exit code 7: hello; the next attempt is in 1 s"]
+    watched.part.close()
+
+
+def test_a_program_that_hangs_is_killed_and_started_again(project: Project, time: Time) -> None:
+    command = ("sh", "-c", "echo $$; sleep 1000")
+    watched = Watched(project, ModuleSettings(here=True, command=command, health=2.0), time)
+    watched.tick()
+    until(lambda: watched.tick() or watched.lines)
+    first = int(watched.lines[0])
+    watched.says()
+    assert watched.tick() == []
+    assert watched.tick(2.5) == ["mood.lost"]
+    until(lambda: not alive(first))
+    until(lambda: watched.tick() or any(line.startswith("was ended by SIGKILL") for line in watched.lines))
+    assert watched.tick(1.5) == []
+    until(lambda: watched.tick() or watched.lines[-1].isdecimal())
+    watched.says(session="c")
+    assert watched.tick() == ["mood.found"]
+    second = int(next(line for line in reversed(watched.lines) if line.isdecimal()))
+    watched.part.close()
+    until(lambda: not alive(second))
+
+
+# The exhibition
+
+
+def test_an_exhibition_starts_its_module_and_hears_of_its_loss(tmp_path: Path) -> None:
+    root = tmp_path / "hall"
+    shutil.copytree(ROOT / "examples/minimal", root, ignore=shutil.ignore_patterns(".lumen"))
+    (root / "mood.py").write_text(
+        "import os\n"
+        "from lumen.bus import join\n"
+        "with join() as module:\n"
+        "    print('joined as', module.name, 'of', module.robot)\n"
+        "    module.wait(1.0)\n"
+        "    if os.path.exists('again'):\n"
+        "        module.wait(1000.0)\n"
+        "    open('again', 'w').close()\n"
+        "    raise ValueError('a bad mood')\n"
+    )
+    with (root / "lumen.yaml").open("a") as file:
+        file.write("modules: {mood: {command: [python3, mood.py], here: true, health: 60s}}\n")
+    behavior = root / "behaviors/hello.yaml"
+    text = behavior.read_text().replace("\nentry:", "\non: {mood.found: {actions: {log: all is well again}}}\nentry:")
+    behavior.write_text(text)
+    line = [sys.executable, "-m", "lumen", "run", str(root), "--robot", "recording", "--for", "10min"]
+    with Guarded(line, stdin=PIPE, stdout=PIPE, stderr=STDOUT, text=True) as run:
+        assert run.stdout
+        said = []
+        for each in run.stdout:
+            said.append(each)
+            if "all is well again" in each:
+                break
+        run.terminate()
+        said += run.stdout
+    shown = re.sub(r"\s+", " ", "".join(said))
+    assert "mood joined as mood of NAO" in shown
+    assert "mood ValueError: a bad mood" in shown
+    assert "mood ended with exit code 1: ValueError: a bad mood; the next attempt is in 1 s" in shown
+    assert "mood is found again, after" in shown
