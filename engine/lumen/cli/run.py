@@ -40,7 +40,7 @@ from lumen.run.processes.choosing import parts_of
 from lumen.run.reload.reloader import MODES
 from lumen.run.run_start import BegunRun, started
 from lumen.run.services import Services
-from lumen.run.setup import SPEEDS, Setup, robot_names, robot_options
+from lumen.run.setup import SPEEDS, Setup, robot_kind, robot_names, robot_options
 from lumen.upkeep.heap import give_back
 
 PROCESS_GREETING = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
@@ -65,9 +65,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("--robot-name", metavar="NAMES", help="robots in `robots:`, separated by commas (default: all)")
     add(
         "--robot",
-        choices=robot_names(),
-        default="simulation",
-        help="the robot that performs the exhibition (default: simulation)",
+        choices=_OfferedRobots(robot_names()),
+        default="",
+        help="the robot that performs the exhibition, or one of your own in drivers/ (default: simulation)",
     )
     add(
         "--only",
@@ -107,6 +107,15 @@ def _configure_files(parser: argparse.ArgumentParser) -> None:
     add("--fresh", action="store_true", help="start from the beginning, even if the last run ended unexpectedly")
 
 
+class _OfferedRobots(tuple[str, ...]):
+    """The names that are offered; the drivers of a project are names too, and are known only with the project."""
+
+    __slots__ = ()
+
+    def __contains__(self, name: object) -> bool:
+        return isinstance(name, str)
+
+
 def run(options: argparse.Namespace) -> int:
     give_back()
     named = () if options.story is None else (options.story,)
@@ -121,6 +130,7 @@ def run(options: argparse.Namespace) -> int:
             f"There is no lumen.yaml here or above: Lumen runs a copy of its own exhibition, {root}. Its journal is"
             f" {journal}. `lumen new DIR` makes a project of your own."
         )
+    options.robot = robot_kind(options.robot, root)
     parts, robots = parts_of(options.only, options.robot), robots_of(root, options.robot_name)
     for extra in run_extras():
         extra.check(options, parts, len(robots))

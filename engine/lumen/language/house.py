@@ -20,7 +20,8 @@ class RobotSpec:
     """A robot of `robots:`, or the one of `robot:`: what counts for it, its own or that of all.
 
     `name` stands for {robot} in routing keys, `stand` for {stand}; `model` is its body, `at` where it stands in the
-    hall; `behavior`, `languages` and `story` are what it does, speaks, and is tried with.
+    hall; `behavior`, `languages` and `story` are what it does, speaks, and is tried with. `driver` is the robot of the
+    project's own that performs it, `package:Class` or a name in drivers/, empty for none.
     """
 
     name: str
@@ -30,3 +31,4 @@ class RobotSpec:
     languages: tuple[str, ...] = ()
     story: str = ""
     stand: str = ""
+    driver: str = ""

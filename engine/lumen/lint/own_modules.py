@@ -1,6 +1,7 @@
-"""The project's own modules: programs that lumen.yaml starts or waits for."""
+"""Code of the project's own that lumen.yaml names: programs that it starts or waits for, and the robot's driver."""
 
-from lumen.language.diagnostics import ERROR, WARNING, Code
+from lumen.language.diagnostics import ERROR, WARNING, Code, did_you_mean
+from lumen.language.folders import DRIVERS_FOLDER
 from lumen.language.modules import own_modules
 from lumen.lint.events import BUILT_IN_FAMILIES
 from lumen.project.draft import ProjectDraft
@@ -9,6 +10,8 @@ from lumen.project.files import on_disk
 BAD_MODULE = Code("bad-module", "routes", ERROR, "a module of the project's own can't have this name or setting")
 MISSING_PROGRAM = Code("missing-program", "routes", WARNING, "the program of a module is not in the project")
 
+MISSING_DRIVER = Code("missing-driver", "robot", ERROR, "the driver of the robot is not in the project")
+
 _PARTS = ("robot", "brain", "motion", "visitor")
 _SCRIPTS = (".py", ".js", ".mjs", ".ts", ".sh", ".rb", ".pl", ".lua", ".jar")
 SHORTEST_HEALTH = 1.0
@@ -16,9 +19,10 @@ SHORTEST_HEALTH = 1.0
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report names that other events have, signs of life that come too often, and programs that are not there."""
+    """Report names of other events, signs of life that come too often, and programs and drivers that are missing."""
     if draft.settings is None or draft.main is None:
         return
+    _driver(draft)
     families = {family.rstrip(".") for family in BUILT_IN_FAMILIES} | {"battery", "motors", "head"}
     for name, module in own_modules(draft.settings.modules).items():
         where = ("modules", name)
@@ -33,6 +37,23 @@ def check(draft: ProjectDraft) -> None:
             message = f"`health` of `{name}` is {module.health:g} s, but signs of life come twice a second at most"
             draft.main(BAD_MODULE, (*where, "health"), message, "write at least `1s`; `5s` is usual")
         _program(draft, name, module.command)
+
+
+def _driver(draft: ProjectDraft) -> None:
+    """Report a driver that is not in drivers/; one of a package is not imported here."""
+    if draft.root is None or draft.main is None or draft.settings is None:
+        return
+    own = draft.settings.robots.get(draft.settings.robot)
+    if own is None or not own.driver or ":" in own.driver:
+        return
+    folder = draft.root / DRIVERS_FOLDER
+    draft.looks.at(folder)
+    names = [file.stem for file in folder.glob("*.py")]
+    if own.driver not in names:
+        message = f"there is no {DRIVERS_FOLDER}/{own.driver}.py"
+        hint = did_you_mean(own.driver, names, f"{DRIVERS_FOLDER}/ has") if names else ""
+        hint = hint or f"`lumen new robot {own.driver}` writes one; a class of a package is `package:Class`"
+        draft.main(MISSING_DRIVER, ("robot", "driver"), message, hint)
 
 
 def _program(draft: ProjectDraft, name: str, command: tuple[str, ...]) -> None:

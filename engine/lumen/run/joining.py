@@ -11,6 +11,7 @@ from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Any, Self
 
+from lumen.bus.addresses import open_bus
 from lumen.errors import BusError, BusUnreachableError, UsageError
 from lumen.language.routing_keys import default_key
 from lumen.ports import Bus, MessageHandler
@@ -18,7 +19,6 @@ from lumen.project.building import main_settings
 from lumen.run.parts.own_module import BUS_VARIABLE, MODULE_VARIABLE, PROJECT_VARIABLE, ROBOT_VARIABLE
 from lumen.run.presence import HERE, LEAVES, PRESENCE_PERIOD, PRESENCE_ROUTE, PRESENCE_TTL
 from lumen.run.reaching import reach_exhibition
-from lumen.standalone.bus import connect
 from lumen.upkeep.arguments import need_text
 
 REACH_TIMEOUT = 30.0
@@ -118,7 +118,7 @@ def join(name: str = "", *, robot: str = "", bus: str = "", project: str = "") -
     folder = Path(project) if project else None
     if bus:
         settings = None if robot or folder is None else main_settings(folder)
-        return JoinedModule(name, robot or (settings.robot if settings else "NAO"), connect(bus, sender=name), folder)
+        return JoinedModule(name, robot or (settings.robot if settings else "NAO"), open_bus(bus, name), folder)
     until = time.monotonic() + REACH_TIMEOUT
     while True:
         try:

@@ -2,18 +2,22 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from lumen.clock.checked import checked_clock
 from lumen.clock.real import RealClock
 from lumen.clock.simulated import SimulatedClock
 from lumen.errors import LumenError, UsageError
 from lumen.feature import Feature, RobotOption, RobotRow, distribution_of, owner, table
+from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.stories import Story
 from lumen.ports import Advances, Clock, Dozes, Hall, MeasuresPace, Robot
 from lumen.project.broken_features import called, faulty, need_made, shown
+from lumen.project.building import main_settings
 from lumen.robot.bounded_robot import BoundedRobot, ability
 from lumen.robot.checked_robot import CheckedRobot
+from lumen.run.driver import drivers_in, fault_of, is_driver, make_robot
 from lumen.run.tracking import TrackingService
 
 SPEEDS = ("1", "4", "max")
@@ -77,8 +81,10 @@ def set_up(
     Raises UsageError if there is no such robot here, or if it does not go with what was asked; LumenError with the name
     of the installed package if the robot's own code is faulty.
     """
-    row = _row(kind, options)
-    return _alone(kind, row, RobotRequest(project, speed, story, options, real_skills))
+    request = RobotRequest(project, speed, story, options, real_skills)
+    if _is_own(kind, project):
+        return _driven(kind, request)
+    return _alone(kind, _row(kind, options), request)
 
 
 def set_up_house(
@@ -92,8 +98,10 @@ def set_up_house(
 
     Raises UsageError as `set_up` does, or if there can't be several.
     """
-    row = _row(kind, options)
     requests = {n: RobotRequest(project, speed, stories[n], options) for n, project in projects.items()}
+    if all(_is_own(kind, project) for project in projects.values()):
+        return {name: _driven(kind, request) for name, request in requests.items()}
+    row = _row(kind, options)
     if row.set_up_house:
         feature = owner("robots", kind)
         setups: dict[str, Setup] = called(feature, row.set_up_house, requests)
@@ -104,6 +112,32 @@ def set_up_house(
             _check(feature, row.set_up_house, setup)
         return {name: _bounded(kind, row, setup, projects[name]) for name, setup in setups.items()}
     return {name: _alone(kind, row, request) for name, request in requests.items()}
+
+
+def robot_kind(wanted: str, root: Path) -> str:
+    """Return the name of the robot that performs: the `wanted` one, else the driver of lumen.yaml, else `simulation`.
+
+    Raises UsageError if there is no robot or driver of the wanted name.
+    """
+    if not wanted:
+        settings = main_settings(root)
+        own = settings.robots.get(settings.robot) if settings else None
+        return own.driver if own and own.driver else "simulation"
+    if wanted not in table("robots") and not is_driver(wanted, root):
+        known = (*robot_names(), *drivers_in(root))
+        raise UsageError(f"invalid `--robot {wanted}`: {did_you_mean(wanted, known, 'choose one of')}")
+    return wanted
+
+
+def _is_own(kind: str, project: Project) -> bool:
+    """Whether this is the driver of a robot of the project's own."""
+    return kind not in table("robots") and is_driver(kind, Path(project.root))
+
+
+def _driven(driver: str, request: RobotRequest) -> Setup:
+    """Return the robot of a driver, kept within the limits and speeds of the project's body."""
+    robot, body = make_robot(driver, request.project), request.project.body
+    return set_up_with(BoundedRobot(robot, body, fault_of(driver)), None, request.pace)
 
 
 def _alone(kind: str, row: RobotRow, request: RobotRequest) -> Setup:
