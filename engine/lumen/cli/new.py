@@ -1,30 +1,29 @@
-"""`lumen new DIR`: a project to be made one's own; `lumen new KIND NAME`: something for a project."""
+"""`lumen new DIR`: a project to be made one's own; `lumen new KIND NAME`: an addition to a project."""
 
 import argparse
 from pathlib import Path
 
 from lumen.cli.formats import configure_format, print_object
 from lumen.errors import UsageError
-from lumen.feature import resolve, table
+from lumen.feature import owner, table
 from lumen.language.diagnostics import did_you_mean
+from lumen.project.broken_features import called
 from lumen.project.building import main_settings
 from lumen.project.lending import shipped_models
 from lumen.project.own_project import own_project
 from lumen.run.starting import STARTERS, start_project
+from lumen.run.templates import TEMPLATES, write_template
 
 ACTION = "OWNER/lumen@COMMIT"
 """Stands where the address of this repository and a commit of it are to be."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
-    kinds = ", ".join(table("new_files"))
-    parser.add_argument(
-        "words",
-        nargs="+",
-        metavar="DIR | KIND NAME",
-        help=f"the new folder, which must be empty or not exist yet; or a kind ({kinds}) and a name: files of that kind"
-        " in the project of this folder",
-    )
+    kinds = ", ".join(_kinds())
+    what = f"the new folder, which must be empty or not exist yet; or what to add to a project: {kinds}"
+    parser.add_argument("folder", metavar="DIR|KIND", help=what)
+    parser.add_argument("name", metavar="NAME", nargs="?", default="", help="the name of the addition")
+    parser.add_argument("--project", metavar="DIR", help="the project to add to (default: this folder or one above)")
     which = parser.add_mutually_exclusive_group()
     summary = "; ".join(f"{name}: {what}" for name, what in STARTERS.items())
     which.add_argument(
@@ -46,13 +45,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    kind, *names = options.words
-    if kind in table("new_files"):
-        return _add(kind, names, options.format)
-    if names:
-        kinds = table("new_files")
-        raise UsageError(f"`{kind}` is nothing that a project can be given: {did_you_mean(kind, kinds, 'there are')}")
-    folder = Path(kind)
+    if options.name or options.folder in _kinds():
+        return _add(options, options.folder)
+    folder = Path(options.folder)
     try:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             raise UsageError(f"{folder} already exists and is not empty: name a new folder")
@@ -75,24 +70,37 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _add(kind: str, names: list[str], format: str) -> int:
-    """Write the files of something new into the project of this folder."""
-    if len(names) != 1:
+def _add(options: argparse.Namespace, kind: str) -> int:
+    """Add files to a project: of a template here, or of a row of a feature."""
+    kinds = _kinds()
+    if kind not in kinds:
+        raise UsageError(f"can't add a `{kind}` to a project: {did_you_mean(kind, kinds, 'choose one of')}")
+    if not options.name:
         raise UsageError(
             f"write `lumen new {kind} NAME`; for a project in a folder `{kind}` write `lumen new ./{kind}`"
         )
-    root = own_project(None)
+    root = own_project(options.project)
     try:
-        files: list[str] = resolve(table("new_files")[kind])(root, names[0])
+        if kind in TEMPLATES:
+            written = write_template(kind, options.name, root)
+            files, steps = [*written.files], [*written.next]
+        else:
+            files = called(owner("new_files", kind), table("new_files")[kind], root, options.name)
+            stories = (Path(file).stem for file in files if file.startswith("behaviors/stories/"))
+            steps = [("lumen lint", "what is wrong, and where")]
+            steps += [(f"lumen test {story}", "plays its story") for story in stories]
     except OSError as error:
         raise UsageError(f"can't write {error.filename or root}: {error.strerror}") from None
-    if format == "json":
-        print_object({"kind": kind, "name": names[0], "files": files})
+    if options.format == "json":
+        print_object({"kind": kind, "name": options.name, "files": files})
         return 0
-    print(f"the {kind} `{names[0]}` is in {', '.join(files)}. Next:")
-    print("  lumen lint                   what is wrong, and where")
-    for file in files:
-        if file.startswith("behaviors/stories/"):
-            story = Path(file).stem
-            print(f"  {f'lumen test {story}':<29}plays its story")
+    print(f"wrote {' and '.join(files)}. Next:")
+    width = max(len(step) for step, _ in steps) + 3
+    for step, purpose in steps:
+        print(f"  {step:<{width}}{purpose}")
     return 0
+
+
+def _kinds() -> tuple[str, ...]:
+    """Return what a project can be given: the templates here, and those of features."""
+    return (*TEMPLATES, *table("new_files"))
