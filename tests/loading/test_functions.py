@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
+from lumen.errors import ProjectError
 from lumen.expressions import Scope
 from lumen.insight.changes import Risk, changes, risk
 from lumen.insight.explaining.conditions import parts
@@ -15,7 +16,7 @@ from lumen.language.events import Event
 from lumen.lint import check_files
 from lumen.project import load
 from lumen.project.files import read_files
-from lumen.statechart import initial, step
+from lumen.statechart import Machine, initial, step
 from tests import ROOT
 
 BEHAVIOR = """\
@@ -143,3 +144,11 @@ def test_a_broken_function_is_one_finding(root: Path) -> None:
     project, found = check_files(root, read_files(root))
     assert project is None
     assert [(d.code, d.place.file) for d in found] == [("expression-syntax", "functions/part_of_day.yaml")]
+
+
+def test_a_behavior_without_its_project_finds_its_functions(root: Path) -> None:
+    machine = Machine.load(root / "behaviors/hello.yaml")
+    assert machine.states["waiting"].transitions[0].guard == load(root).machine.states["waiting"].transitions[0].guard
+    write(root, "more", "n + 1", "n + ")
+    with pytest.raises(ProjectError, match=r"functions/more.yaml:2:15: error \[expression-syntax\]"):
+        Machine.load(root / "behaviors/hello.yaml")

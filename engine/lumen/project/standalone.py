@@ -7,7 +7,9 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, Self
 
 from lumen.errors import ProjectError
+from lumen.expressions.own_functions import OwnFunctions
 from lumen.language.diagnostics import Diagnostic, has_errors
+from lumen.language.folders import FUNCTIONS_FOLDER
 from lumen.language.machines import MachineDefinition
 from lumen.language.words import Words
 from lumen.project.behaviors import build_machine
@@ -18,6 +20,7 @@ from lumen.project.context import check_memory
 from lumen.project.document import Document
 from lumen.project.document_report import DocumentReport
 from lumen.project.files import composed
+from lumen.project.functions import FunctionFile, build_function, joined
 from lumen.project.linking import link
 from lumen.project.plain import plain_document
 from lumen.project.schema import check_schema
@@ -30,13 +33,15 @@ ReadDocument = Callable[[str], tuple[Document | None, list[Diagnostic]]]
 
 @gc_paused()
 def machine_from_file(path: Path) -> MachineDefinition:
-    """The machine in a file; what it invokes stands beside it.
+    """Return the machine in a file; behaviours that it invokes are in the same folder.
 
-    Raises UsageError where a file can't be read, ProjectError for what they say.
+    The functions that it calls are in the folder `functions` beside that folder. Raises UsageError if a file can't be
+    read, ProjectError for faults of the files.
     """
     beside, words = _yaml_files(path.parent), _yaml_files(path.parent / "words")
-    name = composed(path.stem)
-    return _Family(_Shelf.of_files(beside | {name: path}), _Shelf.of_files(words)).head(name)
+    name, functions = composed(path.stem), _yaml_files(path.absolute().parent.parent / FUNCTIONS_FOLDER)
+    shelves = _Shelf.of_files(beside | {name: path}), _Shelf.of_files(words), _Shelf.of_files(functions)
+    return _Family(*shelves).head(name)
 
 
 @gc_paused()
@@ -47,7 +52,7 @@ def machine_from_dict(
 
     `words` are the words files that they may name. Raises ProjectError.
     """
-    return _Family(_Shelf.of_dicts({**behaviors, name: data}), _Shelf.of_dicts(words)).head(name)
+    return _Family(_Shelf.of_dicts({**behaviors, name: data}), _Shelf.of_dicts(words), _Shelf.of_dicts({})).head(name)
 
 
 def _yaml_files(folder: Path) -> dict[str, Path]:
@@ -79,14 +84,18 @@ def supplied_words() -> BuiltFile[Words]:
 
 
 class _Family:
-    """A behaviour, those that it invokes, and those that they invoke; `words` are the words files beside them."""
+    """A behaviour, those that it invokes, and those that they invoke.
 
-    def __init__(self, behaviors: _Shelf, words: _Shelf) -> None:
+    `words` are the words files in their folder, `functions` those that they may call.
+    """
+
+    def __init__(self, behaviors: _Shelf, words: _Shelf, functions: _Shelf) -> None:
         self.read, self.names = behaviors
         self.shelf, self.words = words, dict[str, BuiltFile[Words]]()
         self.machines: dict[str, MachineDefinition] = {}
         self.reports: dict[str, DocumentReport] = {}
         self.loose: list[Diagnostic] = []
+        self.functions = self.join(functions)
 
     def head(self, name: str) -> MachineDefinition:
         """The machine of that name, its family linked; raises ProjectError."""
@@ -98,6 +107,8 @@ class _Family:
         linked = link(self.machines, self.reports, self.names)
         reports = [*self.reports.values(), *(file.report for file in self.words.values())]
         found = [*self.loose, *(d for r in reports for d in r.diagnostics if not r.follows(d.code, d.message))]
+        if any(report.pruned for report in self.reports.values()):  # perhaps for a broken function
+            found += self.function_faults
         if name not in linked or has_errors(found):
             raise ProjectError(found)
         return linked[name]
@@ -114,7 +125,9 @@ class _Family:
         words, known = self.words, frozenset(self.shelf.names)
         if shipped := COMMON not in known:
             words, known = {**words, COMMON: supplied_words()}, known | {COMMON}
-        machine = build_machine(data, report, name=name, words=words, known=known, shipped=shipped)
+        machine = build_machine(
+            data, report, name=name, words=words, known=known, shipped=shipped, functions=self.functions
+        )
         if machine is None:
             if not has_errors([*diagnostics, *report.diagnostics]):
                 report(MISSING_KEY, (), "a behaviour needs `states`", hint="write `states:` with at least one state")
@@ -122,6 +135,20 @@ class _Family:
         check_memory(machine, report)
         self.machines[name] = machine
         return [invoke.behavior for state in machine.states.values() for invoke in state.invoke]
+
+    def join(self, shelf: _Shelf) -> OwnFunctions:
+        """Read all functions; faults of one count only if the behaviours call it."""
+        read, faults = dict[str, BuiltFile[FunctionFile]](), list[Diagnostic]()
+        for name in shelf.names:
+            document, diagnostics = shelf.read(name)
+            faults += diagnostics
+            if document is not None:
+                report = DocumentReport(document)
+                data = check_schema(document, "function", report)
+                read[name] = BuiltFile(data, report, build_function(data, report, name=name))
+        _, known = joined(read, frozenset(shelf.names))
+        self.function_faults = [*faults, *(d for file in read.values() for d in file.report.diagnostics)]
+        return known
 
     def name_words(self, data: Any) -> None:
         """Build the words files that a behaviour names."""

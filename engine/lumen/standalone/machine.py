@@ -56,7 +56,7 @@ class Machine(machines.MachineDefinition):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The machine in a file; behaviours that it invokes are beside it, words files in `words/`.
+        """The machine in a file; what it invokes is beside it, words are in `words/`, functions in `../functions/`.
 
         Raises UsageError if a file can't be read, ProjectError if the files have mistakes.
         """
