@@ -4,13 +4,16 @@ A row says which parts of the body the command owns, which of those that wait go
 takes, and how it crosses the bus. Robots that move perform it in their `skills.py`.
 """
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from math import hypot, inf, isfinite
 from typing import Any, Generic, TypeVar, get_args
 
 from lumen.errors import BadCommandError
+from lumen.expressions.json_schema import JsonSchema
 from lumen.feature import VerbRow
 from lumen.language.added_verbs import added_row, added_verbs, argument_schema, arguments_of
 from lumen.language.body_parts import EARS, HEAD, LEGS, VOICE, WHOLE_BODY, parts_of_lights, parts_of_motion
@@ -53,6 +56,8 @@ SPEECH_PAUSE, SPEECH_PER_CHARACTER = 0.4, 0.06
 """How long a text takes to say where nobody says it [s], and each of its characters."""
 WALKING_SPEED, TURNING_SPEED = 0.1, 0.25
 """How fast a recorded walk goes [m/s] and turns [rad/s]: the simulated robot turns around by 90 degrees in 7 s."""
+MAX_JUDGES = 256
+"""The schemas of added verbs' arguments that are kept."""
 MAX_FADE_DURATION = 60.0
 """How long lights may take to their colours [s]."""
 USUAL_DURATION, LOOK_DURATION = 2.0, 1.0
@@ -239,10 +244,18 @@ def added_verb(command: Do) -> VerbRow:
     return row
 
 
+@lru_cache(maxsize=MAX_JUDGES)
+def _judge(schema: str) -> JsonSchema:
+    """Return a JSON Schema that is made once: making it takes longer than all else that a command needs."""
+    return JsonSchema(json.loads(schema))
+
+
 def check_arguments(command: Do) -> None:
     """Raises BadCommandError if no feature has that verb, or if its arguments don't fit its row."""
-    verb = added_verb(command)
-    for fault in faults(dict(command.arguments), argument_schema(verb)):
+    schema = argument_schema(added_verb(command))
+    if _judge(json.dumps(schema)).fits(dict(command.arguments)):
+        return
+    for fault in faults(dict(command.arguments), schema):
         raise BadCommandError(f"`{command.skill}`: {fault.message}" + (f" ({fault.hint})" if fault.hint else ""))
 
 

@@ -12,7 +12,6 @@ from lumen.language.commands import Do
 from lumen.language.events import RESULT, Event
 from lumen.ports import Bus
 from lumen.project import load
-from lumen.project.added_verbs import usable_verbs
 from lumen.robot.command_table import parts_of
 from lumen.robot.executor import Executor
 from lumen.robot.skill_runner import SkillRunner
@@ -41,10 +40,12 @@ class Stage:
         """Begin a skill; return its id."""
         self._count += 1
         id = f"d{self._count}"
-        row = self.project.verbs.get(skill) or usable_verbs().get(skill)
-        self.executor.start(id, Do(skill, arguments, row=row))
+        self.executor.start(id, self.command(skill, **arguments))
         self.tick()
         return id
+
+    def command(self, skill: str, **arguments: Any) -> Do:
+        return Do(skill, arguments, row=self.project.verbs[skill])
 
     def tick(self) -> None:
         for event in self.executor.advance(time.monotonic() - self.began):

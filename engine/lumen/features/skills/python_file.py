@@ -22,8 +22,13 @@ class CodeFault(NamedTuple):
 
 def syntax_fault(content: bytes, file: str) -> CodeFault | None:
     """Return why Python can't read a file; None if it can."""
+    read = _read(content, file)
+    return read if isinstance(read, CodeFault) else None
+
+
+def _read(content: bytes, file: str) -> ast.Module | CodeFault:
     try:
-        ast.parse(content, file)
+        return ast.parse(content, file)
     except SyntaxError as error:
         line, column = error.lineno or 1, error.offset or 1
         end = error.end_offset or 0
@@ -33,15 +38,15 @@ def syntax_fault(content: bytes, file: str) -> CodeFault | None:
         return CodeFault(1, 1, 2, f"Python can't read this file: {error}", "save it as text in UTF-8")
     except (RecursionError, MemoryError):
         return CodeFault(1, 1, 2, "this file is nested too deeply to be read", "simplify it")
-    return None
 
 
 def code_faults(content: bytes, file: str, skill: str, arguments: Mapping[str, Any]) -> Iterator[CodeFault]:
     """Iterate over what in a file does not fit the skill of that name; `arguments` is its schema `in`."""
-    if fault := syntax_fault(content, file):
-        yield fault
+    read = _read(content, file)
+    if isinstance(read, CodeFault):
+        yield read
         return
-    functions = [node for node in ast.walk(ast.parse(content, file)) if isinstance(node, _FUNCTIONS) and _marked(node)]
+    functions = [node for node in ast.walk(read) if isinstance(node, _FUNCTIONS) and _marked(node)]
     function = next((each for each in functions if each.name == skill), None)
     if function is None:
         message, example = (
