@@ -1,4 +1,4 @@
-"""What skills cost: from a command to the first line of code, idle, misbehaving, and in lint.
+"""Measure skills: the time from a command to the first line of code, idle and misbehaving ones, and lint.
 
     python benchmarks/skills.py [--calls N]
 
@@ -150,7 +150,7 @@ def _tick(made: Stage) -> float:
 
 
 def _lint(skills: int) -> float:
-    """What lint takes longer for each skill of a project [s]."""
+    """Return by how much each skill of a project prolongs lint [s]."""
     with tempfile.TemporaryDirectory() as folder:
         root = project_in(Path(folder) / "hall")
         few = _linted(root)

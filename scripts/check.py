@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import locks
+import schemas
 import yaml
 from documented import NOT_RUN, all_pages, blocks
 from packaging.requirements import Requirement
@@ -72,6 +73,12 @@ def the_core_needs_no_simulation() -> Iterator[Looked]:
         yield f"locks/core.txt: {package}", "belongs to locks/run.txt only" if package in SIMULATION else ""
     for package in sorted(SIMULATION - {"scipy", "labmaze"}):
         yield f"locks/run.txt: {package}", "" if package in whole else "is missing"
+
+
+def schemas_are_written_from_their_sources() -> Iterator[Looked]:
+    for path, text in schemas.composed():
+        there = path.exists() and path.read_text(encoding="utf-8") == text
+        yield _name(path), "" if there else "write it again: scripts/schemas.py"
 
 
 def requirements_for_pip_are_written_from_the_lock() -> Iterator[Looked]:
@@ -247,6 +254,7 @@ CHECKS: dict[Check, int] = {
     packages_are_pinned_by_the_hashes_of_their_files: 100,
     packages_are_pinned_to_one_version: 100,
     the_core_needs_no_simulation: 10,
+    schemas_are_written_from_their_sources: 3,
     requirements_for_pip_are_written_from_the_lock: 4,
     the_lock_names_files_of_the_package_index_only: 150,
     the_lock_meets_what_pyproject_requires: 50,

@@ -329,7 +329,7 @@ def table(shape: Shape) -> str:
         ("a file", f"median {shape.median_file} lines, largest {_size(shape.largest_file)}"),
         ("a function", f"median {shape.median_function} lines, largest {_size(shape.largest_function)}"),
         ("public types of the same name", f"{len(shape.repeated_types)}"),
-        (f"constants whose name stands in more than {most} files", f"{len(shape.repeated_constants)}"),
+        (f"constants of the same name in more than {most} files", f"{len(shape.repeated_constants)}"),
         (f"file names used more than {most} times", f"{len(shape.repeated_file_names)}"),
         ("circles of imports, type-only and late ones counted", f"{len(shape.circles[every])}"),
         ("imports up the floors", f"{len(shape.arrows_up)}"),

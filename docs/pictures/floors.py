@@ -16,6 +16,7 @@ PICTURE = Path(__file__).with_suffix(".svg")
 
 PURPOSES: Mapping[str, str] = {
     "cli": "arguments in, a call, text out",
+    "testing": "the promises of a robot, tried by pytest",
     "standalone": "a machine, a controller, a motion, a bus or a project alone",
     "run": "an exhibition: its loop, its parts, reload, recovery, stories",
     "lint": "values to diagnostics",
