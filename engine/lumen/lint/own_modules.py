@@ -1,5 +1,6 @@
 """Code of the project's own that lumen.yaml names: programs that it starts or waits for, and the robot's driver."""
 
+from lumen.feature import rows
 from lumen.language.diagnostics import ERROR, WARNING, Code, did_you_mean
 from lumen.language.folders import DRIVERS_FOLDER
 from lumen.language.modules import own_modules
@@ -12,7 +13,6 @@ MISSING_PROGRAM = Code("missing-program", "routes", WARNING, "the program of a m
 
 MISSING_DRIVER = Code("missing-driver", "robot", ERROR, "the driver of the robot is not in the project")
 
-_PARTS = ("robot", "brain", "motion", "visitor")
 _SCRIPTS = (".py", ".js", ".mjs", ".ts", ".sh", ".rb", ".pl", ".lua", ".jar")
 SHORTEST_HEALTH = 1.0
 """The shortest time between two signs of life that can be watched [s]: programs send two a second."""
@@ -23,10 +23,11 @@ def check(draft: ProjectDraft) -> None:
     if draft.settings is None or draft.main is None:
         return
     _driver(draft)
+    parts = {role for _, role in rows("roles")}
     families = {family.rstrip(".") for family in BUILT_IN_FAMILIES} | {"battery", "motors", "head"}
     for name, module in own_modules(draft.settings.modules).items():
         where = ("modules", name)
-        if name in _PARTS or name in families:
+        if name in parts or name in families:
             message = f"a module can't be called `{name}`: Lumen has events that begin with `{name}.`"
             draft.main(BAD_MODULE, where, message, "choose another name", key=True)
         elif not name.replace("-", "_").isidentifier():

@@ -10,15 +10,16 @@ from typing import Any, NamedTuple
 from lumen.expressions import unparse
 from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.expressions.own_functions import OwnFunctions
+from lumen.language.buttons import Button
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.shared import SHARED, SharedKey, first_values, shared_schema
 from lumen.project.actions import Actions
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
-from lumen.project.buttons import buttons
 from lumen.project.common_words import COMMON
 from lumen.project.document_report import DocumentReport
 from lumen.project.expressions import Expressions
+from lumen.project.field_reader import read_fields
 from lumen.project.invocations import check_ids, invocations
 from lumen.project.known_words import WordFiles, known_words
 from lumen.project.outline import BehaviorOutline, OutlinedState
@@ -26,6 +27,23 @@ from lumen.project.properties import build_properties
 from lumen.project.rounds import NOTHING_YET, Rounds, unrolled
 from lumen.project.shapes import check_shapes
 from lumen.project.transitions import TransitionReader
+
+
+def buttons(data: Any, where: NodePath) -> tuple[Button, ...]:
+    """Those that can be read, in the order of the file."""
+    rows = ((row, (*where, number)) for number, row in enumerate(data or ()))
+    return tuple(
+        read_fields(Button, row, label=_label(row["label"]), key=str(row.get("key", "")), where=place)
+        for row, place in rows
+        if isinstance(row, Mapping) and row.get("label") and row.get("event")
+    )
+
+
+def _label(texts: Any) -> dict[str, str]:
+    """By language; what is the same in all is under the empty one."""
+    table = {"": texts} if isinstance(texts, str) else texts
+    return {"" if language == "any" else language: str(text) for language, text in table.items()}
+
 
 NOT_WITHIN = Code("not-within", "statecharts", ERROR, "the state named in `initial` is not one of the inner states")
 

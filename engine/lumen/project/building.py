@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path, PurePosixPath
-from typing import TypeVar
+from typing import Any, TypeVar
 from unicodedata import normalize
 
 from lumen.feature import VerbRow, resolve, rows, table
@@ -13,6 +13,7 @@ from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.added_verbs import UNUSABLE
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
 from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
+from lumen.language.json_paths import values_in
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -46,7 +47,6 @@ from lumen.project.linking import link, with_robots
 from lumen.project.markdown import MARKDOWN_SUFFIX
 from lumen.project.messages import SCHEMA_SUFFIX, build_message
 from lumen.project.motions import build_motions
-from lumen.project.passages import belongs_to
 from lumen.project.project_folders import (
     ALL_FOLDERS,
     GESTURES_FOLDER,
@@ -67,6 +67,23 @@ from lumen.project.settings import Settings, build_settings, other_vocabulary
 from lumen.project.stories import build_story
 from lumen.project.used_routes import used_routes
 from lumen.project.words import build_words
+
+
+def belongs_to(data: Any, body: Body) -> bool:
+    """Whether a passage is one of this body: it knows both postures, and one of the joints that are named."""
+    if not isinstance(data, Mapping) or not {"start", "end"} <= data.keys():
+        return True  # what is wrong with it is told
+    named = set(_joints(data))
+    known = data["start"] in body.postures and data["end"] in body.postures
+    return known and not (named and named.isdisjoint(body.joints))
+
+
+def _joints(data: Any) -> Iterator[str]:
+    """Every joint that a motion's file names."""
+    for item in values_in(data):
+        if isinstance(item, Mapping) and isinstance(item.get("joints"), Mapping):
+            yield from item["joints"]
+
 
 MISSING_FILE = Code("missing-file", "text", ERROR, "a required file is missing")
 NOT_READ = Code("not-read", "text", WARNING, "a file is not read, because of its ending or its folder")

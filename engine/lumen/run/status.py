@@ -1,6 +1,6 @@
 """How an exhibition is, in one object: for `lumen status`, and for whoever else shows it."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from datetime import datetime
 from typing import Any, NamedTuple
 
@@ -23,6 +23,9 @@ class LastReload(NamedTuple):
     text: str
 
 
+NOTHING_SAID: Mapping[str, Any] = {}
+
+
 def status_of(
     project: Project,
     snapshot: Snapshot,
@@ -32,14 +35,14 @@ def status_of(
     stopped: StoppedBy | None = None,
     realtime: float = 1.0,
     reloaded: LastReload | None = None,
-    ears: Mapping[str, Any] | None = None,
-    modules: Sequence[Mapping[str, Any]] = (),
+    said: Mapping[str, Any] = NOTHING_SAID,
 ) -> dict[str, Any]:
     """The status of an exhibition whose states were last changed at `since` [s]; JSON data.
 
     Times are ISO 8601 in UTC, on the exhibition's clock, but those of stops and reloads, which people make. What is not
-    known is None: the `visitor` who has not said a name, the `battery` of a robot that has none, the `ears` where there
-    are none. `modules` are those of the project's own, absent if it has none.
+    known is None: the `visitor` who has not said a name, the `battery` of a robot that has none, the `ears` if there
+    are none. `said` has what `ears` say of themselves, and a list of the project's own `modules`, which is absent if
+    it is empty.
     """
     return {
         "robot": project.robot,
@@ -48,7 +51,7 @@ def status_of(
         "language": snapshot.language,
         "visitor": _visitor(project, snapshot),
         "battery": battery.percentage if isinstance(battery, Battery) else None,
-        "ears": ears,
+        "ears": said.get("ears"),
         "timers": [
             {"event": event, "due": _time(snapshot, due)} for due, event in sorted(_timers(project.machine, snapshot))
         ],
@@ -57,7 +60,7 @@ def status_of(
         "realtime": realtime,
         "bundle": project.hash,
         "last_reload": _reload(reloaded) if reloaded else None,
-        **({"modules": [*modules]} if modules else {}),
+        **({"modules": [*modules]} if (modules := said.get("modules")) else {}),
     }
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from math import inf
 from typing import Any, NamedTuple, Protocol, assert_never
 
+from lumen.errors import BusError
 from lumen.expressions.wall_clock import MICROSECONDS, next_moment
 from lumen.language.approvals import Autonomy
 from lumen.language.causes import OPERATOR, VISITOR, Cause, MessageOrigin
@@ -33,8 +34,8 @@ from lumen.language.stories import (
 )
 from lumen.ports import Bus
 from lumen.run.loop import Observer
+from lumen.run.questions import ANSWER_ROUTE
 from lumen.run.sending import send
-from lumen.run.story_answers import QUESTION_WITHIN, answered
 from lumen.run.story_observations import StoryObservations, UnmetExpectation, expects_error, expects_fall, listed
 from lumen.run.story_time import story_moment
 from lumen.run.troubles import RunTrouble
@@ -42,6 +43,22 @@ from lumen.run.visitor import VisitorActor
 from lumen.statechart import Step
 from lumen.statechart.nesting import active_names, entered_names
 from lumen.statechart.property_monitor import Violation, monitors
+
+QUESTION_WITHIN = 30.0
+"""How long `answers` waits for a question [s]."""
+
+
+def answered(bus: Bus, project: Project, id: str, answer: AnswerQuestion, waited: float) -> UnmetExpectation | None:
+    """Answer the question of that id, none where it is empty; what is wrong, also where none came in time."""
+    if not id:
+        wanted = f"a question to the module `answers` within {QUESTION_WITHIN:g} s"
+        return UnmetExpectation(wanted, "none was asked") if waited >= QUESTION_WITHIN else None
+    said = {"raise": {"event": answer.event, "data": dict(answer.data)}} if answer.event else {"text": answer.text}
+    try:
+        bus.publish(project.key_of(ANSWER_ROUTE), {"id": id, "source": "story", **said})
+    except BusError as error:
+        return UnmetExpectation("the answer to be sent", str(error))
+    return None
 
 
 class StoryFailure(NamedTuple):

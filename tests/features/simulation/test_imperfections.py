@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lumen.features.simulation.imperfections import BACKLASH, EMPTY_VOLTAGE, NOMINAL_VOLTAGE, voltage
-from lumen.features.simulation.motor_torques import MotorTorques
+from lumen.features.simulation.motors import MotorTorques
 from lumen.features.simulation.offers import SimulatedRobot
 from lumen.features.simulation.settings import IMPERFECTIONS, PERFECT, Imperfections, only
 from lumen.language.robots import Body

@@ -1,6 +1,6 @@
 """Where Reachy Mini's joints should be at each moment: what commands want, what aims want, and its life beside."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 
 from lumen.features.reachy.following import limited, possible
 from lumen.features.reachy.pose import JOINTS
@@ -29,10 +29,10 @@ class Mover:
         self.goal, self.sent = dict(joints), dict(joints)
         self._aims.clear()
 
-    def aim(self, aim: Aim, free: Callable[[str], bool]) -> None:
-        """Move these joints there, as far as no command owns them, at most at a share of their greatest speed."""
+    def aim(self, aim: Aim, free: Collection[str]) -> None:
+        """Move those joints of an aim that are `free`, at most at a share of their greatest speed."""
         self._aims |= {
-            name: (angle, aim.speed) for name, angle in aim.angles.items() if name in self.goal and free(name)
+            name: (angle, aim.speed) for name, angle in aim.angles.items() if name in self.goal and name in free
         }
 
     def drop_aims(self, joints: Collection[str]) -> None:

@@ -77,7 +77,7 @@ class ReachyRobot(ExecutingRobot):
         elif isinstance(command, Aim):
             if (aim := self._bounds.aim(command)) and self._mover.awake and not self._yields:
                 self._life.led(aim.angles, self._clock())
-                self._mover.aim(aim, self._free)
+                self._mover.aim(aim, {name for name in aim.angles if self._free(name)})
         else:
             if isinstance(command, Rest):
                 self._was_awake = False

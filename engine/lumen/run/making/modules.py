@@ -41,19 +41,19 @@ def own_modules(services: Services) -> list[OwnModulePart]:
     """Make the parts that watch the programs of the project's own; a story is played without them."""
     if services.plan.story is not None:
         return []
-    url = "" if within_process(services.plan.url) else services.plan.url
-    return [
-        OwnModulePart(
-            name, services.project, services.bus, services.narrator.line, services.behavior.loop.happen, bus_url=url
-        )
-        for name in own_modules_of(services.project.modules)
-    ]
+    return [_own_module(services, name) for name in own_modules_of(services.project.modules)]
 
 
 def troubles(services: Services) -> ModuleTroublesPart:
     """Make the part that prints the troubles of modules in other processes."""
     own = [part.name for part in services.node.parts if isinstance(part, ModulePart)]
     return ModuleTroublesPart(services.project, services.bus, services.narrator.line, own)
+
+
+def _own_module(services: Services, name: str) -> OwnModulePart:
+    url = "" if within_process(services.plan.url) else services.plan.url
+    tell, happen = services.narrator.line, services.behavior.loop.happen
+    return OwnModulePart(name, services.project, services.bus, tell, happen, bus_url=url)
 
 
 def _module(services: Services, name: str) -> Part | None:

@@ -204,8 +204,7 @@ class OperatorPart(Part, Observer):
             stopped=self._run.stopped(),
             realtime=self._run.realtime(),
             reloaded=self._run.reloaded(),
-            ears=self._ears,
-            modules=self._run.modules(),
+            said={"ears": self._ears, "modules": self._run.modules()},
         )
 
     def _moment(self) -> PresentMoment:

@@ -16,8 +16,25 @@ from lumen.run.reload.records import RunRecords
 from lumen.run.reload.report import ReloadReport, reason_of, what_for
 from lumen.run.reload.requests import ReloadRequest
 from lumen.run.reload.rollback_guard import RollbackGuard
-from lumen.run.reload.trial import Trial
 from lumen.run.reload.validator import Validation, fault_of
+from lumen.statechart import Snapshot
+
+
+class Trial:
+    """A bundle that runs until a visit is over: the one that is under way, or else the next.
+
+    Its visits end where the behaviour is back in the state in which it waits for a visitor.
+    """
+
+    def __init__(self, project: Project) -> None:
+        self._home, self._away = home_of(project.machine), False
+
+    def over(self, snapshot: Snapshot) -> bool:
+        """Whether the visit has come to its end, as the behaviour stands now."""
+        home = self._home in snapshot.configuration
+        self._away |= not home
+        return home and self._away
+
 
 OTHER_VISITS = "recorded visits would go differently with these files"
 APPLY = "`lumen reload --apply` activates them anyway"
