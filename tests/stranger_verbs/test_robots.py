@@ -96,6 +96,8 @@ def test_nothing_that_stops_the_robot_waits_for_it(executor: Executor, stop: Rob
     executor.start("d1", Do("stall"))
     executor.start("d2", Do("wiggle"))
     executor.advance(0.0)
+    calls = resolve("lumen_blinker.performers:CALLS")
+    until(lambda: any(call.skill == "stall" for call in calls))
     executor.start("stop", stop)
     assert names(executor.advance(0.0))[:2] == ["cancelled.command.d1", "cancelled.command.d2"]
     assert executor.owner("arms") in ("stop", "")

@@ -4,6 +4,7 @@ import json
 import logging
 from collections.abc import Callable, Mapping
 from math import inf
+from queue import SimpleQueue
 from threading import TIMEOUT_MAX, Condition
 from typing import Any, TypeVar
 
@@ -14,7 +15,7 @@ from lumen.language.commands import Do
 from lumen.language.sections import section_of
 from lumen.ports import SkillPerformer
 from lumen.project.schema import faults
-from lumen.robot.command_table import added_verb
+from lumen.robot.command_table import added_verb, check_arguments
 from lumen.upkeep.threads import WatchedThread
 
 Settings = TypeVar("Settings")
@@ -34,35 +35,46 @@ class SkillRunner:
     def __init__(self, *, lockstep: bool = False) -> None:
         self._calls: list[RunningSkill] = []
         self._lockstep = lockstep
+        self._begun: SimpleQueue[RunningSkill | None] = SimpleQueue()
+        self._starter = WatchedThread("lumen-skills", self._start)
 
     def begin(self, command: Do, now: float) -> "RunningSkill":
         """Begin a verb at `now` [s]. Raises RobotError if no feature has it, or if its last call does not end."""
         verb = added_verb(command)
-        self._calls = [call for call in self._calls if call.thread.is_alive()]
+        self._calls = [call for call in self._calls if not call.over]
         if any(call.skill == command.skill and call.cancelled for call in self._calls):
             raise RobotRefusedError(f"`{command.skill}` was cancelled and has not ended yet: try again later")
         call = RunningSkill(command, verb, now, lockstep=self._lockstep)
         self._calls.append(call)
-        call.thread.start()
+        if not self._starter.started:
+            self._starter.start()
+        self._begun.put(call)
         return call
 
     def close(self) -> None:
         """Cancel all calls; they end by themselves."""
         for call in self._calls:
             call.end()
+        self._begun.put(None)
+
+    def _start(self) -> None:
+        """Start the thread of each call: for ten calls that takes a tick longer than it has."""
+        while (call := self._begun.get()) is not None:
+            call.thread.start()
 
 
 class RunningSkill:
     """A verb under way: an activity for the robot, a `SkillCall` for the performer."""
 
     def __init__(self, command: Do, verb: VerbRow, now: float, *, lockstep: bool = False) -> None:
+        self._command = command
         self.skill, self.arguments, self.row = command.skill, command.arguments, verb
         self.cancelled = False
         self.result: Mapping[str, Any] = {}
         self.thread = WatchedThread(f"lumen-skill-{command.skill}", self._run)
         self._sections, self._now, self._lockstep = command.sections, now, lockstep
         self._until: float | None = None
-        self._left = self._over = False
+        self._left = self._over = self._entered = False
         self._failure = ""
         self._changed = Condition()
 
@@ -88,6 +100,11 @@ class RunningSkill:
         self._left = True
         if self.row.cancel:
             self.end()
+
+    @property
+    def over(self) -> bool:
+        """Whether the performer has ended, or will not begin: it was cancelled before, or has no thread."""
+        return self._over or bool(self.thread.lost) or (self.cancelled and not self._entered)
 
     def end(self) -> None:
         """Let the performer end early."""
@@ -126,7 +143,12 @@ class RunningSkill:
         return waits or self._over or self._left or bool(self.thread.lost)
 
     def _run(self) -> None:
+        with self._changed:
+            if self.cancelled:
+                return
+            self._entered = True
         try:
+            check_arguments(self._command)
             performer: SkillPerformer = resolve(self.row.performer)
             result, failure = self._checked(performer.perform(self)), ""
         except RobotError as error:

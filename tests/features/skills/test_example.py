@@ -15,13 +15,14 @@ from tests.features.skills.stage import stage
 from tests.provided import program
 
 EXAMPLE = ROOT / "examples/skills"
-NEVER = threading.Event()
+ASKED, NEVER = threading.Event(), threading.Event()
 
 
 class Service(BaseHTTPRequestHandler):
     """Answers with a joke; about `nothing` it never answers."""
 
     def do_GET(self) -> None:
+        ASKED.set()
         if "nothing" in self.path:
             NEVER.wait()
         self.send_response(200)
@@ -34,6 +35,7 @@ class Service(BaseHTTPRequestHandler):
 
 @pytest.fixture
 def service(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    ASKED.clear()
     NEVER.clear()
     server = ThreadingHTTPServer(("127.0.0.1", 0), Service)
     thread = threading.Thread(target=server.serve_forever)
@@ -68,7 +70,7 @@ def test_the_joke_ends_when_it_is_cancelled(tmp_path: Path, service: None) -> No
     program("node")
     with stage(copied_project(EXAMPLE, tmp_path / "skills")) as made:
         id = made.start("joke", topic="nothing")
-        made.until(lambda: made.workshop.is_busy("joke"))
+        made.until(ASKED.is_set)
         made.executor.cancel(id)
         made.until(lambda: not made.workshop.is_busy("joke"))
         assert made.reported == []

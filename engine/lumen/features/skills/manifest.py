@@ -128,8 +128,10 @@ def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report:
             report(SKILL_SCHEMA, (key, "required", i), f"`{name}` is required, and not described", hint)
     if properties:  # a value of an enumeration of texts can be written short, as every text can
         plain["properties"] = properties = {name: _typed(inner) for name, inner in properties.items()}
-    for name, inner in properties.items():
-        _check_default(inner, (key, "properties", name, "default"), report)
+    defaults = {name: inner["default"] for name, inner in properties.items() if _has_default(inner)}
+    fits = not faults(defaults, {**plain, "required": []})
+    for name in defaults:
+        _check_default(properties[name], (key, "properties", name, "default"), report, fits=fits)
     return plain
 
 
@@ -139,11 +141,14 @@ def _typed(schema: Any) -> Any:
     return {"type": "string", **schema} if values and all(isinstance(value, str) for value in values) else schema
 
 
-def _check_default(schema: Any, where: NodePath, report: DocumentReport) -> None:
-    if not isinstance(schema, Mapping) or "default" not in schema:
-        return
+def _has_default(schema: Any) -> bool:
+    return isinstance(schema, Mapping) and "default" in schema
+
+
+def _check_default(schema: Mapping[str, Any], where: NodePath, report: DocumentReport, *, fits: bool) -> None:
+    """Report a default that does not fit its schema; all of them fit if `fits`, except perhaps as durations."""
     default = schema["default"]
-    for fault in faults({"default": default}, {"properties": {"default": schema}})[:1]:
+    for fault in [] if fits else faults({"default": default}, {"properties": {"default": schema}})[:1]:
         report(SKILL_DEFAULT, where, f"this default does not fit: {fault.message}", fault.hint)
         return
     if schema.get("format") == "duration" and seconds(default) is None:
