@@ -219,7 +219,7 @@ class Executor:
             activity = self._begin(command, now)
             self._rests = isinstance(command, Rest) or (self._rests and not isinstance(command, Wake | Posture))
             return activity
-        if command.row is None:  # the thread of a project's own verb checks them: making ten schemas takes a tick
+        if command.row is None:  # the thread of a project's own verb checks them: ten new schemas cost a tick
             check_arguments(command)
         if self._rests and row_of(command).moves:
             raise RobotRefusedError("the robot rests or has fallen: `wake` it first")

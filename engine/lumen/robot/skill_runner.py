@@ -58,7 +58,7 @@ class SkillRunner:
         self._begun.put(None)
 
     def _start(self) -> None:
-        """Start the thread of each call: for ten calls that takes a tick longer than it has."""
+        """Start the thread of each call: ten in one tick would be too slow."""
         while (call := self._begun.get()) is not None:
             call.thread.start()
 
