@@ -203,6 +203,9 @@ def test_what_somebody_says_is_text_and_never_markup(viewer: Viewer, served: Ser
     said = "<img src=x onerror=alert(1)><script>alert(1)</script>"
     until(lambda: served.browser.command("event", event="face", data={"x": 160, "y": 120}).data["state"] == "finished")
     served.browser.command("event", event="heard", data={"result": said})
+    viewer.shows(said, ".talk-lines")
+    until(lambda: viewer.all(".entry"), HANG)
+    viewer.run("document.querySelector('.entries').scrollIntoView()")  # what is not seen is not laid out
     viewer.shows(said, ".entries")
     assert viewer.all("main img, main script") == []
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.errors import UsageError
 
-Scope = MutableMapping[str, Any]
+AsgiScope = MutableMapping[str, Any]
 """A request, as ASGI has it."""
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
 Address = ipaddress.IPv4Address | ipaddress.IPv6Address
@@ -30,7 +30,7 @@ class TrustedProxies:
         except ValueError as error:
             raise UsageError(f"`proxies` of the console: {error}; write an address such as 127.0.0.1") from None
 
-    def seen(self, scope: Scope) -> Scope:
+    def seen(self, scope: AsgiScope) -> AsgiScope:
         """Return the request as it came to the first proxy: with its `client` and its `scheme`."""
         client = scope.get("client")
         if not client or not self._trusts(_address(client[0])):
@@ -57,7 +57,7 @@ class TrustedProxies:
         return address is not None and any(address in network for network in self._networks)
 
 
-def _values(scope: Scope, name: bytes) -> list[str]:
+def _values(scope: AsgiScope, name: bytes) -> list[str]:
     """The comma-separated values of all headers of that name, in order."""
     said = b",".join(value for header, value in scope["headers"] if header == name).decode("latin-1")
     return [value.strip() for value in said.split(",") if value.strip()]

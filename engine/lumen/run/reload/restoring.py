@@ -2,7 +2,7 @@
 
 import os
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
 from datetime import datetime
 from itertools import count
@@ -44,7 +44,11 @@ def restore(root: Path, wanted: Mapping[str, bytes] | None) -> Restored:
     if wanted is None:
         return Restored(trouble=NOT_KEPT)
     there = read_files(root)
-    paths = tuple(path for path in sorted({*there, *wanted}) if _own(path) and there.get(path) != wanted.get(path))
+    paths = tuple(
+        path
+        for path in sorted({*there, *wanted})
+        if belongs(path) and path != FLEET_FILE and there.get(path) != wanted.get(path)
+    )
     if not paths:
         return Restored()
     try:
@@ -57,10 +61,6 @@ def restore(root: Path, wanted: Mapping[str, bytes] | None) -> Restored:
     with suppress(ValueError):
         folder = folder.relative_to(root)
     return Restored(paths, folder.as_posix())
-
-
-def _own(path: str) -> bool:
-    return path != FLEET_FILE and belongs(path)
 
 
 def _check(root: Path, paths: tuple[str, ...], there: Mapping[str, bytes]) -> None:
@@ -93,50 +93,35 @@ def _new_folder(kept: Path) -> Path:
 
 
 def _replace(root: Path, wanted: Mapping[str, bytes | None], there: Mapping[str, bytes]) -> None:
-    """Bring the files into the folder; if one can't be, those before it are as they were. Raises OSError."""
-    drafts = dict(_drafts(root, wanted))
-    done: list[str] = []
-    try:
-        for path, content in wanted.items():
-            file = on_disk(root, path)
-            if content is None:
-                file.unlink(missing_ok=True)
-            else:
-                os.replace(drafts[path], file)
-            done.append(path)
-    except OSError:
-        for path in done:
-            with suppress(OSError):
-                _undo(on_disk(root, path), there.get(path))
-        for draft in drafts.values():
-            draft.unlink(missing_ok=True)
-        raise
+    """Bring the files into the folder; if one can't be, all are as they were. Raises OSError.
 
-
-def _drafts(root: Path, wanted: Mapping[str, bytes | None]) -> Iterator[tuple[str, Path]]:
-    """Write each file under another name first: a full disk is noticed before anything is replaced. Raises OSError."""
-    written: list[Path] = []
+    Each is written under another name first: a full disk is noticed before anything is replaced.
+    """
+    files = {path: on_disk(root, path) for path in wanted}
+    drafts, done = dict[str, Path](), list[str]()
     try:
         for path, content in wanted.items():
             if content is not None:
-                file = on_disk(root, path)
-                draft = file.with_name(f".{file.name}{_NEW}")
-                written.append(draft)
-                _write(draft, content)
+                drafts[path] = files[path].with_name(f".{files[path].name}{_NEW}")
+                _write(drafts[path], content)
                 with suppress(FileNotFoundError):
-                    shutil.copymode(file, draft)
-                yield path, draft
+                    shutil.copymode(files[path], drafts[path])
+        for path, file in files.items():
+            done.append(path)
+            if path in drafts:
+                os.replace(drafts[path], file)
+            else:
+                file.unlink(missing_ok=True)
     except OSError:
-        for draft in written:
+        for path in done:
+            with suppress(OSError):
+                if path in there:
+                    _write(files[path], there[path])
+                else:
+                    files[path].unlink(missing_ok=True)
+        for draft in drafts.values():
             draft.unlink(missing_ok=True)
         raise
-
-
-def _undo(file: Path, content: bytes | None) -> None:
-    if content is None:
-        file.unlink(missing_ok=True)
-    else:
-        _write(file, content)
 
 
 def _write(file: Path, content: bytes) -> None:
