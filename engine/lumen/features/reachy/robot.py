@@ -65,11 +65,12 @@ class ReachyRobot(ExecutingRobot):
         self._away = 0.0
         try:
             self._link.open()
+            self._find_awake()
         except RobotError:
+            self._link.close()
             self._api.close()
             raise
         self._moves.start()
-        self._find_awake()
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):
