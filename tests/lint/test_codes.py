@@ -20,6 +20,7 @@ RAISING = (
     "features/answers",
     "features/console",
     "features/fleet",
+    "features/reachy",
     "features/show",
     "features/simulation",
     "features/skills",

@@ -8,11 +8,11 @@ from lumen.features.reachy.daemon_api import DaemonAddress, DaemonApi
 from lumen.features.reachy.set_up import ADDRESS
 from lumen.features.reachy.taking_over import TESTED
 
-Found = tuple[str, str, str]
+DoctorFinding = tuple[str, str, str]
 """What was looked at, how bad it is, and a text."""
 
 
-def examine(options: Mapping[str, str]) -> Iterator[Found]:
+def examine(options: Mapping[str, str]) -> Iterator[DoctorFinding]:
     """Iterate over what is found at the address of the option `url`. Raises UsageError if it is no address."""
     try:
         demand("reachy", "a Reachy Mini", "websockets")
@@ -32,7 +32,7 @@ def examine(options: Mapping[str, str]) -> Iterator[Found]:
         yield "daemon", "error", f"{error}: {hint}"
 
 
-def _daemon(api: DaemonApi, status: Mapping[str, object]) -> Iterator[Found]:
+def _daemon(api: DaemonApi, status: Mapping[str, object]) -> Iterator[DoctorFinding]:
     version, tested = str(status["version"]), ".".join(map(str, TESTED))
     kind = "Wireless" if status.get("wireless_version") else "Lite"
     if status.get("simulation_enabled") or status.get("mockup_sim_enabled"):
@@ -49,7 +49,7 @@ def _daemon(api: DaemonApi, status: Mapping[str, object]) -> Iterator[Found]:
         yield "robot", "error", f"the daemon is `{state}`: {status.get('error') or 'look at its log'}"
 
 
-def _others(api: DaemonApi) -> Iterator[Found]:
+def _others(api: DaemonApi) -> Iterator[DoctorFinding]:
     lock = api.ask("GET", "/api/daemon/robot-app-lock-status")
     running = api.ask("GET", "/api/move/running")
     if lock.get("state") != "free":
@@ -68,7 +68,7 @@ def _others(api: DaemonApi) -> Iterator[Found]:
         )
 
 
-def _media(api: DaemonApi) -> Iterator[Found]:
+def _media(api: DaemonApi) -> Iterator[DoctorFinding]:
     if api.ask("GET", "/api/media/status").get("available"):
         yield "loudspeaker", "ok", "the daemon plays sounds"
     else:

@@ -107,8 +107,12 @@ class ReachyLink:
         try:
             opened = connect(
                 f"ws://{self._address.authority}/ws/sdk",
-                open_timeout=OPEN_PATIENCE, close_timeout=0.5, ping_interval=None, compression=None, proxy=None,
-            )  # fmt: skip
+                open_timeout=OPEN_PATIENCE,
+                close_timeout=0.5,
+                ping_interval=None,
+                compression=None,
+                proxy=None,
+            )
             self._socket = self._open.enter_context(opened)
         except InvalidHandshake as error:
             raise RobotUnreachableError(f"what answers at {self._address} is no daemon of a Reachy Mini") from error

@@ -5,7 +5,6 @@ from collections.abc import Collection, Mapping
 from lumen.features.reachy.following import limited, possible
 from lumen.features.reachy.pose import JOINTS
 from lumen.language.robots import Body
-from lumen.ports import Aim
 
 SENT_TOLERANCE = 1e-5
 """Targets that differ by less than this [rad, m] are not sent again: the daemon holds the last one."""
@@ -29,11 +28,9 @@ class Mover:
         self.goal, self.sent = dict(joints), dict(joints)
         self._aims.clear()
 
-    def aim(self, aim: Aim, free: Collection[str]) -> None:
-        """Move those joints of an aim that are `free`, at most at a share of their greatest speed."""
-        self._aims |= {
-            name: (angle, aim.speed) for name, angle in aim.angles.items() if name in self.goal and name in free
-        }
+    def aim(self, angles: Mapping[str, float], speed: float) -> None:
+        """Move these joints there [rad, m], at most at `speed`, a share of their greatest speed."""
+        self._aims |= {name: (angle, speed) for name, angle in angles.items() if name in self.goal}
 
     def drop_aims(self, joints: Collection[str]) -> None:
         """A command owns these joints now."""

@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from math import asin, atan2, cos, hypot, sin
 from typing import Any
 
+from lumen.motion.projection import Matrix3
+
 HEAD = ("head_x", "head_y", "head_z", "head_roll", "head_pitch", "head_yaw")
 """The joints of the head, in the order of the daemon's x, y, z, roll, pitch and yaw: [m], then [rad]."""
 BODY, LEFT, RIGHT = "body_yaw", "left_antenna", "right_antenna"
@@ -11,8 +13,6 @@ JOINTS = (*HEAD, BODY, LEFT, RIGHT)
 
 LYING_HEIGHT, LYING_PITCH = -0.035, 0.3
 """The head of a robot that sleeps is lower than this [m], and tilted farther [rad]; it sinks more with time."""
-
-Matrix3 = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Matrix3:

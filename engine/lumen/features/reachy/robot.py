@@ -44,9 +44,15 @@ class ReachyRobot(ExecutingRobot):
     """
 
     def __init__(
-        self, body: Body, url: str, clock: Callable[[], float], *, voice: str = "none", language: str = "en",
+        self,
+        body: Body,
+        url: str,
+        clock: Callable[[], float],
+        *,
+        voice: str = "none",
+        language: str = "en",
         root: Path = Path(),
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.body, self._clock = body, clock
         self._api = DaemonApi(DaemonAddress(url))
         self._bounds, self._part = CommandBounds(body), part_of(body)
@@ -78,7 +84,8 @@ class ReachyRobot(ExecutingRobot):
         elif isinstance(command, Aim):
             if (aim := self._bounds.aim(command)) and self._mover.awake and not self._yields:
                 self._life.led(aim.angles, self._clock())
-                self._mover.aim(aim, {name for name in aim.angles if self._free(name)})
+                free = {name: angle for name, angle in aim.angles.items() if self._free(name)}
+                self._mover.aim(free, aim.speed)
         else:
             if isinstance(command, Rest):
                 self._was_awake = False

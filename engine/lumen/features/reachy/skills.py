@@ -14,7 +14,7 @@ from lumen.features.reachy.mover import Mover
 from lumen.features.reachy.others import DaemonMoves
 from lumen.features.reachy.pose import HEAD, distance
 from lumen.features.reachy.reach import shortest, shortfall
-from lumen.features.reachy.sounds import Loaded, RobotSounds
+from lumen.features.reachy.sounds import LoadedSound, RobotSounds
 from lumen.features.reachy.steps import StepActivity, Steps
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.motions import MotionDefinition
@@ -44,9 +44,14 @@ class ReachySkills:
     """Begins activities. `measured` returns the joints as they were measured last, `notice` takes events."""
 
     def __init__(
-        self, api: DaemonApi, mover: Mover, moves: DaemonMoves, sounds: RobotSounds,
-        measured: Callable[[], Measured], notice: EventSink,
-    ) -> None:  # fmt: skip
+        self,
+        api: DaemonApi,
+        mover: Mover,
+        moves: DaemonMoves,
+        sounds: RobotSounds,
+        measured: Callable[[], Measured],
+        notice: EventSink,
+    ) -> None:
         self._api, self._mover, self._moves, self._sounds = api, mover, moves, sounds
         self._measured, self._notice = measured, notice
         self._body = mover.body
@@ -222,8 +227,8 @@ class ReachySkills:
                 self._api.later(lambda: stop(move))
             raise
 
-    def _play(self, load: Callable[[], Loaded]) -> Steps:
-        sound: Loaded = yield self._api.later(load)
+    def _play(self, load: Callable[[], LoadedSound]) -> Steps:
+        sound: LoadedSound = yield self._api.later(load)
         if sound.file:
             yield self._api.post("/api/media/play_sound", {"file": sound.file})
         begin = now = yield None

@@ -23,7 +23,7 @@ MUTE = "none"
 _log = logging.getLogger(__name__)
 
 
-class Loaded(NamedTuple):
+class LoadedSound(NamedTuple):
     """A sound that the daemon can play: how long it takes [s], and its `file` there; empty if it stays silent."""
 
     duration: float
@@ -54,9 +54,9 @@ class RobotSounds:
         self._has_media = None
         self._uploaded.clear()
 
-    def speech(self, text: str, language: str) -> Loaded:
+    def speech(self, text: str, language: str) -> LoadedSound:
         """Return a text as sound; silent if it can't be had, which is logged once. Raises RobotError."""
-        silent = Loaded(speech_duration(text))
+        silent = LoadedSound(speech_duration(text))
         if self._voice is None or not text.strip() or not self._media():
             return silent
         try:
@@ -66,20 +66,20 @@ class RobotSounds:
                 seconds = voice.begin(text, language, self.volume, 0.0)
                 voice.end(seconds)
                 voice.close()
-                return Loaded(seconds, self._upload(file.read_bytes()))
+                return LoadedSound(seconds, self._upload(file.read_bytes()))
         except RobotError:
             raise
         except (LumenError, OSError) as error:
             self._warnings([f"the robot does not speak: {error}"])
             return silent
 
-    def sound(self, file: str, length: float) -> Loaded:
+    def sound(self, file: str, length: float) -> LoadedSound:
         """Return a sound file of the project; silent if the robot plays none. Raises RobotError."""
         if not self._media():
-            return Loaded(length)
+            return LoadedSound(length)
         try:
             content = on_disk(self._root, file).read_bytes()
-            return Loaded(length, self._upload(quieter(content, self.volume)))
+            return LoadedSound(length, self._upload(quieter(content, self.volume)))
         except (OSError, wave.Error, EOFError) as error:
             raise RobotFailedError(f"the sound {file} can't be read: {error}") from error
 
