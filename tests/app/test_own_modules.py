@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from lumen.bus import Bus, connect, join
 from lumen.bus.memory import MemoryBus
 from lumen.language.events import Event
 from lumen.language.modules import ModuleSettings
@@ -18,6 +19,7 @@ from lumen.run.parts.own_module import OwnModulePart
 from lumen.upkeep.supervised_process import FIRST_PAUSE, MAX_LINES, SupervisedProcess
 from tests import ROOT
 from tests.guarded import PIPE, STDOUT, Guarded
+from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
 
 pytestmark = pytest.mark.process
@@ -73,9 +75,15 @@ class Starter:
 
 
 def ended(process: SupervisedProcess) -> str:
-    reasons: list[str] = []
-    until(lambda: reasons.append(process.tick()) or reasons[-1])
-    return reasons[-1]
+    reason = ""
+
+    def over() -> str:
+        nonlocal reason
+        reason = process.tick()
+        return reason
+
+    until(over)
+    return reason
 
 
 def printed(process: SupervisedProcess, count: int) -> list[str]:
@@ -166,9 +174,9 @@ def test_the_program_ends_with_an_exhibition_that_is_killed(tmp_path: Path) -> N
 class Watched:
     """A part without an exhibition around it."""
 
-    def __init__(self, project: Project, settings: ModuleSettings, time: Time) -> None:
+    def __init__(self, project: Project, settings: ModuleSettings, time: Time, bus: Bus | None = None) -> None:
         self.project = project
-        self.bus, self.time = MemoryBus(), time
+        self.bus, self.time = bus or MemoryBus(), time
         self.lines: list[str] = []
         self.events: list[Event] = []
         with_module = type(project)(**{**vars(project), "modules": {"mood": settings}})
@@ -297,3 +305,16 @@ def test_an_exhibition_starts_its_module_and_hears_of_its_loss(tmp_path: Path) -
     assert "mood ValueError: a bad mood" in shown
     assert "mood ended with exit code 1: ValueError: a bad mood; the next attempt is in 1 s" in shown
     assert "mood is found again, after" in shown
+
+
+def test_a_program_on_another_machine_shows_that_it_lives_over_a_broker(
+    project: Project, time: Time, broker: RabbitMQ
+) -> None:
+    """It passes what `lumen run` would set for it; a raw message on the presence key counts as well."""
+    bus = connect(broker.url)
+    watched = Watched(project, ModuleSettings(command=("mood",), health=60.0), time, bus)
+    with join("mood", robot=project.robot, bus=broker.url) as module:
+        until(lambda: watched.tick() == [] and watched.part.status["state"] == "here", meanwhile=module.alive)
+    until(lambda: watched.tick() == ["mood.lost"])
+    assert watched.events[-1].data["reason"] == "it has left"
+    bus.close()

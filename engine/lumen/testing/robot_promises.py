@@ -3,10 +3,9 @@
 from math import nan
 
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Volume, Wake
-from lumen.ports import Aim, Battery, Joints, Perform, Sense, Sonar, Tactile
+from lumen.ports import Aim, Battery, Joints, Perform, Sense
 from lumen.testing.trial import Trial
 
-READINGS = {Sense.JOINT: Joints, Sense.SONAR: Sonar, Sense.TACTILE: Tactile, Sense.BATTERY: Battery}
 ENDS = ("done", "error", "cancelled")
 
 
@@ -124,12 +123,8 @@ def test_senses_are_readings_of_its_body(trial: Trial) -> None:
     """`read` returns the reading of a sense in SI units, or None without that sense."""
     trial.live(0.2)
     body = trial.project.body
-    for sense, kind in READINGS.items():
-        found = trial.read(sense)
-        if found is not None and not isinstance(found, kind):
-            trial.fail(
-                f"returned {type(found).__name__} as its `{sense.value}`: it must be a `{kind.__name__}` or None"
-            )
+    for sense in Sense:
+        trial.read(sense)  # fails for another type
     joints = trial.read(Sense.JOINT)
     if isinstance(joints, Joints):
         if strange := [name for name in joints.names if name not in body.joints]:
