@@ -50,6 +50,7 @@ def test_rows_of_routes_that_lumen_new_wrote_are_never_unused(tmp_path: Path) ->
     folder = tmp_path / "mine"
     assert main(["new", str(folder)]) == 0
     shutil.rmtree(folder / "behaviors")
+    shutil.rmtree(folder / "functions")
     (folder / "behaviors").mkdir()
     (folder / "behaviors" / "tour.yaml").write_text("states: {idle: {on: {fallen: idle}}}\n", "utf-8")
     main_file = folder / "lumen.yaml"
