@@ -122,7 +122,7 @@ def join(name: str = "", *, robot: str = "", bus: str = "", project: str = "") -
     until = time.monotonic() + REACH_TIMEOUT
     while True:
         try:
-            reached = reach_exhibition(project or None, None)
+            reached = reach_exhibition(project or None, None, robot)
         except BusUnreachableError:
             if time.monotonic() > until:
                 raise
