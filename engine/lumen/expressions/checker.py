@@ -24,7 +24,7 @@ from lumen.expressions.expression_findings import (
 from lumen.expressions.facts import KnownFacts, facts, prefixes
 from lumen.expressions.function_table import functions
 from lumen.expressions.kinds import BOOLEAN, KINDS, LIST, MAP, NULL, NUMBER, TEXT
-from lumen.expressions.own_functions import OwnFunction, OwnFunctions
+from lumen.expressions.own_functions import KnownFunctions, OwnFunction
 from lumen.expressions.parser import parse_expression
 from lumen.expressions.printer import unparse
 from lumen.expressions.scope import ROOTS
@@ -91,7 +91,7 @@ def check_expression(
     states: Collection[str] | None = None,
     lists: Mapping[str, Any] | None = None,
     variables: Mapping[str, Any] | None = None,
-    functions: OwnFunctions = MappingProxyType({}),
+    functions: KnownFunctions = MappingProxyType({}),
     expected: Mapping[str, Any] | None = None,
 ) -> list[ExpressionFinding]:
     """Everything wrong with an expression, in the order it stands; never raises, whatever the source.

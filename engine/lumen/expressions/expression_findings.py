@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from lumen.expressions.kinds import KIND_DESCRIPTIONS
-from lumen.expressions.own_functions import OwnFunctions
+from lumen.expressions.own_functions import KnownFunctions
 from lumen.expressions.tree import ExpressionNode
 from lumen.language.diagnostics import ERROR, Code
 
@@ -68,7 +68,7 @@ class Declarations:
     states: Collection[str] | None = None
     lists: Mapping[str, Any] | None = None
     variables: Mapping[str, Any] = field(default_factory=dict)
-    functions: OwnFunctions = field(default_factory=dict)
+    functions: KnownFunctions = field(default_factory=dict)
     pure: bool = False
 
 

@@ -36,7 +36,7 @@ class OwnFunction:
     body: ExpressionNode
 
 
-OwnFunctions = Mapping[str, OwnFunction | None]
+KnownFunctions = Mapping[str, OwnFunction | None]
 """The functions of a project by name; None for one whose file is broken."""
 
 
@@ -44,12 +44,12 @@ class BrokenFunctionError(Exception):
     """An expression calls a function whose file is broken, which lint reports there."""
 
 
-def called(tree: ExpressionNode, functions: OwnFunctions) -> list[FunctionCall]:
+def called(tree: ExpressionNode, functions: KnownFunctions) -> list[FunctionCall]:
     """Return the calls of these functions in a tree."""
     return [node for node, _ in walk(tree) if isinstance(node, FunctionCall) and node.function in functions]
 
 
-def expanded(source: str, functions: OwnFunctions) -> str:
+def expanded(source: str, functions: KnownFunctions) -> str:
     """Return the source with each call of these functions replaced; without a call, the same source.
 
     Raises BrokenFunctionError for a call of a broken function, ExpressionError if the result is longer or deeper than
@@ -65,7 +65,7 @@ def expanded(source: str, functions: OwnFunctions) -> str:
     return text
 
 
-def expanded_tree(tree: ExpressionNode, functions: OwnFunctions) -> ExpressionNode:
+def expanded_tree(tree: ExpressionNode, functions: KnownFunctions) -> ExpressionNode:
     """Return the tree with each call of these functions replaced. Raises what `expanded` does."""
     return _Expansion(functions).of(tree)
 
@@ -77,7 +77,7 @@ class _Expansion:
     large is small in memory, and is refused before anything walks through it.
     """
 
-    def __init__(self, functions: OwnFunctions) -> None:
+    def __init__(self, functions: KnownFunctions) -> None:
         self.functions = functions
         self.measured: dict[int, tuple[ExpressionNode, int, int]] = {}
         """By the identity of a node: the node, so that it lives, its number of nodes and of levels."""

@@ -11,7 +11,7 @@ from lumen.expressions.compiler import compile_expression
 from lumen.expressions.expression_findings import EXPRESSION_SYNTAX, ExpressionFinding
 from lumen.expressions.kinds import FaultError
 from lumen.expressions.operators import bounded
-from lumen.expressions.own_functions import OwnFunctions, expanded
+from lumen.expressions.own_functions import KnownFunctions, expanded
 from lumen.expressions.scope import MAX_TEXT_LENGTH, Scope
 from lumen.expressions.tokens import token_at
 
@@ -112,7 +112,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def expanded_template(text: str, functions: OwnFunctions) -> str:
+def expanded_template(text: str, functions: KnownFunctions) -> str:
     """Return the text with `expanded` done in each `{{ expression }}`; raises what that does."""
     if not any(name in text for name in functions):
         return text

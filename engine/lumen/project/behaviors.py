@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from lumen.expressions import unparse
 from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
-from lumen.expressions.own_functions import OwnFunctions
+from lumen.expressions.own_functions import KnownFunctions
 from lumen.language.buttons import Button
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
@@ -64,7 +64,7 @@ def build_machine(
     languages: Collection[str] = (),
     shipped: bool = False,
     verbs: OwnVerbs = NO_VERBS,
-    functions: OwnFunctions = MappingProxyType({}),
+    functions: KnownFunctions = MappingProxyType({}),
 ) -> MachineDefinition | None:
     """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
 
@@ -95,7 +95,7 @@ class _WordsAround(NamedTuple):
     known: Collection[str]
     languages: Collection[str]
     shipped: bool
-    functions: OwnFunctions
+    functions: KnownFunctions
 
 
 class _Builder:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import ProjectError
-from lumen.expressions.own_functions import OwnFunctions
+from lumen.expressions.own_functions import KnownFunctions
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import Code, Diagnostic, Place, gathered
 from lumen.language.folders import KNOWLEDGE_FOLDER
@@ -60,7 +60,7 @@ class ProjectDraft:
     stories: dict[str, Story] = field(default_factory=dict)
     sayings: dict[str, SayingSet] = field(default_factory=dict)
     functions: dict[str, FunctionDefinition] = field(default_factory=dict)
-    known_functions: OwnFunctions = field(default_factory=dict)
+    known_functions: KnownFunctions = field(default_factory=dict)
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     names: dict[str, frozenset[str]] = field(default_factory=dict)
     reports: dict[str, DocumentReport] = field(default_factory=dict)

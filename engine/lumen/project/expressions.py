@@ -21,7 +21,7 @@ from lumen.expressions.expression_findings import (
 )
 from lumen.expressions.function_table import drawing_functions
 from lumen.expressions.functions import CAUGHT
-from lumen.expressions.own_functions import BrokenFunctionError, OwnFunctions, expanded
+from lumen.expressions.own_functions import BrokenFunctionError, KnownFunctions, expanded
 from lumen.expressions.templates import expanded_template
 from lumen.language.actions import ComputedValue, Expression, Template
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, did_you_mean
@@ -37,7 +37,7 @@ from lumen.talk.hearing import HEARD
 
 FUNCTION_SIZE = Code("function-size", "expressions", ERROR, "an expression is too large with its functions put in")
 
-Expand = Callable[[str, OwnFunctions], str]
+Expand = Callable[[str, KnownFunctions], str]
 """`expanded` or `expanded_template`."""
 
 
@@ -165,7 +165,7 @@ class Expressions:
 
 
 def expanded_here(
-    expand: Expand, source: str, functions: OwnFunctions, report: DocumentReport, where: NodePath, written: str = ""
+    expand: Expand, source: str, functions: KnownFunctions, report: DocumentReport, where: NodePath, written: str = ""
 ) -> str | None:
     """Return the sound expression or text at a path with the project's functions put in.
 

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
-from lumen.expressions.own_functions import OwnFunctions
+from lumen.expressions.own_functions import KnownFunctions
 from lumen.language.diagnostics import ERROR, Code, NodePath, Place, Related, did_you_mean
 from lumen.language.machines import Answer
 from lumen.language.words import Words
@@ -40,7 +40,7 @@ class KnownWords(NamedTuple):
     anyhow: frozenset[str] = frozenset()
     supplied: Any = None
     offered: frozenset[str] = frozenset()
-    functions: OwnFunctions = MappingProxyType({})
+    functions: KnownFunctions = MappingProxyType({})
 
 
 def known_words(

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from lumen.expressions import check_expression
-from lumen.expressions.own_functions import OwnFunctions, expanded
+from lumen.expressions.own_functions import KnownFunctions, expanded
 from lumen.language.actions import Expression
 from lumen.language.diagnostics import NodePath
 from lumen.language.properties import Property
@@ -35,7 +35,7 @@ def build_properties(data: Mapping[str, Any], report: DocumentReport, read: Read
     return tuple(found)
 
 
-def unbound_conditions(report: DocumentReport, functions: OwnFunctions) -> ReadCondition:
+def unbound_conditions(report: DocumentReport, functions: KnownFunctions) -> ReadCondition:
     """Return the reader of conditions of a file that does not declare what they name."""
 
     def read(source: str, where: NodePath) -> Expression | None:

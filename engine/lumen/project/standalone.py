@@ -7,7 +7,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, Self
 
 from lumen.errors import ProjectError
-from lumen.expressions.own_functions import OwnFunctions
+from lumen.expressions.own_functions import KnownFunctions
 from lumen.language.diagnostics import Diagnostic, has_errors
 from lumen.language.folders import FUNCTIONS_FOLDER
 from lumen.language.machines import MachineDefinition
@@ -136,7 +136,7 @@ class _Family:
         self.machines[name] = machine
         return [invoke.behavior for state in machine.states.values() for invoke in state.invoke]
 
-    def join(self, shelf: _Shelf) -> OwnFunctions:
+    def join(self, shelf: _Shelf) -> KnownFunctions:
         """Read all functions; faults of one count only if the behaviours call it."""
         read, faults = dict[str, BuiltFile[FunctionFile]](), list[Diagnostic]()
         for name in shelf.names:

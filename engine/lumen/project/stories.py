@@ -5,7 +5,7 @@ from math import isfinite
 from types import MappingProxyType
 from typing import Any
 
-from lumen.expressions.own_functions import OwnFunctions
+from lumen.expressions.own_functions import KnownFunctions
 from lumen.language.added_verbs import given_arguments
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
@@ -47,7 +47,7 @@ def build_story(
     *,
     name: str,
     verbs: OwnVerbs = NO_VERBS,
-    functions: OwnFunctions = MappingProxyType({}),
+    functions: KnownFunctions = MappingProxyType({}),
 ) -> Story | None:
     """Return the story in the data of `behaviors/stories/NAME.yaml`, or None if it has no steps.
 
