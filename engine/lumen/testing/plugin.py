@@ -11,7 +11,7 @@ import pytest
 
 if TYPE_CHECKING:
     from lumen.language.projects import Project
-    from lumen.testing.trial import Trial
+    from lumen.testing.trial import RobotTrial
 
 PROMISES = Path(__file__).with_name("robot_promises.py")
 
@@ -51,13 +51,13 @@ def lumen_project(request: pytest.FixtureRequest) -> "Project":
 
 
 @pytest.fixture
-def trial(request: pytest.FixtureRequest, lumen_project: "Project") -> "Iterator[Trial]":
+def trial(request: pytest.FixtureRequest, lumen_project: "Project") -> "Iterator[RobotTrial]":
     """The robot of `--lumen-robot`, made anew and started, within the limits of the project's body."""
     from lumen.errors import LumenError
-    from lumen.testing.trial import Trial
+    from lumen.testing.trial import RobotTrial
 
     try:
-        made = Trial(request.config.getoption("--lumen-robot"), lumen_project)
+        made = RobotTrial(request.config.getoption("--lumen-robot"), lumen_project)
     except LumenError as error:
         pytest.fail(str(error), pytrace=False)
     yield made

@@ -4,12 +4,12 @@ from math import nan
 
 from lumen.language.commands import Look, Posture, Rest, Say, Stop, Volume, Wake
 from lumen.ports import Aim, Battery, Joints, Perform, Sense
-from lumen.testing.trial import Trial
+from lumen.testing.trial import RobotTrial
 
 ENDS = ("done", "error", "cancelled")
 
 
-def test_a_command_is_answered_once(trial: Trial) -> None:
+def test_a_command_is_answered_once(trial: RobotTrial) -> None:
     """`poll` returns one end of each command, whatever becomes of it."""
     trial.start("say", Say("Hello there"))
     trial.start("look", Look(0.2, 0.1))
@@ -20,7 +20,7 @@ def test_a_command_is_answered_once(trial: Trial) -> None:
             trial.fail(f"answered the command `{id}` {len(trial.answers(id))} times: {', '.join(trial.answers(id))}")
 
 
-def test_an_answer_is_an_end(trial: Trial) -> None:
+def test_an_answer_is_an_end(trial: RobotTrial) -> None:
     """An end is `done`, `error` with a reason, or `cancelled`."""
     trial.start("volume", Volume(0.5))
     [end] = trial.answered("volume")
@@ -31,7 +31,7 @@ def test_an_answer_is_an_end(trial: Trial) -> None:
         trial.fail(f"answered `error` with {event.data!r}: its data must be " + '{"reason": "…"}')
 
 
-def test_what_it_can_not_do_is_an_answer(trial: Trial) -> None:
+def test_what_it_can_not_do_is_an_answer(trial: RobotTrial) -> None:
     """A posture that no body has is an error that names it, and no exception."""
     trial.start("a", Posture("Handstand"))
     [end] = trial.answered("a")
@@ -39,7 +39,7 @@ def test_what_it_can_not_do_is_an_answer(trial: Trial) -> None:
         trial.fail(f"answered `{end}` to the posture `Handstand`, which its body does not have: that is an `error`")
 
 
-def test_what_is_no_number_moves_nothing(trial: Trial) -> None:
+def test_what_is_no_number_moves_nothing(trial: RobotTrial) -> None:
     """A goal that is not a number is refused."""
     trial.start("a", Look(nan))
     [end] = trial.answered("a")
@@ -47,7 +47,7 @@ def test_what_is_no_number_moves_nothing(trial: Trial) -> None:
         trial.fail(f"answered `{end}` to a look at an angle that is no number: that is an `error`")
 
 
-def test_a_cancelled_command_ends_soon(trial: Trial) -> None:
+def test_a_cancelled_command_ends_soon(trial: RobotTrial) -> None:
     """A command ends within two seconds after `cancel`; repeated and unknown ids do nothing."""
     trial.start("a", Say("A text that takes a while to say, because it has many words and one more."))
     trial.live(0.2)
@@ -59,7 +59,7 @@ def test_a_cancelled_command_ends_soon(trial: Trial) -> None:
         trial.fail(f"answered a command {len(trial.answers('a'))} times after `cancel`")
 
 
-def test_rest_ends_everything(trial: Trial) -> None:
+def test_rest_ends_everything(trial: RobotTrial) -> None:
     """A rest is done, and what ran before it is answered."""
     trial.start("say", Say("x" * 100))
     trial.live(0.3)
@@ -69,7 +69,7 @@ def test_rest_ends_everything(trial: Trial) -> None:
         trial.fail(f"answered `{end}` to a rest: a robot can always rest")
 
 
-def test_after_rest_it_wakes(trial: Trial) -> None:
+def test_after_rest_it_wakes(trial: RobotTrial) -> None:
     """A robot that rests wakes again."""
     trial.start("rest", Rest())
     trial.answered("rest")
@@ -79,7 +79,7 @@ def test_after_rest_it_wakes(trial: Trial) -> None:
         trial.fail(f"answered `{end}` to a wake after a rest")
 
 
-def test_a_stop_is_answered(trial: Trial) -> None:
+def test_a_stop_is_answered(trial: RobotTrial) -> None:
     """A stop is done, and ends what it names."""
     motion = next(iter(trial.project.motions.values()), None)
     if motion:
@@ -93,7 +93,7 @@ def test_a_stop_is_answered(trial: Trial) -> None:
         trial.answered("play", seconds=2.0)
 
 
-def test_an_aim_is_not_answered(trial: Trial) -> None:
+def test_an_aim_is_not_answered(trial: RobotTrial) -> None:
     """An aim has no id, so an answer to it would end another command."""
     joint = next(iter(trial.project.body.joints))
     trial.start("", Aim({joint: 0.0}, 0.5))
@@ -102,7 +102,7 @@ def test_an_aim_is_not_answered(trial: Trial) -> None:
         trial.fail(f"answered `{ends[0]}` to an aim, which is not answered")
 
 
-def test_what_began_is_told_once(trial: Trial) -> None:
+def test_what_began_is_told_once(trial: RobotTrial) -> None:
     """`begun` returns the id of a command once, and only of commands that were started."""
     trial.start("a", Say("Hello"))
     told: list[str] = []
@@ -119,7 +119,7 @@ def test_what_began_is_told_once(trial: Trial) -> None:
         trial.fail(f"returned the same command {len(told)} times from `begun`")
 
 
-def test_senses_are_readings_of_its_body(trial: Trial) -> None:
+def test_senses_are_readings_of_its_body(trial: RobotTrial) -> None:
     """`read` returns the reading of a sense in SI units, or None without that sense."""
     trial.live(0.2)
     body = trial.project.body
@@ -140,7 +140,7 @@ def test_senses_are_readings_of_its_body(trial: Trial) -> None:
         trial.fail(f"returned a battery of {battery.percentage} %")
 
 
-def test_it_can_be_closed_twice(trial: Trial) -> None:
+def test_it_can_be_closed_twice(trial: RobotTrial) -> None:
     """`close` is harmless when repeated."""
     trial.close()
     trial.close()

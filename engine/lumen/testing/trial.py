@@ -23,7 +23,7 @@ BLOCKING = 5.0
 """The longest time that a method may take [s]: a tick has 0.02 s, but a loaded machine is slow."""
 
 
-class Trial:
+class RobotTrial:
     """A new robot of a driver, as an exhibition uses it.
 
     A robot with a method `advance` lives in its own time, any other in real time. `now` is the time since its start
