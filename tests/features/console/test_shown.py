@@ -125,14 +125,21 @@ def test_a_roll_back_restores_the_file_and_names_the_newer_one(viewer: Viewer, o
     assert "See you tomorrow" not in viewer.text(".changes")
 
 
-def test_a_robot_is_drawn_only_once_its_pose_is_known(served: Served) -> None:
+def test_a_robot_is_drawn_only_once_its_pose_is_known(served: Served, hosted: Hosted) -> None:
+    names = list(hosted.exhibition.project.body.joints)
+    joints = {"name": names, "angle": [0.0] * len(names), "stiffness": [1.0] * len(names)}
+
+    def drawn() -> bool:
+        hosted.exhibition.node.bus.publish("avatar.NAO.data.joint", joints)
+        return bool(viewer.run(DRAWN))
+
     with closing(Viewer(first=NO_POSE)) as viewer:
         viewer.open(served.console.address, "robot/NAO/see", ready="canvas", see="hall")
         until(lambda: viewer.run(DRAWN) is not None, HANG)
         viewer.shows("Waiting for the first pose", ".hall")
-        assert viewer.run(DRAWN) is False
+        assert not drawn()
         viewer.run("globalThis.posing = true; globalThis.end(new Error('again'))")
-        until(lambda: viewer.run(DRAWN), HANG)
+        until(drawn, HANG)
 
 
 def test_a_phone_on_its_side_has_rest_beside_the_settings(viewer: Viewer, served: Served) -> None:
