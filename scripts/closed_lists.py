@@ -41,10 +41,6 @@ ON_PURPOSE: Mapping[tuple[str, str], str] = {
     ("language/diagnostics.py", "Severity"): "the levels that the formats of editors, GitHub and SARIF have",
     ("language/machines.py", "StateKind"): "the kinds of states that the algorithm of SCXML has",
     ("language/routes.py", "Carried"): "promises that every bus keeps; a new one would break the buses of packages",
-    (
-        "testing/robot_promises.py",
-        "READINGS",
-    ): "the senses that `lumen.ports` has classes for; a package's have their own",
     ("language/verbs.py", "VERBS"): "typed verbs of every robot (decision 119); packages have rows `verbs`",
     (
         "features/editor/names.py",

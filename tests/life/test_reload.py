@@ -31,7 +31,7 @@ class Told(RecordingRobot):
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    for name in ("models", "motions", "behaviors", "fuzzy", "schemas"):
+    for name in ("models", "motions", "behaviors", "functions", "fuzzy", "schemas"):
         shutil.copytree(ROOT / name, tmp_path / name)
     shutil.copy(ROOT / "lumen.yaml", tmp_path)
     return tmp_path

@@ -53,7 +53,7 @@ def test_a_body_on_wheels_needs_no_legs_no_camera_and_no_crouch() -> None:
     assert found == []
     assert body is not None
     assert body.camera is None
-    assert body.parts == {"head": ("Turn", "Bow"), "arms": ("Lift", "Grip"), "legs": ()}
+    assert body.parts == {"head": ("Turn", "Bow"), "arms": ("Lift", "Grip"), "legs": (), "body": ()}
     assert body.roles.base == Base("wheels", "LeftWheel", "RightWheel", 0.5, pytest.approx(1.5707963))
 
 
@@ -71,7 +71,9 @@ def test_joints_are_found_by_role() -> None:
 def test_every_joint_of_nao_has_a_role() -> None:
     body = lumen.load(SHIPPED).body
     assert {role.joint for role in body.roles.paths.values()} == set(body.joints)
-    assert set(JOINT_PATHS) - set(body.roles.paths) == {"antennas.left", "antennas.right", "head.roll"}
+    assert set(JOINT_PATHS) - set(body.roles.paths) == {
+        "antennas.left", "antennas.right", "body.yaw", "head.roll", "head.x", "head.y", "head.z",
+    }  # fmt: skip
     assert body.roles.base.kind == "biped"
 
 

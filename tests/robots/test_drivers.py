@@ -60,7 +60,7 @@ def test_the_driver_of_lumen_yaml_performs_unless_another_robot_is_named(root: P
 @for_each(
     ("name", "says"),
     [
-        ("printr", "did you mean `printer`? choose one of `naoqi`, `none`, `printer`, `recording`"),
+        ("printr", "did you mean `printer`? choose one of `naoqi`, `none`, `printer`, `reachy`, `recording`"),
         ("simulatoin", "did you mean `simulation`?"),
     ],
 )

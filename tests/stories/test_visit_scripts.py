@@ -37,13 +37,13 @@ def visit(*answered: Answered) -> RecordedVisit:
     ],
 )
 def test_a_verb_that_always_failed_or_never_ended(answered: list[Answered], found: dict[str, str]) -> None:
-    assert broken(visit(*answered), hanging=True, lasting=False) == found
+    assert broken(visit(*answered), (), hanging=True, lasting=False) == found
     failing = {verb: how for verb, how in found.items() if how == "fails"}
-    assert broken(visit(*answered), hanging=False, lasting=False) == failing
+    assert broken(visit(*answered), (), hanging=False, lasting=False) == failing
 
 
 def test_the_shortest_time_is_how_long_it_spoke() -> None:
     spoke = visit((SAY, "done", 2.0), (SAY, "done", 3.0), (PLAY, "done", 1.0))
-    assert broken(spoke, hanging=False, lasting=True) == {"say": 2.0}
-    assert broken(visit((SAY, "error", 0.0)), hanging=False, lasting=True) == {"say": "fails"}
-    assert broken(visit((SAY, "cancelled", 4.0)), hanging=False, lasting=True) == {}
+    assert broken(spoke, (), hanging=False, lasting=True) == {"say": 2.0}
+    assert broken(visit((SAY, "error", 0.0)), (), hanging=False, lasting=True) == {"say": "fails"}
+    assert broken(visit((SAY, "cancelled", 4.0)), (), hanging=False, lasting=True) == {}

@@ -247,7 +247,7 @@ def test_a_story_of_a_recorded_visit_contains_its_result(
         ),
         (
             '"hop": VerbRow(performer="a", parts=("legs", "feet"))',
-            "its verb `hop` is ignored: `parts` has `feet`, which is no part of a body: there are `arms`, `ears`, ",
+            "its verb `hop` is ignored: `parts` has `feet`, which is no part of a body: there are `arms`, ",
         ),
         (
             '"hop": VerbRow(performer="a", takes="long")',

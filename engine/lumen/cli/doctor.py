@@ -60,7 +60,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     robots = [name for name, row in table("robots").items() if row.examine]
     parser.add_argument("--robot", choices=robots, help="check whether this robot can be reached, in place of the bus")
-    for option in robot_options():
+    examined = {option.name for row in table("robots").values() if row.examine for option in row.options}
+    for option in (option for option in robot_options() if option.name in examined):
         parser.add_argument(option.flag, dest=option.destination, metavar=option.metavar, help=option.help)
     parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
@@ -78,7 +79,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _robot(options: argparse.Namespace) -> Iterable[tuple[str, str, str]]:
     """What the robot's feature finds."""
-    given = {option.name: value for option in robot_options() if (value := getattr(options, option.destination))}
+    given = {option.name: value for option in robot_options() if (value := getattr(options, option.destination, None))}
     found: Iterable[tuple[str, str, str]] = called(
         owner("robots", options.robot), table("robots")[options.robot].examine, given
     )

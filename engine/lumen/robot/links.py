@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Protocol, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from lumen.errors import RobotError
 from lumen.feature import rows
@@ -14,9 +14,6 @@ if TYPE_CHECKING:  # numpy takes longer to import than most commands
     import numpy as np
     from numpy.typing import NDArray
 
-    LinkNumbers: TypeAlias = NDArray[np.float64]
-    Triangles: TypeAlias = NDArray[np.int32]
-
 FLOOR = "hall"
 """The frame that the first link stands in: where the robot started, z up."""
 
@@ -26,8 +23,8 @@ class LinkFrame(NamedTuple):
 
     name: str
     parent: str
-    position: "LinkNumbers"
-    rotation: "LinkNumbers"
+    position: "NDArray[np.float64]"
+    rotation: "NDArray[np.float64]"
 
 
 class LinkShape(NamedTuple):
@@ -38,12 +35,12 @@ class LinkShape(NamedTuple):
 
     link: str
     kind: str
-    position: "LinkNumbers"
-    rotation: "LinkNumbers"
-    size: "LinkNumbers"
-    colour: "LinkNumbers"
-    vertices: "LinkNumbers"
-    faces: "Triangles"
+    position: "NDArray[np.float64]"
+    rotation: "NDArray[np.float64]"
+    size: "NDArray[np.float64]"
+    colour: "NDArray[np.float64]"
+    vertices: "NDArray[np.float64]"
+    faces: "NDArray[np.int32]"
 
 
 class BodyLinks(Protocol):

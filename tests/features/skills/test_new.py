@@ -38,7 +38,7 @@ def test_a_new_skill_lints_and_is_tested_without_and_with_its_code(
         (["skill"], "write `lumen new skill NAME`"),
         (["skill", "say"], "there is a verb `say` already"),
         (["skill", "Fog-Machine"], "`Fog-Machine` can't be the name of a skill"),
-        (["skil", "fog"], "`skil` is nothing that a project can be given: did you mean `skill`?"),
+        (["skil", "fog"], "can't add a `skil` to a project: did you mean `skill`?"),
     ],
 )
 def test_what_cannot_be_made_is_refused(words: list[str], reason: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,7 +19,7 @@ def check(draft: ProjectDraft) -> None:
         return
     for name, motion in draft.motions.items():
         report = draft.report("motions", name)
-        short = memoize(("beyond-rods", name), (motion, body), partial(worst_of, motion, body))
+        short = memoize((str(BEYOND_RODS), name), (motion, body), partial(worst_of, motion, body))
         if short:
             message = f"the head falls short at {short.time:.1f} s: {short}"
             hint = "lower or level the head there: height, pitch, roll and yaw share what the rods reach"
