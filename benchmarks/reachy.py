@@ -1,4 +1,4 @@
-"""What Lumen costs on a Reachy Mini, beside the vendor's own client, on the vendor's daemon without a robot.
+"""Measure Lumen on a Reachy Mini, beside the vendor's own client, on the vendor's daemon without a robot.
 
     sh tests/features/reachy/install_daemon.sh && python benchmarks/reachy.py [--seconds 20]
 

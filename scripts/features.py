@@ -1,4 +1,4 @@
-"""Whether each capability is in one folder: imports of features, and modules that are too small to stand alone."""
+"""Whether each capability is in one folder: imports of features, and modules that are too small."""
 
 import ast
 from collections import defaultdict
@@ -13,11 +13,11 @@ ALONE: Mapping[str, str] = {
     "cli/report.py": "imported only after a fault, with the modules that describe it",
     "features/answers/meaning.py": "knows numpy only for types: the retriever imports it when vectors are there",
     "features/answers/server_vectors.py": "one of three sources of vectors, each with limits of its own",
-    "features/editor/server.py": "imported after the command line is read: pygls takes a third of a second",
+    "features/editor/server.py": "imported after the command line is read: pygls needs a third of a second",
     "features/naoqi/offers.py": "the names that the robot's row may import without a connection",
     "features/simulation/tactile_sensors.py": "with it the robot's own file would have more than 450 lines",
 }
-"""Small modules that stand alone, and why."""
+"""Small modules with one reader, and why they are files of their own."""
 
 
 def imports_by_core(files: Sequence[SourceFile]) -> Iterator[Place]:

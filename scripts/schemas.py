@@ -26,7 +26,7 @@ def composed() -> Iterator[tuple[Path, str]]:
 
 
 def _expanded(line: str) -> str:
-    """Return a line, or the schema that stands in the folder of a feature instead of it."""
+    """Return a line, or the schema in the folder of a feature that replaces it."""
     if (match := WRITTEN_BY_A_FEATURE.match(line)) is None:
         return line
     indent, key, folder, comma = match.groups()

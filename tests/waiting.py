@@ -79,6 +79,7 @@ def until(
 
 def finished(thread: threading.Thread) -> None:
     """Wait until the thread has ended; fail if it hangs."""
+    until(lambda: thread.is_alive() or thread not in threading.enumerate())  # listed, it may not have started yet
     thread.join(HANG)
     assert not thread.is_alive(), f"waited {HANG:g} s for the end of the thread {thread.name}"
 

@@ -84,7 +84,7 @@ class RobotRow(NamedTuple):
     the robots' names to one of setups; if it is empty, `set_up` is called for each. `real_time`: its time can't be
     hurried. `bounded`: it keeps within the limits and speeds of its body itself; Lumen does that for others.
     `examine` is the import string of a function for `lumen doctor --robot NAME`: from the given options by name to
-    triples of what was looked at, `ok`, `note`, `warning` or `error`, and a text.
+    triples of a name, `ok`, `note`, `warning` or `error`, and a text.
     """
 
     set_up: str = ""
@@ -137,8 +137,8 @@ class BusRow(NamedTuple):
 
     If the bus has a broker, `probe` is the import string of a function from an address to a `Probe`, by which
     `lumen doctor` examines it, and `stream` of one from an address, a name and an offset to a `Stream`, or to None if
-    there is no such stream (both in `lumen.bus.brokers`). `side_queues` names the queues of messages that nobody could
-    use.
+    there is no such stream (both in `lumen.bus.brokers`). `side_queues` names the queues of unusable
+    messages.
     """
 
     open: str

@@ -67,7 +67,7 @@ class CurrentCall:
         self._send({"progress": float(fraction), "text": str(text)})
 
     def say(self, text: str, language: str = "") -> None:
-        """Have the robot say a text, in the language that it speaks if none is given. This does not wait."""
+        """Have the robot say a text, in the language that it speaks if no other is given. This does not wait."""
         self._send({"say": str(text), "language": str(language)})
 
     def publish(self, route: str, body: Any = None) -> None:
@@ -88,7 +88,7 @@ class CurrentCall:
 def serve() -> None:
     """Perform the calls that come as lines on standard input, until that is closed: the process of a skill runs this.
 
-    Whatever the code prints goes to standard error: standard output carries the answers.
+    Output of the code goes to standard error: standard output carries the answers.
     """
     _Server().run()
 

@@ -19,7 +19,7 @@ from tests import ROOT
 from tests.guarded import DEVNULL, STDOUT, Guarded, TimeoutExpired, temporary_folder
 from tests.waiting import HANG, Collector, until
 
-PARTS = ("behaviors", "knowledge", "fuzzy", "motions", "schemas", "models")
+PARTS = ("behaviors", "functions", "knowledge", "fuzzy", "motions", "schemas", "models")
 SPOKEN, ANSWERS = "lumen.audio.text.stream", "lumen.attack.checked"
 SPEED = "4"
 PATIENCE = BEGINNING = HANG

@@ -70,7 +70,7 @@ def test_a_story_that_fails_says_where_and_exits_with_1(copy: Path, capsys: pyte
             ["--robot", "simulation", "--imperfections", "noise,backlsh"],
             "--imperfections has no `backlsh`: did you mean `backlash`?",
         ),
-        (["--robot", "recording", "--imperfections", "none"], "needs the simulated robot"),
+        (["--robot", "recording", "--imperfections", "none"], "needs --robot simulation"),
         (["--robot", "none", "--speed", "4"], "leave out --speed"),
         (["--robot", "none", "--story", "visitor"], "a story needs a robot"),
     ],

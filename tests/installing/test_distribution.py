@@ -73,7 +73,8 @@ def test_the_source_archive_holds_what_the_wheel_is_built_from_and_no_more(
         archive.extractall(tmp_path, filter="data")
     (unpacked,) = tmp_path.iterdir()
     assert {path.name for path in unpacked.iterdir()} == {
-        "engine", "lumen.yaml", "behaviors", "knowledge", "fuzzy", "motions", "schemas", "models", "examples",
+        "engine", "lumen.yaml", "behaviors", "functions", "knowledge", "fuzzy", "motions", "schemas", "models",
+        "examples",
         "scripts", "README.md", "CHANGELOG.md", "LICENSE", "NOTICE", "pyproject.toml", "PKG-INFO",
         ".gitignore"}  # fmt: skip
     assert {path.name for path in (unpacked / "examples").iterdir()} == {"museum", "minimal"}

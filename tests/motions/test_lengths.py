@@ -1,4 +1,4 @@
-"""Joints that slide: lengths in the files of bodies, motions, life and gestures, and what lint says of them."""
+"""Joints that slide: lengths in the files of bodies, motions, life and gestures, and the findings about them."""
 
 from math import radians
 from pathlib import Path

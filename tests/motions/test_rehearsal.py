@@ -49,7 +49,7 @@ def test_a_fall_is_found_where_this_robots_own_file_moves_its_legs(model: str, m
 
 def project_in(folder: Path) -> None:
     """Copy the shipped project there."""
-    for name in ("models", "motions", "behaviors", "fuzzy", "schemas"):
+    for name in ("models", "motions", "behaviors", "functions", "fuzzy", "schemas"):
         shutil.copytree(ROOT / name, folder / name)
     shutil.copy(ROOT / "lumen.yaml", folder)
 

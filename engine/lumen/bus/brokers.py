@@ -1,4 +1,4 @@
-"""What a broker offers beside a bus: answers about itself, and streams that keep messages. Rows of buses have both."""
+"""Probes and streams of a broker: answers about itself, and messages that it keeps. Rows of buses have both."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple, Protocol
@@ -10,14 +10,14 @@ from lumen.project.broken_features import called
 
 
 class QueueStatus(NamedTuple):
-    """How many messages wait in a route's queue, and how many read it; both None if there is no such queue."""
+    """The numbers of waiting messages and of readers of a route's queue; both None if there is no such queue."""
 
     waiting: int | None = None
     readers: int | None = None
 
 
 class Probe(Protocol):
-    """A connection for questions about a broker, which nobody else notices."""
+    """A connection for questions about a broker, which no other program notices."""
 
     product: str
     version: str
@@ -44,7 +44,7 @@ class Probe(Protocol):
         ...
 
     def misdeclared(self) -> Iterator[str]:
-        """Iterate over what is wrong with the queues of messages that nobody could use."""
+        """Iterate over what is wrong with the queues of unusable messages."""
         ...
 
     def close(self) -> None: ...
@@ -53,7 +53,7 @@ class Probe(Protocol):
 class StreamEntry(NamedTuple):
     """A message of a stream, at its `offset`, which is -1 in none; `body` is JSON data, None if it can't be read.
 
-    `id` tells it from every other one, and `time` is when it was sent [s since 1970]: empty and 0 if nobody said.
+    `id` is unique, and `time` is when it was sent [s since 1970]: empty and 0 if the sender gave none.
     """
 
     offset: int
@@ -105,6 +105,6 @@ def stream_of(url: str, name: str, first: int) -> Stream | None:
 
 
 def side_queues(url: str) -> str:
-    """Return the names of the queues in which a broker keeps messages that nobody could use; empty if it has none."""
+    """Return the names of the queues in which a broker keeps unusable messages; empty if it has no such queue."""
     row = row_of(url)
     return row.side_queues if row else ""

@@ -25,8 +25,8 @@ from lumen.language.routes import Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
 from lumen.upkeep.drops import DropLog
 
-# Which keys a pattern stands for, as an AMQP 0-9-1 topic exchange decides it: keys and patterns are words with dots
-# between them; in a pattern `*` stands for exactly one word and `#` for any number of them. An empty key has no words.
+# A pattern matches keys as an AMQP 0-9-1 topic exchange decides it: keys and patterns are words with dots between them;
+# in a pattern `*` matches exactly one word and `#` any number of them. An empty key has no words.
 
 
 @lru_cache(maxsize=16_384)

@@ -78,7 +78,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _robot(options: argparse.Namespace) -> Iterable[tuple[str, str, str]]:
-    """What the robot's feature finds."""
+    """Return the findings of the robot's feature."""
     given = {option.name: value for option in robot_options() if (value := getattr(options, option.destination, None))}
     found: Iterable[tuple[str, str, str]] = called(
         owner("robots", options.robot), table("robots")[options.robot].examine, given

@@ -1,4 +1,4 @@
-"""What the options of `lumen run` choose: its story, its language, and how long it lasts."""
+"""The story, the language and the length of a run, as the options of `lumen run` choose them."""
 
 import argparse
 from typing import Any

@@ -20,7 +20,7 @@ def added_verbs() -> Mapping[str, VerbRow]:
 
 
 def added_row(command: Do) -> VerbRow | None:
-    """Return the row of a verb: of the project's own, else of a feature; None if there is none."""
+    """Return the row of a verb: of the project's own, else of a feature; None if there is no such verb."""
     return command.row or added_verbs().get(command.skill)
 
 

@@ -12,7 +12,7 @@ PARTS = (HEAD, ARMS, LEGS, BODY, VOICE, LEDS, EARS, *(f"light {name}" for name i
 """Each light is a part of its own; `leds` is the part of motions that set any, which follow one another."""
 
 WHOLE_BODY = frozenset((HEAD, ARMS, LEGS, BODY))
-"""What a robot moves as it wakes, rests or takes a posture. `body` is a trunk that turns: few robots have that part."""
+"""The parts that a robot moves as it wakes, rests or changes its posture. `body` is a trunk that turns."""
 
 
 def part_of(body: Body) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""What a mirror makes of a body's joints: left and right exchanged, yaws, rolls and ways to the side reversed."""
+"""A mirror of a body's joints: left and right exchanged, yaws, rolls and ways to the side reversed."""
 
 from collections.abc import Mapping
 

@@ -47,7 +47,7 @@ class Project:
     wherever it runs. `patience` [s] is how long saved files wait for what is under way. `aliases` is whether routes
     have their aliases: None for as long as no other robot is seen on the bus. `knowledge` are the passages by name,
     `questions` what they are tried with, `sayings` what `hears` is tried with, `functions` those of functions/.
-    `sections` are what lumen.yaml says of features by the keys of their sections; `section` returns those of one.
+    `sections` are the settings of features by the keys of their sections; `section` returns those of one.
     `verbs` are those that files of the project declare.
     """
 

@@ -70,7 +70,7 @@ class ProjectDraft:
     root: Path | None = None
     own_motions: frozenset[str] = frozenset()
     beside: dict[str, Any] = field(default_factory=dict)
-    """What rows of features built of files beside lumen.yaml, by the file's name."""
+    """The settings in files beside lumen.yaml, by the file's name."""
     today: date | None = None
     looks: Looks = field(default_factory=Looks)
 

@@ -1,4 +1,4 @@
-"""The links of a robot: where they are for given joint angles, and what they look like. A feature computes both."""
+"""The poses and shapes of a robot's links for given joint angles; a feature computes both."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -20,7 +20,7 @@ from lumen.upkeep.threads import WatchedThread
 
 Settings = TypeVar("Settings")
 LOCKSTEP_PATIENCE = 30.0
-"""How long a performer may compute while the robot's time stands still [s]."""
+"""The time that a performer may compute while the robot's time stands still [s]."""
 
 _log = logging.getLogger(__name__)
 

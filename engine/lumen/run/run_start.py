@@ -28,7 +28,7 @@ class RunFailure:
 
     `kind` is `start` for a fault of files or of the world, `crashed` for one of code. `text` says no more of the files
     than a place and a code. `settings` are those that could be read, None if there are none, and `last_good` returns
-    the project that was used last. `tell` prints what nobody could be told, and why.
+    the project that was used last. `tell` prints alerts that could not be sent, and why.
     """
 
     kind: str

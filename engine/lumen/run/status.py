@@ -41,7 +41,7 @@ def status_of(
 
     Times are ISO 8601 in UTC, on the exhibition's clock, but those of stops and reloads, which people make. What is not
     known is None: the `visitor` who has not said a name, the `battery` of a robot that has none, the `ears` if there
-    are none. `said` has what `ears` say of themselves, and a list of the project's own `modules`, which is absent if
+    are none. `said` has the state of the `ears`, and a list of the project's own `modules`, which is absent if
     it is empty.
     """
     return {

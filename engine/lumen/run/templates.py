@@ -199,7 +199,7 @@ def _robot(name: str, root: Path) -> Written:
 
 
 def _write(root: Path, files: Mapping[str, str]) -> None:
-    """Write new files. Raises UsageError if one is there already; then none is written."""
+    """Write new files. Raises UsageError if one is there already, and then writes nothing."""
     for file in files:
         if (root / file).exists():
             raise UsageError(f"{root / file} already exists: choose another name, or delete the file")
@@ -214,4 +214,4 @@ TEMPLATES: Mapping[str, Callable[[str, Path], Written]] = {
     "module": _module,
     "robot": _robot,
 }
-"""What `lumen new KIND NAME` writes."""
+"""The files of `lumen new KIND NAME`."""

@@ -49,7 +49,7 @@ def test_what_is_no_number_moves_nothing(trial: RobotTrial) -> None:
 
 def test_a_cancelled_command_ends_soon(trial: RobotTrial) -> None:
     """A command ends within two seconds after `cancel`; repeated and unknown ids do nothing."""
-    trial.start("a", Say("A text that takes a while to say, because it has many words and one more."))
+    trial.start("a", Say("A long text, because it has many words and one more."))
     trial.live(0.2)
     for id in ("a", "a", "no such id"):
         trial.cancel(id)

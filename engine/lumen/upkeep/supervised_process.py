@@ -24,7 +24,7 @@ FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
 STEADY = 60.0
 """A program that ran for so long begins again with the first pause [s]."""
 END_TIMEOUT = 2.0
-"""The time that a program has to end by itself after SIGTERM [s]."""
+"""The time that a program has to exit after SIGTERM [s]."""
 MAX_LINES, MAX_LINE = 200, 4_000
 """Lines of a program that wait to be printed, and bytes of a line; what is more is counted or cut."""
 

@@ -1,7 +1,7 @@
 """A fake of the daemon of Reachy Mini: its protocol, without a robot. `recorded.json` is what it is held to.
 
 It speaks HTTP and the WebSocket as `reachy-mini` 1.13.0 does with `--mockup-sim`: targets are reached at once,
-moves of the daemon go evenly, and while one runs targets are ignored. It stands for no physics, no motor and no sound.
+moves of the daemon go evenly, and while one runs targets are ignored. It has no physics, no motor and no sound.
 """
 
 import base64
@@ -21,15 +21,15 @@ from lumen.features.reachy.pose import BODY, HEAD, JOINTS, LEFT, RIGHT, head_joi
 
 GUID = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"
 PERIOD = 0.02
-"""How often it sends joints [s]."""
+"""The period in which it sends joints [s]."""
 MOVE_DURATION = 0.3
-"""How long its moves take [s]: those of the real daemon take 2 to 4."""
+"""The time of its moves [s]: those of the real daemon last 2 to 4."""
 INIT = {**dict.fromkeys(JOINTS, 0.0), LEFT: 0.1745, RIGHT: -0.1745}
 ASLEEP = {**INIT, "head_x": -0.021, "head_z": -0.044, "head_pitch": 0.4258, LEFT: 3.05, RIGHT: -3.05}
 
 
 class FakeDaemon:
-    """The daemon at `url`; `joints` is where the robot is, `targets` what it was sent, and `asked` what of HTTP.
+    """The daemon at `url`; `joints` is the robot's pose, `targets` all that it got, and `asked` the HTTP requests.
 
     `silent` sends nothing any more over sockets that are open. `media` is whether it plays sounds.
     """
@@ -154,7 +154,7 @@ class FakeDaemon:
             self.joints = found
 
     def states(self) -> list[str]:
-        """The messages that say where the robot is."""
+        """The messages with the robot's pose."""
         joints = {**self.joints, **(self.held or {})}
         x, y, z, roll, pitch, yaw = (joints[name] for name in HEAD)
         rows = [[*row, at] for row, at in zip(rotation(roll, pitch, yaw), (x, y, z), strict=True)]
@@ -227,7 +227,7 @@ class _Handler(BaseHTTPRequestHandler):
         self._answer("POST")
 
     def log_message(self, format: str, *args: Any) -> None:
-        """Nothing is logged."""
+        """Log nothing."""
 
     def _answer(self, method: str) -> None:
         content = self.rfile.read(int(self.headers.get("Content-Length", 0)))

@@ -1,4 +1,4 @@
-"""What a daemon answers, in its shape; `python -m tests.features.reachy.protocol URL` records one that sleeps."""
+"""The shape of a daemon's answers; `python -m tests.features.reachy.protocol URL` records one that sleeps."""
 
 import json
 import sys
@@ -17,7 +17,7 @@ UNKNOWN = {"uuid": "00000000-0000-4000-8000-000000000000"}
 
 
 def observed(url: str) -> dict[str, Any]:
-    """What a daemon whose robot sleeps answers, step by step: the shape of each answer, and what counts of values."""
+    """The answers of a daemon whose robot sleeps, step by step: the shape of each answer, and what counts of values."""
     api, found = DaemonApi(DaemonAddress(url)), dict[str, Any]()
 
     def note(name: str, method: str, path: str, body: Any = None) -> Any:
@@ -88,7 +88,7 @@ def shape(value: Any) -> Any:
 
 
 def rounded(full: dict[str, Any]) -> dict[str, Any]:
-    """Where the robot is, to a hundredth of a radian and a centimetre: and whether its motors are on."""
+    """The robot's pose, to a hundredth of a radian and a centimetre: and whether its motors are on."""
     pose = {name: round(value, 2) + 0.0 for name, value in full["head_pose"].items()}
     antennas = [round(angle, 2) for angle in full["antennas_position"]]
     return {"pose": pose, "antennas": antennas, "mode": full["control_mode"]}

@@ -60,7 +60,7 @@ def test_it_keeps_the_promises_of_a_robot(robot: Driven, project: Project) -> No
 
 
 def test_every_shipped_motion_is_reached(robot: Driven, project: Project) -> None:
-    """The daemon holds the last pose that it reached, and tells nobody: the head is compared with what was asked."""
+    """The daemon holds the last pose that it reached, without an error: the head is compared with its goal."""
     for name in ("greet", "curious", "goodbye"):
         robot.robot.start(name, Perform(project.motions[name]))
         far = []

@@ -170,7 +170,7 @@ def test_it_speaks_with_a_voice(project: Project) -> None:
     [sound] = daemon.sounds.values()
     assert sound[:4] == b"RIFF"
     assert len(sound) > 5_000
-    robot.robot.start("long", Say("A text that takes a while.", "en"))
+    robot.robot.start("long", Say("A long text.", "en"))
     robot.until(lambda: len(daemon.sounds) == 2, "it speaks")
     robot.tick()
     robot.robot.cancel("long")

@@ -1,4 +1,4 @@
-"""What the head of Reachy Mini reaches: its rods, and the body that follows."""
+"""The reach of Reachy Mini's head: its rods, and the body that follows."""
 
 import json
 from math import degrees, radians

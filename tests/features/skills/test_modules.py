@@ -1,4 +1,4 @@
-"""Skills that modules perform, over the bus: called, answered, cancelled, and given up if nobody answers."""
+"""Skills that modules perform, over the bus: called, answered, cancelled, and given up without an answer."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A skill in stories: it takes its time, ends as the story says, and a replay needs no code."""
+"""A skill in stories: it lasts its time, ends as the story wants, and a replay needs no code."""
 
 import json
 from pathlib import Path

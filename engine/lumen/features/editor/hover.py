@@ -96,7 +96,7 @@ def _facts(analysis: Analysis, use: NameUse) -> str:
 
 
 def _skill(draft: ProjectDraft, name: str) -> str:
-    """What a skill does, its arguments, and how long it takes."""
+    """Return the description of a skill, its arguments, and its time."""
     if (row := draft.verbs.rows.get(name)) is None:
         return ""
     arguments = ", ".join(f"`{each}`" for each in row.arguments.get("properties", ()))

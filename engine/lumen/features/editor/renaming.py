@@ -102,7 +102,7 @@ def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
 
 def refuse_harm(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> None:
     """Raises UsageError where more is wrong with the project after a renaming than was before it."""
-    # The function of a skill has the skill's old name now: lint says so, and the editor changes no Python.
+    # The function of a skill has the skill's old name now: lint reports it, and the editor changes no Python.
     after = [each for each in after if not each.place.file.endswith(".py")]
     # An error keeps other findings from being reported, such as unused names: the number of all findings may fall.
     if len(after) > len(before) or _errors(after) > _errors(before):

@@ -16,14 +16,14 @@ from lumen.upkeep.threads import WatchedThread
 
 PORT = 8000
 PATIENCE = 5.0
-"""How long the daemon may take for an answer [s]."""
+"""The time that the daemon may take for an answer [s]."""
 UPLOAD_PATIENCE = 15.0
 
 _log = logging.getLogger(__name__)
 
 
 class DaemonAddress:
-    """The address of a daemon. Raises UsageError if `url` is none."""
+    """The address of a daemon. Raises UsageError if `url` is not an address."""
 
     def __init__(self, url: str) -> None:
         try:
@@ -139,7 +139,7 @@ class DaemonApi:
 
 
 def _detail(text: bytes) -> str:
-    """Return why the daemon refused a call, as far as it says so."""
+    """Return why the daemon refused a call, as far as it gives a reason."""
     try:
         data = json.loads(text)
     except ValueError:

@@ -9,7 +9,7 @@ from lumen.features.reachy.set_up import ADDRESS
 from lumen.features.reachy.taking_over import TESTED
 
 DoctorFinding = tuple[str, str, str]
-"""What was looked at, how bad it is, and a text."""
+"""A name, a severity, and a text."""
 
 
 def examine(options: Mapping[str, str]) -> Iterator[DoctorFinding]:

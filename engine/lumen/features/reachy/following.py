@@ -8,7 +8,7 @@ from lumen.features.reachy.rods import MOST_AGAINST_BODY, within_reach
 from lumen.language.robots import Body
 
 FREE = radians(55)
-"""How far the head turns against the body before the body follows [rad]: less than the 65 degrees that end it."""
+"""The angle between head and body from which on the body follows [rad]: less than its limit of 65 degrees."""
 
 
 def possible(joints: Mapping[str, float], body: Body) -> dict[str, float]:

@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
 
 SILENCE = 1.0
-"""How long the daemon may send no joints [s]: it sends 40 to 50 a second, and none for ever after it was restarted."""
+"""The time for which the daemon may send no joints [s]: it sends 40 to 50 a second, and none after a restart."""
 SECOND_LOOK = 0.25
-"""How long Lumen waits for a message even if that time is over [s]: this process may have been busy."""
+"""The time that Lumen waits for a message even if that time is over [s]: this process may have been busy."""
 OPEN_PATIENCE = 5.0
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 5.0
-"""How long until the first try to connect again, and at most until the next [s]: each waits twice as long."""
+"""The times until the first try to connect again, and at most until the next [s]: each waits twice as long."""
 
 _log = logging.getLogger(__name__)
 

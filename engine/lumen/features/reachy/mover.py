@@ -24,7 +24,7 @@ class Mover:
         self._aims: dict[str, tuple[float, float]] = {}
 
     def stand(self, joints: Mapping[str, float]) -> None:
-        """The robot was moved by something else, and stands there now: go on from there."""
+        """Continue from the pose to which something else moved the robot."""
         self.goal, self.sent = dict(joints), dict(joints)
         self._aims.clear()
 

@@ -1,6 +1,6 @@
-"""What Lumen asks the daemon of Reachy Mini again and again: who else moves the robot, and where somebody speaks.
+"""Repeated questions to the daemon of Reachy Mini: which other program moves the robot, and the direction of speech.
 
-Programs that stream targets, as Lumen does, are found by what is measured.
+Programs that stream targets, as Lumen does, are found by measured poses.
 """
 
 import logging
@@ -15,11 +15,11 @@ from lumen.features.reachy.pose import distance
 from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.4
-"""How often Lumen asks the daemon for its moves [s]."""
+"""The period in which Lumen asks the daemon for its moves [s]."""
 STRAY_ANGLE, STRAY_PLACE = radians(14), 0.014
-"""How far the head is from all that Lumen sent lately if something else moves it [rad], [m]."""
+"""The distance of the head from all that Lumen sent lately if something else moves it [rad], [m]."""
 LATELY = 0.5
-"""How long what was sent may take to be measured [s]."""
+"""The time until a sent target has to be measured [s]."""
 STRAYS, STRAY_TIME = 6, 1.0
 """So many strange measurements within that time [s] are no accident."""
 STILL_ANGLE, STILL_PLACE, STILL_TIME = radians(1.5), 0.002, 2.0
@@ -52,7 +52,7 @@ class DaemonMoves:
         return not self._running <= self.ours
 
     def sounds(self) -> list[float]:
-        """Return how far to the left of the head's front somebody spoke [rad] since the last call."""
+        """Return the angle of speech, to the left of the head's front, [rad] since the last call."""
         return [self._sounds.popleft() for _ in range(len(self._sounds))]
 
     def now(self) -> list[str]:
@@ -96,13 +96,13 @@ class Strays:
             self._sent.popleft()
 
     def forget(self) -> None:
-        """Nothing is known any more: Lumen begins to stream, or has stopped."""
+        """Forget all measurements: Lumen begins to stream, or has stopped."""
         self._sent.clear()
         self._strange.clear()
         self._still, self.taken = None, False
 
     def measured(self, joints: Mapping[str, float], now: float) -> None:
-        """Note what was measured at `now` [s]; `taken` tells whether something else moves the head."""
+        """Note a measurement at `now` [s]; `taken` is whether something else moves the head."""
         if self.taken:
             self._wait_for_stillness(joints, now)
         elif self._sent and all(_far(joints, sent, STRAY_ANGLE, STRAY_PLACE) for _, sent in self._sent):

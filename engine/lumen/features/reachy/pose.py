@@ -38,7 +38,7 @@ def target_message(joints: Mapping[str, float]) -> dict[str, Any]:
 
 
 def head_joints(pose: Sequence[Sequence[float]]) -> dict[str, float]:
-    """Return the joints of the head [rad, m] in a pose of 4 x 4. Raises ValueError or TypeError if it is none."""
+    """Return the joints of the head [rad, m] in a pose of 4 x 4. Raises ValueError or TypeError for other data."""
     (r00, _, _, x), (r10, _, _, y), (r20, r21, r22, z), _ = (tuple(map(float, row)) for row in pose)
     roll, pitch, yaw = atan2(r21, r22), asin(min(max(-r20, -1.0), 1.0)), atan2(r10, r00)
     return dict(zip(HEAD, (x, y, z, roll, pitch, yaw), strict=True))

@@ -1,4 +1,4 @@
-"""Where a motion asks for more than the rods of Reachy Mini reach."""
+"""The poses of a motion that the rods of Reachy Mini do not reach."""
 
 from collections.abc import Mapping
 from math import degrees, radians
@@ -11,9 +11,9 @@ from lumen.language.robots import Body
 from lumen.motion.trajectories import Trajectory
 
 SHORT_ANGLE, SHORT_LENGTH = radians(1.0), 0.001
-"""How far a joint has to stay behind its goal to be short of it [rad], [m]."""
+"""The least distance of a joint from its goal that is reported [rad], [m]."""
 SAMPLE_PERIOD = 0.05
-"""How often a motion is looked at [s]."""
+"""The period in which a motion is sampled [s]."""
 
 
 class Shortage(NamedTuple):
@@ -26,7 +26,7 @@ class Shortage(NamedTuple):
 
     @property
     def share(self) -> float:
-        """How many times the least shortage it is."""
+        """The shortage as a multiple of the least one."""
         return abs(self.goal - self.reached) / (SHORT_LENGTH if self.joint in HEAD[:3] else SHORT_ANGLE)
 
     def __str__(self) -> str:
@@ -43,7 +43,7 @@ def shortest(goal: Mapping[str, float], near: Mapping[str, float], time: float =
 
 
 def worst_of(motion: MotionDefinition, body: Body) -> Shortage | None:
-    """Return where a motion is the shortest of what it asks for; None if the robot reaches all of it.
+    """Return the pose of a motion that falls short the most; None if the robot reaches all of it.
 
     Joints that it does not move are where the robot stands.
     """

@@ -13,7 +13,7 @@ BEYOND_RODS = Code("beyond-rods", "motions", WARNING, "the rods under a Reachy M
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report where a motion asks for a pose that the rods do not reach."""
+    """Report poses of motions that the rods do not reach."""
     body = draft.body
     if body is None or not stands_on_rods(body):
         return

@@ -178,7 +178,7 @@ class ReachyRobot(ExecutingRobot):
         return True
 
     def _notice_others(self, now: float) -> None:
-        """Stop while something else moves the robot; take it up again where that has left it."""
+        """Stop while something else moves the robot; then continue from that pose."""
         joints, at = self._link.measured
         if joints and at != self._seen and self._mover.awake:
             self._seen = at

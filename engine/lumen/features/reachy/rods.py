@@ -13,19 +13,19 @@ from lumen.features.reachy.pose import BODY, HEAD, rotation
 from lumen.language.robots import Body
 
 ARM, ROD = 0.04, 0.085
-"""How long a motor's arm and a rod are [m]."""
+"""The lengths of a motor's arm and of a rod [m]."""
 HEIGHT = 0.177
 """How high the platform is above the table where the position of the head is 0 [m]."""
 MOST_AGAINST_BODY = radians(65)
-"""How far the head turns against the body at most [rad]."""
+"""The greatest angle between head and body [rad]."""
 STEPS = 12
-"""How often the way to a pose beyond reach is halved: to within a four-thousandth of it."""
+"""The number of times that the way to a pose beyond reach is halved: to within a four-thousandth of it."""
 
 
 class Motor(NamedTuple):
     """A motor: its place [m] and the direction of its arm at 0, which is level, in the body's frame; `up` is its other.
 
-    `joint` is where its rod holds the platform [m], in the platform's frame. `elbow` tells which of two angles is
+    `joint` is where its rod holds the platform [m], in the platform's frame. `elbow` chooses which of two angles is
     meant. `limits` are those of its angle [rad].
     """
 
@@ -51,7 +51,7 @@ MOTORS = (
 def motor_angles(head: Mapping[str, float], body: float) -> tuple[float | None, ...]:
     """Return the angle of each motor [rad] for a pose of the head, with the body at `body` [rad].
 
-    None for a motor whose rod is too short. The limits of the motors are not looked at.
+    A motor whose rod is too short has None. The limits of the motors are ignored.
     """
     x, y, z, roll, pitch, yaw = (head[name] for name in HEAD)
     turned = rotation(roll, pitch, yaw - body)

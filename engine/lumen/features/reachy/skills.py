@@ -1,4 +1,4 @@
-"""What Reachy Mini can do: how each command begins, and how it ends early."""
+"""The commands of Reachy Mini: how each begins, and how it ends early."""
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -25,19 +25,19 @@ from lumen.robot.cues import CueNotifier, EventSink
 from lumen.robot.joint_ways import APPROACH_TIME, LOOK_SPEED, begun_from, home_angles, way_duration
 
 TOLERANCE, PLACE_TOLERANCE = radians(6), 0.006
-"""A head that is nearer than this to where it should be is there [rad], [m]; it hangs by up to 4 degrees."""
+"""A head that is nearer than this to its goal has arrived [rad], [m]; it hangs by up to 4 degrees."""
 LYING_TOLERANCE, LYING_PLACE_TOLERANCE = radians(2.5), 0.003
 """The same for a head that lies down [rad], [m]: it is let go there."""
 GRACE = 1.5
-"""How much longer than its way the head may take [s]."""
+"""The time that the head may take beyond its way [s]."""
 LEAST_WAY = 0.4
-"""How long a posture takes at least [s]."""
+"""The time that a posture takes at least [s]."""
 LOOK_PERIOD = 0.1
-"""How often the daemon is asked whether a move has ended [s]."""
+"""The period in which the daemon is asked whether a move has ended [s]."""
 ASLEEP = "Asleep"
 """The posture in which the robot rests."""
 FOREIGN_PATIENCE = 8.0
-"""How long waking waits for the end of another program's move [s]."""
+"""The time that waking waits for the end of another program's move [s]."""
 
 
 class ReachySkills:
@@ -191,7 +191,7 @@ class ReachySkills:
     def _daemon_move(
         self, name: str, enough: Callable[[], bool] = lambda: False, *, stops_others: bool = False
     ) -> Steps:
-        """Have the daemon play a move until its end, or until it is `enough`; stop the move if nobody waits for it.
+        """Have the daemon play a move until its end, or until it is `enough`; stop the move if no command waits for it.
 
         Moves that Lumen began earlier are stopped first, and with `stops_others` those of other programs, too.
         """

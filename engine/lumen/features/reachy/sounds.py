@@ -101,7 +101,7 @@ class RobotSounds:
 
 
 def quieter(content: bytes, volume: float) -> bytes:
-    """Return a WAV file of 16 bits with each sample times `volume`. Raises wave.Error or EOFError if it is none."""
+    """Return a WAV file of 16 bits with each sample times `volume`. Raises wave.Error or EOFError for other data."""
     if volume == 1.0:
         return content
     with wave.open(io.BytesIO(content)) as read:

@@ -13,7 +13,7 @@ Steps = Generator[DaemonCall | None, Any, None]
 class StepActivity:
     """An activity of the executor made of steps; `stop` is called if it is cancelled, and ends it at once.
 
-    `missed` says what it did not reach, if it came to its end nevertheless.
+    `missed` lists the joints that did not arrive, if it came to its end nevertheless.
     """
 
     def __init__(self, steps: Steps, stop: Callable[[], None] = lambda: None) -> None:

@@ -1,4 +1,4 @@
-"""What Lumen settles with Reachy Mini's daemon when it connects."""
+"""The first exchange with Reachy Mini's daemon after a connection."""
 
 import logging
 import re
@@ -13,7 +13,7 @@ from lumen.language.robots import Body
 TESTED = (1, 13)
 """The version of the daemon that Lumen was tested with."""
 START_PATIENCE, LOOK_PERIOD = 20.0, 0.2
-"""How long the daemon may take to start the robot, and how often Lumen looks whether it has [s]."""
+"""The time that the daemon may take to start the robot, and the period in which Lumen checks that [s]."""
 
 _log = logging.getLogger(__name__)
 

@@ -15,9 +15,9 @@ from lumen.language.routing_keys import key_of_robot
 from lumen.ports import Bus, Message
 
 ORDERS, ANSWERS = "lumen.{robot}.skill.{module}", "lumen.{robot}.skill_answer"
-"""Where a module hears of calls, and where it answers them."""
+"""The routes on which a module receives calls and answers them."""
 ACCEPTING = 5.0
-"""How long a module has for its first answer to a call [s]."""
+"""The time that a module has for its first answer to a call [s]."""
 MAX_UNREAD_ANSWERS = 1_000
 
 
@@ -72,7 +72,7 @@ class ModuleCall:
 
     @property
     def fault(self) -> str:
-        """Why the call has to be given up; empty if it need not."""
+        """The reason to give the call up; empty if there is no reason."""
         silent = not self._heard and time.monotonic() - self._begun > ACCEPTING
         return f"it did not answer within {ACCEPTING:g} s: is it running, on this bus?" if silent else ""
 
@@ -114,7 +114,7 @@ class ModuleCall:
             return self._changed.wait_for(lambda: self._over, timeout)
 
     def kill(self, reason: str) -> None:
-        """Give the call up: nobody can end a program on another machine."""
+        """Give the call up: a program on another machine can't be ended."""
         self.ended = reason
         with suppress(RobotFailedError):
             self.order(cancel=True)

@@ -20,18 +20,18 @@ from lumen.upkeep.regular_files import MEGABYTE
 from lumen.upkeep.threads import WatchedThread
 
 GRACE = 0.5
-"""How long a program has to end a call that was cancelled, or itself, before it is killed [s]."""
+"""The time that a program has to end a cancelled call, or to exit, before it is killed [s]."""
 MAX_OUTPUT_BYTES = 1 * MEGABYTE
-"""What a program may print for one call, answers included."""
+"""The greatest output of a program for one call, answers included."""
 MAX_UNREAD_MESSAGES = 1_000
 MAX_PRINTED_LINES = 40
 """The printed lines that are shown within `PRINT_PERIOD`; further ones are counted."""
 PRINT_PERIOD = 1.0
 MAX_PRINTED_CHARACTERS = 300
 WRITE_PATIENCE = 1.0
-"""How long a program may leave its input unread [s]."""
+"""The time that a program may leave its input unread [s]."""
 DRAIN = 0.05
-"""How long to wait for what a program printed last [s]."""
+"""The time to wait for the last output of a program [s]."""
 HEADROOM = 4
 """The multiple of `memory` that the system lets a program reserve; what it really uses is measured."""
 
@@ -43,7 +43,7 @@ _ENDS, _NEWS = ("result", "error"), ("wait", "progress", "say", "publish", "load
 class SkillProcess:
     """A program, started in `folder` with a process group of its own; `tell` shows a line that it printed.
 
-    `memory` is what it may use [MB]. `ended` says why it is gone, and is empty as long as it is not. Raises
+    `memory` is what it may use [MB]. `ended` is the reason why it is gone, and is empty while it runs. Raises
     RobotFailedError if it can't be started.
     """
 
@@ -144,7 +144,7 @@ class SkillProcess:
 
     @property
     def fault(self) -> str:
-        """Why it has to be ended now: it and its children use too much memory. Empty if it need not."""
+        """The reason to end it now: it and its children use too much memory. Else empty."""
         if self.ended:
             return ""
         used = sum(_pages(pid) for pid in _family(self._popen.pid)) * resource.getpagesize() / self._memory
@@ -273,7 +273,7 @@ def _ready(streams: Iterable[int], event: int, timeout: float | None) -> list[in
 
 
 def _pages(pid: int) -> int:
-    """Return the memory of a process, in pages; 0 if it has ended, or where the system does not tell."""
+    """Return the memory of a process, in pages; 0 if it has ended, or if the system does not know it."""
     try:
         return int(Path(f"/proc/{pid}/statm").read_bytes().split()[1])
     except (OSError, ValueError, IndexError):

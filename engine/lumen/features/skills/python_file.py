@@ -11,7 +11,7 @@ _KINDS = {"int": "integer", "float": "number", "str": "string", "bool": "boolean
 
 
 class CodeFault(NamedTuple):
-    """What is wrong at a place of a Python file; lines and columns count from 1, the end is exclusive."""
+    """A fault at a place of a Python file; lines and columns count from 1, the end is exclusive."""
 
     line: int
     column: int
@@ -75,7 +75,7 @@ def _marked(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 
 
 def _parameters(function: ast.FunctionDef, schema: Mapping[str, Any]) -> Iterator[CodeFault]:
-    """What differs between the parameters of a function and the arguments of its skill."""
+    """Yield the differences between the parameters of a function and the arguments of its skill."""
     properties, required = schema.get("properties", {}), schema.get("required", ())
     given = function.args
     positional = [*given.posonlyargs, *given.args]

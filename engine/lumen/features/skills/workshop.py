@@ -28,7 +28,7 @@ MAX_PROCESSES = 4
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
 """The pause before a program that crashed is started again, the first and the longest [s]."""
 LOADING = 20.0
-"""How long the code of a skill may take to load [s]."""
+"""The time that the code of a skill may take to load [s]."""
 MAX_CODE_BYTES = 4_000_000
 
 _CHILD = "import sys; sys.path.append({engine!r}); from lumen.skills import serve; serve()"
@@ -146,7 +146,7 @@ class Workshop:
     def lent(self, call: SkillCall) -> Iterator[SkillProcess | ModuleCall]:
         """Lend a process, or a module, to a call; a process is kept for the next one unless it has ended.
 
-        Raises RobotError if there is none.
+        Raises RobotError if no such workshop is open.
         """
         name = call.skill
         match call.row.details:

@@ -101,7 +101,7 @@ def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
 
 
 def _tell_running(options: argparse.Namespace, settings: Settings | None, found: Forgetting) -> str:
-    """Have the exhibition that runs forget them, too, and whoever stands there; the address of its broker, or empty."""
+    """Have the running exhibition forget them, too; return the address of its broker, or an empty text."""
     try:
         reached = reach_exhibition(options.project, options.bus, options.robot_name)
     except BusUnreachableError as error:

@@ -20,7 +20,7 @@ class FileReader(Protocol):
 
 
 class RobotReader(Protocol):
-    """Converts a model of a robot to the text of a body file, what there is to say of it, and files beside it.
+    """Converts a model of a robot to the text of a body file, findings about it, and files beside it.
 
     `output` is where the body file will be, None if it is printed; `title` names the robot. Raises ForeignFileError.
     """

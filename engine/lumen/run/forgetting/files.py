@@ -41,7 +41,7 @@ def forget_in(folder: Path, name: str, found: Forgetting) -> None:
 
 
 def forget_inputs(folder: Path, name: str, found: Forgetting) -> None:
-    """Forget somebody in the journal of inputs, in the snapshot of the behaviour, and in small records."""
+    """Forget a person in the journal of inputs, in the snapshot of the behaviour, and in small records."""
     person, home = PersonName(name, map(name_key, found.others)), Home(folder)
     for file in sorted(folder.glob("*.jsonl*")):
         attempt(found, file, lambda file=file: _lines(file, person, found))  # type: ignore[misc]

@@ -45,7 +45,7 @@ class Part:
         """What it needs is there, at `now` [s]."""
 
     def recovered(self, found: Resumption | FreshStart) -> None:
-        """Hear how the behaviour begins, which tells how the last run ended."""
+        """Hear how the behaviour begins, and so how the last run ended."""
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Live until `now` [s]; `changes` tell who of the other processes was lost or came back."""

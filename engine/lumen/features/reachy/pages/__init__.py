@@ -1,1 +1,1 @@
-"""What lint found about Reachy Mini, and what to do: a page for each code."""
+"""Pages of `lumen explain` about Reachy Mini: one for each code."""

@@ -11,7 +11,7 @@ from lumen.run.linting.findings import Findings
 from lumen.run.linting.targets import Wanted
 
 ONLY_WITH = ("robots", "workers", "imperfections")
-"""Options that say how motions are played."""
+"""Options of how motions are played."""
 
 
 class PhysicsOptions:
