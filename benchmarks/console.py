@@ -113,7 +113,7 @@ def paired(robot: str, lookers: tuple[int, int], seconds: float, *, console_firs
     """One run of the tour: a block without a console, and one with so many pages and watchers."""
     folder = temporary_folder("lumen-console-")
     shutil.copy(ROOT / MAIN_FILE, folder)
-    for name in PROJECT_FOLDERS:
+    for name in (name for name in PROJECT_FOLDERS if (ROOT / name).is_dir()):
         shutil.copytree(ROOT / name, folder / name)
     found: dict[bool, Round] = {}
     try:

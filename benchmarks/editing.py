@@ -150,7 +150,7 @@ def project() -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="lumen-reload-") as name:
         folder = Path(name)
         first = folder / "first"
-        for part in ("behaviors", "knowledge", "fuzzy", "motions", "schemas", "models"):
+        for part in ("behaviors", "functions", "knowledge", "fuzzy", "motions", "schemas", "models"):
             shutil.copytree(ROOT / part, first / part)
         for story in (first / "behaviors" / "stories").glob("*.yaml"):
             if story.stem not in STORIES:

@@ -310,7 +310,7 @@ def endure(exhibition: Exhibition, part: str, fault: str, moment: str, *, again:
 
 
 def _copy(folder: Path) -> Path:
-    for name in ("behaviors", "knowledge", "fuzzy", "models", "motions", "schemas"):
+    for name in ("behaviors", "functions", "knowledge", "fuzzy", "models", "motions", "schemas"):
         shutil.copytree(ROOT / name, folder / name)
     shutil.copy(ROOT / "lumen.yaml", folder)
     return folder

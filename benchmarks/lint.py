@@ -116,7 +116,7 @@ def copied() -> Iterator[Path]:
     with tempfile.TemporaryDirectory() as name:
         root = Path(name)
         shutil.copy(ROOT / MAIN_FILE, root)
-        for folder in PROJECT_FOLDERS:
+        for folder in (folder for folder in PROJECT_FOLDERS if (ROOT / folder).is_dir()):
             shutil.copytree(ROOT / folder, root / folder)
         yield root
 

@@ -24,7 +24,7 @@ from selenium.webdriver.common.by import By
 from tests.rabbitmq import RabbitMQ
 
 ROOT = Path(__file__).parents[2]
-PARTS = ("behaviors", "knowledge", "fuzzy", "motions", "schemas", "models", "lumen.yaml")
+PARTS = ("behaviors", "functions", "knowledge", "fuzzy", "motions", "schemas", "models", "lumen.yaml")
 PORT = 8765
 PAGE = f"http://127.0.0.1:{PORT}/"
 WAIT = 90.0

@@ -14,7 +14,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-PARTS = ("behaviors", "knowledge", "fuzzy", "motions", "schemas", "models", "lumen.yaml")
+PARTS = ("behaviors", "functions", "knowledge", "fuzzy", "motions", "schemas", "models", "lumen.yaml")
 TOUR = "behaviors/tour.yaml"
 WAIT = 60.0
 

@@ -21,7 +21,7 @@ from PIL import Image
 from lumen.features.simulation.lettering import VISITOR_COLOUR, subtitle
 
 ROOT = Path(__file__).parents[2]
-PROJECT = ("lumen.yaml", "behaviors", "knowledge", "fuzzy", "motions", "models", "schemas")
+PROJECT = ("lumen.yaml", "behaviors", "functions", "knowledge", "fuzzy", "motions", "models", "schemas")
 PICTURE = Path(__file__).with_suffix(".webp")
 SIDE = 480
 """Side of the square picture [px]: on a phone, its subtitles are still 12 pixels high."""
