@@ -43,7 +43,7 @@ def observed(url: str) -> dict[str, Any]:
     note("wake", "POST", "/api/move/play/wake_up")
     note("wake runs", "GET", "/api/move/running")
     until(lambda: not api.ask("GET", "/api/move/running"), what="it is awake")
-    found["awake"] = rounded(api.ask("GET", "/api/state/full"))
+    found["awake"] = settled(api)
     found["target"] = note("set target", "POST", "/api/move/set_target", TARGET)
     move = note("goto", "POST", "/api/move/goto", GOTO)
     until(lambda: note("ignored", "POST", "/api/move/set_target", TARGET)["status"] == "ignored", what="the move runs")
@@ -53,8 +53,20 @@ def observed(url: str) -> dict[str, Any]:
     found["messages"] = messages(api.address)
     note("sleep", "POST", "/api/move/play/goto_sleep")
     until(lambda: not api.ask("GET", "/api/move/running"), what="it sleeps")
-    found["asleep"] = rounded(api.ask("GET", "/api/state/full"))
+    found["asleep"] = settled(api)
     return found
+
+
+def settled(api: DaemonApi) -> dict[str, Any]:
+    """Return the robot's pose once it stays the same: on a slow machine a move ends before its last pose is reached."""
+    poses: list[dict[str, Any]] = []
+
+    def still() -> bool:
+        poses.append(rounded(api.ask("GET", "/api/state/full")))
+        return poses[-3:] == [poses[-1]] * 3
+
+    until(still, what="the robot stays where it is", every=0.3)
+    return poses[-1]
 
 
 def messages(address: DaemonAddress) -> dict[str, Any]:
