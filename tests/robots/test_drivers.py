@@ -144,8 +144,6 @@ def promises(root: Path, name: str) -> tuple[int, str]:
         "-m",
         "pytest",
         "-p",
-        "lumen.testing.plugin",
-        "-p",
         "no:cacheprovider",
         "--lumen-robot",
         name,
