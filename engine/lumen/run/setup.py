@@ -196,10 +196,10 @@ def robot_options() -> tuple[RobotOption, ...]:
 def _row(kind: str, options: Mapping[str, str] = NO_OPTIONS) -> RobotRow:
     robots: Mapping[str, RobotRow] = table("robots")
     taken = {option.name for option in robots[kind].options} if kind in robots else set()
-    for other, row in robots.items():
-        for option in row.options:
-            if option.name in options and option.name not in taken:
-                raise UsageError(f"{option.flag} needs --robot {other}")
+    for option in robot_options():
+        if option.name in options and option.name not in taken:
+            takers = [name for name, row in robots.items() if any(each.name == option.name for each in row.options)]
+            raise UsageError(f"{option.flag} needs --robot {' or '.join(takers)}")
     if kind not in robots or not robots[kind].set_up:
         raise UsageError(f"no robot `{kind}`: there are {', '.join(robots)}")
     return robots[kind]
