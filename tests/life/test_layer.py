@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import replace
+from itertools import pairwise
 
 import pytest
 from hypothesis import given, settings
@@ -157,6 +158,36 @@ def test_it_looks_towards_a_sound_and_not_towards_its_own_voice() -> None:
     assert layer.wanted(22.5, {HEAD}, lambda _part: 1.0)["HeadYaw"] == 0.0
     layer.heard(-3.0, 0.1, 30.0)
     assert layer.wanted(31.0, {HEAD}, lambda _part: 1.0)["HeadYaw"] == pytest.approx(-1.0)
+
+
+def turned(layer: LifeLayer, now: float) -> float:
+    return layer.wanted(now, {HEAD}, lambda _part: 1.0)["HeadYaw"]
+
+
+def test_it_keeps_looking_at_somebody_who_goes_on_speaking() -> None:
+    layer = lively()
+    layer.style = replace(layer.style, sways=(), glances=None, settles=None, asides=None)
+    angles = []
+    for tick in range(1000):
+        if tick % 40 == 0 and tick < 600:
+            layer.heard(0.7, 0.0, tick * DT)
+        angles.append(turned(layer, tick * DT))
+    steps = [later - before for before, later in pairwise(angles)]
+    assert min(angles[60:600]) == pytest.approx(0.7)
+    assert max(map(abs, steps)) < 0.03
+    assert angles[-1] == 0.0
+
+
+def test_a_sound_beside_the_turned_head_is_beside_it() -> None:
+    layer = lively()
+    layer.style = replace(layer.style, sways=(), glances=None, settles=None, asides=None)
+    layer.heard_by_head(0.7, 0.0, 0.0)
+    for tick in range(100):
+        layer.advance(tick * DT, DT, {HEAD}, lambda _part: 1.0)
+    layer.heard_by_head(0.0, 0.0, 1.0)
+    assert turned(layer, 1.5) == pytest.approx(0.7, abs=0.05)
+    layer.heard_by_head(-0.5, 0.0, 1.5)
+    assert turned(layer, 2.0) == pytest.approx(0.2, abs=0.05)
 
 
 def test_it_looks_aside_before_an_answer_and_not_before_the_next_sentence() -> None:

@@ -77,13 +77,23 @@ class LifeLayer:
             self._attention = Attention(*TOUCHED[sensor], now)
 
     def heard(self, yaw: float, pitch: float, now: float) -> None:
-        """Somebody made a sound so far to the left and below of where the head points [rad]: it looks there.
+        """Somebody made a sound so far to the left and below of where commands point the head [rad]: it looks there.
 
-        It does not while it speaks: then it hears itself.
+        It does not while it speaks: then it hears itself. Who goes on speaking is looked at for as long.
         """
         if now >= self._said_until:
-            far = max(-HEARD_TURN, min(HEARD_TURN, yaw))
-            self._attention = Attention(far, max(-HEARD_NOD, min(HEARD_NOD, pitch)), now)
+            before = self._attention or Attention(0.0, 0.0, -inf)
+            yaw, pitch = max(-HEARD_TURN, min(HEARD_TURN, yaw)), max(-HEARD_NOD, min(HEARD_NOD, pitch))
+            self._attention = before.again(yaw, pitch, self.style.attention, now)
+
+    def heard_by_head(self, yaw: float, pitch: float, now: float) -> None:
+        """As `heard`, but from where the head points at the moment: microphones in the head turn with it."""
+        turned = {
+            role: self._turns[role].sign * self._offsets.get(self._turns[role].joint, 0.0)
+            for role in HEAD_ROLES
+            if role in self._turns
+        }
+        self.heard(yaw + turned.get("yaw", 0.0), pitch + turned.get("pitch", 0.0), now)
 
     def say(self, said: Say, duration: float, now: float, words: Sequence[WordTime] = ()) -> None:
         """It begins to say that, which takes `duration` [s]; `words` tells when each begins, where that is known."""

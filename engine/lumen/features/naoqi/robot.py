@@ -138,7 +138,7 @@ class NaoqiRobot(ExecutingRobot):
             elif value and name == FULL:
                 self._events.append(Event("battery.full", {"percentage": 100}, now))
         for yaw, pitch in self._naoqi_events.sounds():
-            self._life.layer.heard(yaw, pitch, now)
+            self._life.layer.heard_by_head(yaw, pitch, now)
         battery = self._senses[Sense.BATTERY].newest
         if isinstance(battery, Battery):
             self._events += self._alerts.battery(battery.percentage, now)

@@ -208,7 +208,7 @@ class ReachyRobot(ExecutingRobot):
         if not self._executor.owner(VOICE):
             self._life.hush(now)
         for yaw in self._moves.sounds():
-            self._life.heard(yaw, 0.0, now)
+            self._life.heard_by_head(yaw, 0.0, now)
         free = {part for part in WHOLE_BODY if not self._executor.owner(part)}
         offsets = self._life.advance(now, dt, free, lambda _part: 1.0)
         if target := self._mover.target(offsets, dt):

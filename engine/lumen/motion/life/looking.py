@@ -1,5 +1,6 @@
 """Where the head turns of its own accord: glances, nods, and where somebody touched or spoke."""
 
+from math import inf
 from typing import NamedTuple
 
 from lumen.language.life import Asides, Glances, Nods
@@ -13,11 +14,19 @@ NOD_TIME = 0.7
 
 
 class Attention(NamedTuple):
-    """Something at `yaw` to the left and `pitch` down [rad, of the head] asks to be looked at since `at` [s]."""
+    """Something at `yaw` to the left and `pitch` down [rad, of the head] asks to be looked at since `at` [s].
+
+    It asked last at `latest` [s], if it asked several times.
+    """
 
     yaw: float
     pitch: float
     at: float
+    latest: float = -inf
+
+    def again(self, yaw: float, pitch: float, lasts: float, now: float) -> "Attention":
+        """Return the attention to a new place; a head that is turned already goes on from where it is."""
+        return Attention(yaw, pitch, now - min(TURN_TIME, lasts / 2) * _phase(self, lasts, now), now)
 
 
 TOUCHED = {
@@ -47,9 +56,9 @@ def nod(nods: Nods, seed: int, t: float) -> float:
 
 def look_towards(attention: Attention | None, lasts: float, t: float) -> tuple[float, float]:
     """How far the head is turned at `t` [s] to what asks for attention, for as long as that `lasts` [s]."""
-    if attention is None or not 0.0 <= t - attention.at < lasts:
+    if attention is None:
         return 0.0, 0.0
-    part = pulse(t - attention.at, lasts)
+    part = _smooth(_phase(attention, lasts, t))
     return part * attention.yaw, part * attention.pitch
 
 
@@ -68,7 +77,16 @@ def aside(asides: Asides, seed: int, number: int, since: float) -> tuple[float, 
 def pulse(since: float, length: float) -> float:
     """From 0 to 1 and back within `length` [s], without a jerk; `since` [s] its beginning."""
     turn = min(TURN_TIME, length / 2)
-    u = max(0.0, min(1.0, since / turn, (length - since) / turn))
+    return _smooth(max(0.0, min(1.0, since / turn, (length - since) / turn)))
+
+
+def _phase(attention: Attention, lasts: float, t: float) -> float:
+    """Return how much of the way to the place is done, 0 to 1, if all went at the same speed."""
+    turn, end = min(TURN_TIME, lasts / 2), max(attention.at, attention.latest) + lasts
+    return max(0.0, min(1.0, (t - attention.at) / turn, (end - t) / turn)) if turn else 0.0
+
+
+def _smooth(u: float) -> float:
     return u * u * u * (10 + u * (6 * u - 15))
 
 
