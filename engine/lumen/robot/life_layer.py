@@ -77,9 +77,9 @@ class LifeLayer:
             self._attention = Attention(*TOUCHED[sensor], now)
 
     def heard(self, yaw: float, pitch: float, now: float) -> None:
-        """Somebody made a sound so far to the left and below of where commands point the head [rad]: it looks there.
+        """Look towards a sound at `yaw` to the left and `pitch` below the direction of the head's commands [rad].
 
-        It does not while it speaks: then it hears itself. Who goes on speaking is looked at for as long.
+        While the robot speaks, it ignores sounds: it would hear itself.
         """
         if now >= self._said_until:
             before = self._attention or Attention(0.0, 0.0, -inf)
@@ -87,7 +87,7 @@ class LifeLayer:
             self._attention = before.again(yaw, pitch, self.style.attention, now)
 
     def heard_by_head(self, yaw: float, pitch: float, now: float) -> None:
-        """As `heard`, but from where the head points at the moment: microphones in the head turn with it."""
+        """As `heard`, but relative to the measured direction of the head: microphones in the head turn with it."""
         turned = {
             role: self._turns[role].sign * self._offsets.get(self._turns[role].joint, 0.0)
             for role in HEAD_ROLES

@@ -25,7 +25,7 @@ class Attention(NamedTuple):
     latest: float = -inf
 
     def again(self, yaw: float, pitch: float, lasts: float, now: float) -> "Attention":
-        """Return the attention to a new place; a head that is turned already goes on from where it is."""
+        """Return the attention to a new place; a head that has already turned does not return first."""
         return Attention(yaw, pitch, now - min(TURN_TIME, lasts / 2) * _phase(self, lasts, now), now)
 
 
