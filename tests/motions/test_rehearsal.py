@@ -7,9 +7,9 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
-from lumen.features.simulation.trials import DONE, FELL, Case, CaseResult, Outcome
-from lumen.features.simulation.trials.cases import cases
+from lumen.features.simulation.trials.cases import Case, cases
 from lumen.features.simulation.trials.outcome_cache import OutcomeCache
+from lumen.features.simulation.trials.trial import DONE, FELL, CaseResult, Outcome
 from lumen.features.simulation.trials.verdict import findings
 from lumen.project.chosen_model import MODEL_VARIABLE
 from tests import ROOT

@@ -6,8 +6,8 @@ import time
 from pathlib import Path
 
 from lumen.features.simulation.settings import Imperfections
-from lumen.features.simulation.trials import Outcome
 from lumen.features.simulation.trials.playing import play_case
+from lumen.features.simulation.trials.trial import Outcome
 from lumen.run.workers.work_kit import UnpackedKit
 
 

@@ -2,14 +2,16 @@
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from lumen.feature import rows
-from lumen.language.projects import Project
-from lumen.language.stories import Story
 from lumen.project.broken_features import called
-from lumen.run.linting.findings import Findings
-from lumen.run.linting.targets import Wanted
+
+if TYPE_CHECKING:  # `lumen lint` of unchanged files loads none of them
+    from lumen.language.projects import Project
+    from lumen.language.stories import Story
+    from lumen.run.linting.findings import Findings
+    from lumen.run.linting.targets import Wanted
 
 
 class RunExtra(Protocol):
@@ -24,7 +26,7 @@ class RunExtra(Protocol):
         ...
 
     def wishes(
-        self, options: argparse.Namespace, project: Project, story: Story | None, period: float | None
+        self, options: argparse.Namespace, project: "Project", story: "Story | None", period: float | None
     ) -> Mapping[str, Any]:
         """Return options of the plan of one robot that acts for `period` [s], None for until it ends.
 
@@ -45,7 +47,7 @@ class LintExtra(Protocol):
         """Raise UsageError if the options do not go together."""
         ...
 
-    def more(self, found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
+    def more(self, found: Sequence["Findings"], wanted: "Wanted", options: argparse.Namespace) -> list["Findings"]:
         """Return the findings of each project, with those that the options ask for."""
         ...
 

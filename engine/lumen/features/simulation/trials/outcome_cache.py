@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from lumen.features.simulation.settings import Imperfections
-from lumen.features.simulation.trials import Case, Outcome
+from lumen.features.simulation.trials.cases import Case
+from lumen.features.simulation.trials.trial import Outcome
 from lumen.language.projects import Project
 from lumen.ports import Perform
 from lumen.project.engine_files import code_hash

@@ -9,9 +9,9 @@ from pathlib import Path
 from lumen.errors import UsageError
 from lumen.extras import demand
 from lumen.features.simulation.settings import Imperfections
-from lumen.features.simulation.trials import CaseResult, Outcome, attempt
 from lumen.features.simulation.trials.cases import cases
 from lumen.features.simulation.trials.outcome_cache import OutcomeCache
+from lumen.features.simulation.trials.trial import CaseResult, Outcome, attempt
 from lumen.features.simulation.trials.verdict import findings
 from lumen.language.diagnostics import Diagnostic
 from lumen.language.projects import Project

@@ -1,6 +1,6 @@
 """One performance of a motion, watched."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from math import degrees, hypot
 from typing import Any, Self
@@ -17,6 +17,9 @@ STUCK_AFTER = 60.0
 
 REST_BEFORE, REST_AFTER = 0.3, 0.5
 """How long the robot comes to rest before and after [s]."""
+
+RETRIED_AFTER = 1.5
+"""A passage that takes so much longer than its motion was tried again [s]."""
 
 LEANING_TILT, FALLING_TILT = 15.0, 30.0
 """A torso that falls was falling since it leaned that far [degrees]; what happens beyond the second is the fall's."""
@@ -160,3 +163,21 @@ def _most(found: dict[str, TimedAmount], what: str, at: float, value: float) -> 
     """Keep the moment with the greatest value."""
     if value > found.get(what, (0.0, 0.0))[1]:
         found[what] = round(at, 3), round(value, 4)
+
+
+@dataclass(frozen=True)
+class CaseResult:
+    """A case, and what came of it with each robot, the first of them as the model describes it."""
+
+    case: Case
+    outcomes: Sequence[Outcome]
+
+    @property
+    def tried(self) -> Sequence[Outcome]:
+        """Those that came to the motion's beginning."""
+        return [outcome for outcome in self.outcomes if outcome.answer]
+
+    def succeeded(self, outcome: Outcome) -> bool:
+        """Whether the robot came to the end of it, and a passage at its first attempt."""
+        late = self.case.passage and outcome.at > self.case.motion.duration + RETRIED_AFTER
+        return outcome.answer == DONE and not late

@@ -3,8 +3,7 @@
 from collections.abc import Callable, Collection, Iterator, Mapping
 from math import degrees
 
-from lumen.features.simulation.trials import FELL, CaseResult, Outcome
-from lumen.features.simulation.trials.trial import FALLING_TILT, MAX_FOOT_SLIDE, TimedAmount
+from lumen.features.simulation.trials.trial import FALLING_TILT, FELL, MAX_FOOT_SLIDE, CaseResult, Outcome, TimedAmount
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Places
 from lumen.language.life import Sway
 from lumen.language.motions import Keyframe
