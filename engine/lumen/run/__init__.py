@@ -1,1 +1,1 @@
-"""An exhibition as a whole: its loop, its parts, reload, recovery and stories."""
+"""Run an exhibition as a whole: its loop, parts, reload, recovery and stories."""

@@ -1,4 +1,4 @@
-"""`why` and `why-not` asked of a running exhibition: answered on a thread of its own, so that no tick is late."""
+"""Answers to `why` and `why-not` from a running exhibition, made on a separate thread so that no tick is late."""
 
 import logging
 import queue
@@ -19,17 +19,23 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING_QUESTIONS = 20
+"""Questions that may wait for an answer; further ones are dropped."""
 DAY = 86_400.0
+"""Seconds in a day [s]."""
 MAX_QUESTION = 500
-"""Characters of what somebody asks about."""
+"""Characters that are used of the text to explain; the rest is cut off."""
 AnswerMaker = Callable[[], dict[str, Any]]
-"""Makes an answer."""
+"""A function that returns an answer as JSON data."""
 
 _log = logging.getLogger(__name__)
 
 
 def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | None = None) -> dict[str, Any]:
-    """The answer as JSON data; `at` is an ISO 8601 time. Raises UsageError, saying what to do, where there is none."""
+    """Return the answer to a question as JSON data.
+
+    `question` is the `ask` of `why`; any other value is answered as `why-not`. `at` is an ISO 8601 time until which to
+    look. Raises UsageError, with advice, if there is no answer.
+    """
     from lumen.insight.explaining.answers import why, why_not  # thirty modules that only a question needs
 
     until = _until(steps, at) if at else None
@@ -41,7 +47,7 @@ def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | No
 
 
 def moment_of(text: str) -> float:
-    """Return the time of an ISO 8601 text [s since 1970]. Raises UsageError."""
+    """Return an ISO 8601 text as a time [s since 1970]. Raises UsageError if it is no such text."""
     try:
         return time_of(text)
     except ValueError:
@@ -49,7 +55,7 @@ def moment_of(text: str) -> float:
 
 
 def _until(steps: Sequence[RecordedStep], at: str) -> float:
-    """That time on the exhibition's clock [s]; raises UsageError where nothing of it is kept."""
+    """Return an ISO 8601 time on the exhibition's clock [s]. Raises TooLongAgoError if memory begins later."""
     moment = moment_of(at)
     if not steps:
         raise TooLongAgoError("no steps from that time are in memory")
@@ -61,7 +67,7 @@ def _until(steps: Sequence[RecordedStep], at: str) -> float:
 
 
 def _on_its_day(until: float, first: float, last: float) -> float:
-    """The same time of day at the date that the exhibition believes in: stories live at one of their own."""
+    """Return the same time of day on the date of the steps, because stories run on a date of their own."""
     if until - last < DAY:
         return until
     until -= (until - last) // DAY * DAY
@@ -69,13 +75,14 @@ def _on_its_day(until: float, first: float, last: float) -> float:
 
 
 class TooLongAgoError(UsageError):
-    """What is asked about is not in memory any more; the journal may know it."""
+    """The error for a time before the first step in memory; the journal may still cover it."""
 
 
 class AnsweringThread:
-    """Answers questions one after another; `steps` is asked for what has happened, on the thread that asks.
+    """A thread that answers questions one after another.
 
-    The journal that is asked for is what `journal` writes.
+    `steps` returns the steps so far and is called on the thread that asks. `journal` is the writer whose pages answer
+    requests for the journal.
     """
 
     def __init__(self, bus: Bus, steps: Callable[[], list[RecordedStep]], journal: JournalWriter) -> None:
@@ -85,11 +92,11 @@ class AnsweringThread:
         self._thread = WatchedThread("lumen-answering", self._run)
 
     def ask(self, message: Message) -> None:
-        """Have a question about what has happened answered, as soon as those before it are."""
+        """Queue a question about past steps, with the steps as they are now."""
         self.answer(message, partial(reply, self._steps(), message.body, self._journal))
 
     def answer(self, message: Message, make: AnswerMaker) -> None:
-        """Have a message answered by what `make` returns on the other thread; one too many gets no answer."""
+        """Reply to a message with what `make` returns on the answering thread; drop the message if too many wait."""
         if not self._thread.started:
             self._thread.start()
         try:
@@ -98,7 +105,7 @@ class AnsweringThread:
             self._drops.add(message.key, f"{MAX_WAITING_QUESTIONS} questions are already waiting for an answer")
 
     def close(self) -> None:
-        """End the thread."""
+        """Answer the questions that wait, and end the thread; give up after 5 s."""
         if self._thread.started:
             with suppress(queue.Full):
                 self._waiting.put(None, timeout=5.0)
@@ -112,11 +119,11 @@ class AnsweringThread:
                 self._drops.tell()
                 self._bus.reply(message, _made(make))
             except BusError:
-                continue  # who asked is gone
+                continue  # the bus is closed, so no reply can be sent
 
 
 def _made(make: AnswerMaker) -> Any:
-    """What it makes; a fault of ours costs this question, and no other."""
+    """Return what `make` returns. An error in it refuses only this question, and is logged."""
     try:
         return make()
     except Exception as error:
@@ -125,7 +132,7 @@ def _made(make: AnswerMaker) -> Any:
 
 
 def reply(steps: Sequence[RecordedStep], body: Mapping[str, Any], journal: JournalWriter) -> dict[str, Any]:
-    """What is sent back: the answer, or a verdict that says why there is none."""
+    """Return the answer to a request, a page of the journal, or a refusal with its reason."""
     if body["ask"] == JOURNAL.ask:
         return journal_page(journal, int(body.get("from", 0)))
     try:

@@ -1,7 +1,7 @@
-"""Events that wait for a person's GO: what would take a transition marked `approve: operator` is not stepped yet.
+"""Events that wait for a person's GO because they would take a transition marked `approve: operator`.
 
-The chart knows nothing of it. Whether an event would take one is asked of the pure step; with GO the event happens as
-it was, and that is what the journal holds.
+The chart does not know about the wait: the pure step function predicts whether an event would take a marked transition.
+With GO the event happens unchanged, and the journal records it then.
 """
 
 from collections.abc import Iterator
@@ -20,13 +20,13 @@ from lumen.statechart import Snapshot, Step, step
 from lumen.statechart.nesting import behavior_of
 
 MAX_WAITING = 20
-"""Events that may wait for GO at once; the oldest gives way."""
+"""Events that may wait for GO at once; one more makes the oldest stay."""
 LEFT, REPLACED, LATE = "the behaviour left the state", "too many other approvals are waiting", "no answer came"
 RELOADED, FORGOTTEN = "the files changed", "a visitor's data was deleted"
 
 
 class MarkedTransition(NamedTuple):
-    """A marked transition, and the machine that it is in."""
+    """A transition marked for approval, with its machine."""
 
     machine: MachineDefinition
     transition: Transition
@@ -34,7 +34,7 @@ class MarkedTransition(NamedTuple):
 
 
 class HeldEvent(NamedTuple):
-    """An event that waits under an id, for a marked transition, since a time [s] and `until` another, if any."""
+    """An event that has waited under an id for a marked transition, since a time [s]."""
 
     id: str
     event: Event
@@ -43,49 +43,53 @@ class HeldEvent(NamedTuple):
 
     @property
     def until(self) -> float:
-        """When it is decided without a person [s]; never, for infinity."""
+        """The time when it is decided without a person [s]; infinite if it waits for ever."""
         within = self.marked.approval.within
         return inf if within is None else self.since + within
 
 
 class ApprovalWatcher(Protocol):
-    """An observer of events that may wait for approval."""
+    """An observer of events that wait for approval."""
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """An event `waits`, `goes` or `stays`, and why."""
+        """Called when an event `waits`, `goes` or `stays` (`how`), with the reason."""
         ...
 
 
 class Approvals:
-    """Holds events back while autonomy is `ask`.
+    """The events that are held back while autonomy is `ask`.
 
-    `watchers` hear what becomes of each. `marked` is whether the machine has
-    transitions that anything could wait for. Of several events for one transition the first waits.
+    Of several events for one transition only the first is kept to wait; the others are dropped.
     """
 
     def __init__(self) -> None:
         self.autonomy: Autonomy = "ask"
         self.waiting: tuple[HeldEvent, ...] = ()
         self.watchers: list[ApprovalWatcher] = []
+        """Called whenever an event starts to wait, goes or stays."""
         self.marked = False
+        """Whether the machine has transitions that are marked for approval."""
         self._ids = count(1)
         self._released: list[Event] = []
         self._passing: list[Cause] = []
 
     @property
     def due(self) -> float:
-        """When something is decided by itself [s]; minus infinity where something goes now."""
+        """The time of the next decision without a person [s]; minus infinity if an event is already released."""
         return -inf if self._released else min((held.until for held in self.waiting), default=inf)
 
     def use(self, machine: MachineDefinition, snapshot: Snapshot | None = None) -> None:
-        """Go by this machine; what would not take a marked transition there any more stays."""
+        """Switch to a machine. With a snapshot, drop waiting events that take no marked transition there."""
         self.marked = marked_transitions(machine)
         self._passing.clear()
         if snapshot:
             self.look(machine, snapshot, RELOADED)
 
     def holds(self, machine: MachineDefinition, snapshot: Snapshot, event: Event) -> bool:
-        """Whether an event has to wait; then it does."""
+        """Return whether an event must wait for GO, and keep it if so.
+
+        Never hold commands' answers and delayed events of the behaviour, or an event that a person has just let go.
+        """
         if self.autonomy == "alone" or event.sendid or ".command." in event.name:
             return False
         if any(event.cause is cause for cause in self._passing):
@@ -99,7 +103,7 @@ class Approvals:
         return True
 
     def look(self, machine: MachineDefinition, snapshot: Snapshot, why: str = LEFT) -> None:
-        """Let those stay that would no longer take a marked transition."""
+        """Drop the waiting events that would no longer take a marked transition, with `why` as the reason."""
         kept = []
         for held in self.waiting:
             found = _marked_by(machine, snapshot, held.event)
@@ -110,7 +114,7 @@ class Approvals:
         self.waiting = tuple(kept)
 
     def decide(self, id: str, by: str, *, go: bool) -> bool:
-        """What a person decides of the event of that id, of the oldest for an empty one; whether there is one."""
+        """Let the event with an id go or stay (the oldest for an empty id); return False if there is none."""
         held = next((held for held in self.waiting if id in ("", held.id)), None)
         if held is None:
             return False
@@ -118,18 +122,18 @@ class Approvals:
         return True
 
     def set(self, level: Autonomy, by: str) -> None:
-        """Let a person set autonomy; what waits goes where that is `alone` now."""
+        """Set autonomy for a person; at `alone` all waiting events go."""
         self.autonomy = level
         while level == "alone" and self.waiting:
             self.decide("", by, go=True)
 
     def forget(self, person: PersonName) -> None:
-        """Let every event stay that waits, because it may contain the name."""
+        """Make every waiting event stay, because its data may contain the name."""
         while self.waiting:
             self._end(self.waiting[0], FORGOTTEN, None)
 
     def tick(self, now: float) -> list[Event]:
-        """The events that go now, at `now` [s]."""
+        """Decide the events whose time has passed, and return the events that go at `now` [s]."""
         for held in [held for held in self.waiting if held.until <= now]:
             go = held.marked.approval.otherwise == "go"
             self._end(held, LATE, Cause("timer", f"approve {held.event.name}") if go else None)
@@ -147,7 +151,7 @@ class Approvals:
         self._tell("waits", held, "")
 
     def _end(self, held: HeldEvent, why: str, cause: Cause | None) -> None:
-        """It goes for that cause, or stays."""
+        """Stop holding an event: release it with `cause`, or drop it if there is none."""
         self.waiting = tuple(other for other in self.waiting if other is not held)
         if cause:
             self._passing.append(cause)
@@ -163,7 +167,7 @@ def _marked_by(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> 
 
 
 def _marked(machine: MachineDefinition, taken: Step) -> MarkedTransition | None:
-    """The first marked transition that a step has taken."""
+    """Return the first marked transition that a step has taken, None if there is none."""
     return next(_all_marked(machine, taken), None)
 
 
@@ -176,7 +180,7 @@ def _all_marked(machine: MachineDefinition, taken: Step) -> Iterator[MarkedTrans
 
 
 def marked_transitions(machine: MachineDefinition) -> bool:
-    """Whether anything in a behaviour, or in those that it invokes, waits for GO."""
+    """Return whether a behaviour, or one that it invokes, has a transition that waits for GO."""
     return any(
         transition.approve
         for _, inner in machines_in(machine)

@@ -1,4 +1,4 @@
-"""A question to a running exhibition, and the answers that come back."""
+"""A question to a running exhibition over the bus, and its answers."""
 
 import queue
 import uuid
@@ -10,23 +10,24 @@ from lumen.language.routing_keys import OPERATOR_ANSWER, OPERATOR_REQUEST, key_o
 from lumen.ports import BlockableBus, Bus, ReturningBus
 
 OPERATOR_ANSWERS = OPERATOR_ANSWER
-"""Where the answers of a running exhibition come."""
+"""The key on which the answers of a running exhibition arrive."""
 FIRST_ANSWER_TIMEOUT = 10.0
-"""How long the first answer may take [s]: files are loaded for it."""
+"""Longest wait for the first answer [s]: the exhibition may load files for it."""
 
 NOBODY = object()
-"""In place of an answer: the message came back."""
+"""Queued instead of an answer if the broker returned the message as undeliverable."""
 
 
 def operator_key(robot: str) -> str:
-    """Where operators ask that robot's exhibition."""
+    """Return the key of operators' requests to a robot's exhibition."""
     return key_of_robot(OPERATOR_REQUEST, robot)
 
 
 def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_ANSWER_TIMEOUT) -> Iterator[Any]:
-    """The answers to a message, as they come; who takes them decides which is the last.
+    """Publish a message, and yield its answers as they arrive; the caller stops after the last.
 
-    Raises BusError where there is none within `first` [s], or nobody is there to be asked.
+    Raises BusUnreachableError if no answer arrives within `first` [s], the message comes back undelivered, or the
+    broker blocks publishers.
     """
     answers: queue.SimpleQueue[Any] = queue.SimpleQueue()
     mark = str(uuid.uuid4())

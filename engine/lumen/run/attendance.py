@@ -1,4 +1,4 @@
-"""The signs of life of a robot and its modules, while a program listens to the bus."""
+"""Wait for signs of life of a robot and its modules on the bus."""
 
 import threading
 import time
@@ -11,27 +11,28 @@ from lumen.ports import Bus, Message
 from lumen.run.presence import HERE, PRESENCE_PERIOD, PRESENCE_ROUTE, ROBOT_PART
 
 PRESENCE_TIMEOUT = 4 * PRESENCE_PERIOD
+"""Longest wait for a sign of life [s]: four of their periods."""
 
 
 MAX_PARTS = 20
-"""Parts of a process that are noted."""
+"""Parts that are read from one message; the rest are ignored."""
 
 
 class RobotAttendance:
-    """Listens for the presence of a project's robot and modules from now on."""
+    """A listener for the presence messages of a project's robot and modules, from its creation on."""
 
     def __init__(self, bus: Bus, project: Project) -> None:
         self._robot, self._here = project.robot, threading.Event()
         self._modules, self._came = set[str](), threading.Event()
-        with suppress(BusError):  # who may not read it is told so elsewhere
+        with suppress(BusError):  # a missing permission to read is reported elsewhere
             bus.subscribe(project.key_of(PRESENCE_ROUTE), self._hear)
 
     def robot(self) -> bool:
-        """Whether it is there; waits for as long as it may take to say so."""
+        """Wait up to PRESENCE_TIMEOUT for the robot; return whether it showed a sign of life."""
         return self._here.wait(PRESENCE_TIMEOUT)
 
     def lacking(self, modules: Collection[str]) -> set[str]:
-        """Return those of these modules that show no sign of life within the time that one may take to."""
+        """Return the modules among these that show no sign of life within PRESENCE_TIMEOUT."""
         until = time.monotonic() + PRESENCE_TIMEOUT
         while (left := set(modules) - self._modules) and time.monotonic() < until:
             self._came.wait(0.1)

@@ -1,4 +1,4 @@
-"""What was heard in a run, each sound at its time: the sound of its film."""
+"""The audio track of a run's film: each sound at the time it was played."""
 
 from collections.abc import Callable
 from typing import Any
@@ -6,11 +6,11 @@ from typing import Any
 from lumen.run.sound import Sound
 
 RATE = 44_100
-"""Of the track [1/s]."""
+"""Sample rate of the track [1/s]."""
 
 
 class AudioTrack:
-    """Sounds at their times [s], which may overlap; `mixed` is all of them."""
+    """Sounds with their start times [s], which may overlap; `mixed` combines them."""
 
     def __init__(self) -> None:
         self._heard: list[tuple[float, Sound]] = []
@@ -19,7 +19,7 @@ class AudioTrack:
         return len(self._heard)
 
     def add(self, sound: Sound, at: float) -> Callable[[float], None]:
-        """One that begins at that time; what to call where it ends early, with that time."""
+        """Add a sound that begins at `at` [s]; return a function that cuts it off at a later time [s]."""
         number = len(self._heard)
         self._heard.append((max(at, 0.0), sound))
 
@@ -30,7 +30,7 @@ class AudioTrack:
         return cut
 
     def mixed(self, length: float) -> Sound:
-        """What is heard from time 0 until `length` [s]; where several together are too loud the peaks are cut."""
+        """Return the sum of all sounds from time 0 to `length` [s], clipped to 16 bits."""
         import numpy as np  # a fifth of what `lumen run` imports, and only a film needs it here
 
         whole: Any = np.zeros(round(length * RATE), np.int32)
@@ -42,7 +42,7 @@ class AudioTrack:
 
 
 def _resampled(sound: Sound) -> Any:
-    """Its samples at the track's rate, by straight lines between its own."""
+    """Return a sound's samples at the track's rate, by linear interpolation."""
     import numpy as np
 
     samples = np.frombuffer(sound.samples, "<i2")

@@ -1,6 +1,6 @@
-"""What was said, of several texts that a recogniser took it for: the first that means something now.
+"""The choice among a recogniser's alternative texts: the first that means something now.
 
-Chosen before the step, so that the journal holds what was chosen.
+It is chosen before the step, so that the journal records the choice.
 """
 
 from collections.abc import Iterator
@@ -17,14 +17,15 @@ from lumen.language.routes import HEARD
 from lumen.statechart import Snapshot, Step, step
 
 MAX_ALTERNATIVES = 10
-"""How many alternatives are looked at."""
+"""Alternatives that are tried, including the recogniser's first result."""
 _COMPARES = frozenset(("heard", "lookup"))
 
 
 def best_alternative(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Event:
-    """The event with the `result` that means something: by it the step takes a transition that asks for phrases.
+    """Return a `heard` event with the first `result` that takes a transition depending on phrases.
 
-    As it was where there are no alternatives, or none of them means anything. Nothing happens here.
+    Return the event unchanged if it has no alternatives, or none of them takes such a transition. The steps are only
+    tried.
     """
     data = event.data
     if event.name != HEARD or not isinstance(data, dict) or not isinstance(data.get("alternatives"), list):
@@ -35,12 +36,12 @@ def best_alternative(machine: MachineDefinition, snapshot: Snapshot, event: Even
             if _means_something(step(machine, snapshot, heard)):
                 return heard
         except LumenError:
-            continue  # the step itself says so
+            continue  # the real step reports the error
     return event
 
 
 def _texts(data: dict[str, Any]) -> Iterator[str]:
-    """What was probably said, then what else it may have been."""
+    """Yield the most likely text, then the alternatives."""
     for row in (data, *data["alternatives"]):
         if isinstance(row, dict) and isinstance(row.get("result"), str):
             yield row["result"]
@@ -57,7 +58,7 @@ def _means_something(taken: Step) -> bool:
 
 @lru_cache(maxsize=1000)
 def _asks_for_phrases(guard: str) -> bool:
-    """Whether it is true because a text has certain phrases."""
+    """Return whether a guard compares a text with phrases, outside a negation."""
     return _compares(parse_expression(guard))
 
 

@@ -1,18 +1,21 @@
-"""What stands at an arrow of a diagram."""
+"""Captions of a diagram's arrows and invocations."""
 
 from lumen.language.machines import Invoke, Transition
 
 MAX_GUARD_LENGTH = 32
-"""How many characters of a guard are shown."""
+"""Characters of a guard that are shown."""
 
 
 def invocation(invoke: Invoke) -> str:
-    """`quiz`, or `first: quiz` where it has an id of its own."""
+    """Return `quiz`, or `first: quiz` if the invocation has an id of its own."""
     return invoke.behavior if invoke.id == invoke.behavior else f"{invoke.id}: {invoke.behavior}"
 
 
 def caption(transition: Transition) -> str:
-    """`event [guard]`; a row of `hears` with its key, an `after` or `at` with its time, an end as done or error."""
+    """Return `event [guard]` of a transition, with the guard cut to MAX_GUARD_LENGTH.
+
+    The event is the key of a `hears` row, the time of an `after` or `at`, or done or error for an end.
+    """
     guard = " ".join(transition.guard.shown.split()) if transition.guard else ""
     if len(guard) > MAX_GUARD_LENGTH:
         guard = guard[: MAX_GUARD_LENGTH - 1].rstrip() + "…"

@@ -1,4 +1,4 @@
-"""Which stories and sayings are meant: by name, by a pattern of names, or by file."""
+"""The stories and sayings that a word on the command line names: by name, pattern of names, or file."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 
 def home_of(words: Iterable[str]) -> str | None:
-    """The project in whose `behaviors/stories/` or `sayings/` the first of these files lies; None if there is none."""
+    """Return the project of the first file in a `behaviors/stories/` or `sayings/` folder, None without one."""
     for word in words:
         file = Path(os.path.abspath(word))
         if _is_file(word) and len(file.parents) > 2 and (file.parents[2] / MAIN_FILE).is_file():
@@ -30,9 +30,9 @@ def home_of(words: Iterable[str]) -> str | None:
 
 
 def stories_of(project: Project, word: str) -> Iterator[Story]:
-    """The stories of a project that a word means: `shy`, `shy.yaml`, a path to that file, or `safety_*`.
+    """Yield the stories of a project that a word names: `shy`, `shy.yaml`, a path to that file, or `safety_*`.
 
-    Raises UsageError where it means none: a file elsewhere is no story of the project, whatever its name.
+    Raises UsageError if it names none: a file outside the project is no story of it, whatever its name.
     """
     found = _named(project, word, FOLDER, project.stories)
     if not found:
@@ -41,9 +41,9 @@ def stories_of(project: Project, word: str) -> Iterator[Story]:
 
 
 def tests_of(project: Project, word: str) -> tuple[list[Story], list[SayingSet]]:
-    """Return the stories and the files of sayings that a word means, as `stories_of` reads it.
+    """Return the stories and the files of sayings that a word names, by the rules of `stories_of`.
 
-    Raises UsageError if it means none.
+    Raises UsageError if it names none.
     """
     found = (
         _named(project, word, FOLDER, project.stories),
@@ -60,7 +60,10 @@ def _is_file(word: str) -> bool:
 
 
 def _named(project: Project, word: str, folder: Path, known: Mapping[str, T]) -> list[T]:
-    """The files of a folder that a word means; a path is from here, from the project, or from that folder."""
+    """Return the entries of `known` that a word names.
+
+    A path may be relative to the working directory, the project or `folder`.
+    """
     if not _is_file(word):
         return [known[name] for name in sorted(known) if name == word or fnmatchcase(name, word)]
     whole = Path(os.path.abspath(project.root)) / folder
@@ -72,7 +75,7 @@ def _named(project: Project, word: str, folder: Path, known: Mapping[str, T]) ->
 
 
 def _nothing(project: Project, word: str, known: Iterable[str], what: str) -> UsageError:
-    """Why a word means nothing of a project."""
+    """Return the error for a word that names nothing in a project."""
     if Path(word).is_file():
         folder = Path(os.path.abspath(project.root)) / FOLDER
         return UsageError(f"{word} is not in {folder}: move it there, so that it is checked with the project")

@@ -1,4 +1,7 @@
-"""There is one robot of a name on a bus, with one brain and one motion module: whoever comes second is refused."""
+"""The claim of a robot's name: a bus has one robot of a name, with one brain and one motion module.
+
+A process that comes second is refused.
+"""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -10,18 +13,18 @@ from lumen.ports import BlockableBus, Bus
 from lumen.run.presence import PRESENCE_ROUTE, Presence, unique_parts, where_it_runs
 
 CLAIM_DURATION = 0.8
-"""How long a process asks whether somebody is already what it wants to be [s]."""
+"""How long a process waits for objections to its claim [s]."""
 CLAIM_INTERVAL = 0.02
-"""How often it looks for answers [s]."""
+"""Pause between two looks for objections [s]."""
 
 
 def presence_of(project: Project, bus: Bus, parts: tuple[str, ...], more: Callable[[], Mapping[str, Any]]) -> Presence:
-    """The presence of a process that is these parts, on the project's route."""
+    """Return the presence of a process with these parts, on the project's route for it."""
     return Presence(bus, project.robot, parts, key=project.key_of(PRESENCE_ROUTE), more=more)
 
 
 def refuse_rivals(presence: Presence) -> None:
-    """Raises UsageError where another process is what this one wants to be."""
+    """Raise UsageError if another process on the bus already has one of this presence's unique parts."""
     for part in unique_parts():
         if part in presence.parts and (rival := presence.rival(part)):
             raise UsageError(
@@ -31,7 +34,7 @@ def refuse_rivals(presence: Presence) -> None:
 
 
 def refuse_silence(bus: ValidatedBus, presence: Presence) -> None:
-    """Raises BusUnreachableError if a rival could not answer because the broker accepts no messages."""
+    """Raise BusUnreachableError if a rival could not answer because the broker accepts no messages."""
     if (broker := bus.ability(BlockableBus)) and broker.blocked:
         parts = " or ".join(part for part in unique_parts() if part in presence.parts)
         raise BusUnreachableError(

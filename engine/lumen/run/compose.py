@@ -1,4 +1,4 @@
-"""Puts an exhibition together: the parts that its plan asks for, in the order of their rows."""
+"""Build an exhibition from its plan: the parts that it needs, in the order of their rows."""
 
 import logging
 import time
@@ -19,11 +19,11 @@ _log = logging.getLogger(__name__)
 
 
 def compose(plan: Plan) -> Services:
-    """Make an exhibition of its plan: all parts but those that wait until it has claimed what it is (`start`).
+    """Build an exhibition from a plan: all parts except those that are made after the claim (`start`).
 
-    Raises BusError if the bus can't be reached, and whatever a part's maker raises; then all that was made is closed.
-    But if code of an installed package fails, its part is left out, which is logged; that package raises a LumenError
-    to refuse the start.
+    Raises BusError if the bus can't be reached, and any error of a part's maker; then everything made so far is closed.
+    If code of an installed package fails, its part is left out and the failure is logged; to refuse the start, the
+    package raises a LumenError.
     """
     services = Services(plan)
     _make(services, claimed=False)
@@ -31,25 +31,25 @@ def compose(plan: Plan) -> Services:
 
 
 def start(exhibitions: Sequence[Services]) -> None:
-    """Begin exhibitions: claim what they are, make the rest of their parts, and begin these."""
+    """Start exhibitions: claim their robots' roles, make the remaining parts, and begin all parts."""
     claim(exhibitions)
     begin(exhibitions)
 
 
 def claim(exhibitions: Sequence[Services]) -> None:
-    """Wait for answers of other processes that are one of these robots, or have one of these roles.
+    """Wait for objections of other processes with the same robots or roles.
 
-    Raises UsageError if one answers.
+    Raises UsageError if there is one.
     """
     waiting = [one.node for one in exhibitions]
     for node in waiting:
-        node.ask()  # making the parts can take longer than the time for objections
+        node.ask()  # ask now: making the parts can take longer than the time for objections
     while waiting := [node for node in waiting if node.claims()]:
         time.sleep(CLAIM_INTERVAL)
 
 
 def begin(exhibitions: Sequence[Services]) -> None:
-    """Make the parts of exhibitions that have claimed what they are, and begin all parts."""
+    """Make the remaining parts of exhibitions after their claim, and begin all parts."""
     for one in exhibitions:
         _make(one, claimed=True)
         for missing in one.left_out:
@@ -85,12 +85,12 @@ def _add(services: Services, place: int, row: PartRow) -> None:
 
 
 def _guarded(services: Services, row: PartRow, feature: Feature | None, part: Part) -> Part:
-    """Return a part whose faults end only the part if a package made it."""
+    """Return a part of a package wrapped so that its faults end only that part; return Lumen's own parts unchanged."""
     return AddedPart(part, feature, row, services.part_stopped) if feature else part
 
 
 def _feature_of(row: PartRow) -> Feature | None:
-    """Return the feature of an installed package that has a row; None for a row of Lumen."""
+    """Return the installed package's feature that has a row; None for a row of Lumen."""
     found = (feature for feature, each in rows("parts") if each is row and distribution_of(feature))
     return next(found, None)
 
@@ -102,7 +102,10 @@ def part_rows() -> tuple[PartRow, ...]:
 
 
 def ordered(found: Iterable[PartRow]) -> list[PartRow]:
-    """Sort rows by phase, then `after` others, then by name. Raises ValueError if rows wait for each other."""
+    """Sort rows by phase, then after the row that `after` names, then by name.
+
+    Raises ValueError if rows wait for each other.
+    """
     waiting = sorted(found, key=lambda row: (row.phase, row.name))
     names, sorted_rows = {row.name: row.phase for row in waiting}, list[PartRow]()
     while waiting:

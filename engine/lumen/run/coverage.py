@@ -1,4 +1,4 @@
-"""What a number of runs went through: states entered, transitions taken, and what is left."""
+"""The coverage of a number of runs: states entered, transitions taken, and those that were not."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ from lumen.statechart.nesting import behavior_of
 
 
 class Gap(NamedTuple):
-    """A state that was never entered, or a transition that was never taken."""
+    """A state that was never entered or a transition that was never taken, with its place."""
 
     place: Place
     what: str
@@ -21,18 +21,20 @@ class Gap(NamedTuple):
 
 @dataclass
 class Coverage:
-    """States entered, by name, and transitions taken, by where they stand, for each behaviour that ran."""
+    """What a number of runs entered and took, for each behaviour that ran."""
 
     project: Project
     entered: dict[str, set[str]] = field(default_factory=dict)
+    """Names of the entered states, by behaviour."""
     taken: dict[str, set[NodePath]] = field(default_factory=dict)
+    """Places of the taken transitions in their files, by behaviour."""
 
     def of(self, behavior: str) -> Observer:
-        """Who watches a run of that behaviour."""
+        """Return an observer that counts the steps of a run of a behaviour."""
         return _Watcher(self, behavior)
 
     def note(self, behavior: str, step: Step) -> None:
-        """Count a step of that behaviour, and those of the behaviours that it has invoked."""
+        """Count a step of a behaviour, and those of the behaviours that it invoked."""
         self.entered.setdefault(behavior, set()).update(step.entered)
         self.taken.setdefault(behavior, set()).update(t.where for t in step.transitions)
         for id, inner in step.invoked:
@@ -40,23 +42,23 @@ class Coverage:
 
     @property
     def states(self) -> tuple[int, int]:
-        """How many states were entered, and how many there are."""
+        """How many states were entered, and how many there are, in the behaviours that ran."""
         wanted = [(b, s.name) for b in self.entered for s in _states(self.project.behaviors[b])]
         return sum(name in self.entered[b] for b, name in wanted), len(wanted)
 
     @property
     def transitions(self) -> tuple[int, int]:
-        """How many transitions were taken, and how many there are."""
+        """How many transitions were taken, and how many there are, in the behaviours that ran."""
         wanted = [(b, t.where) for b in self.entered for t in _transitions(self.project.behaviors[b])]
         return sum(where in self.taken[b] for b, where in wanted), len(wanted)
 
     @property
     def percent(self) -> float:
-        """The smaller of both, in percent."""
+        """The smaller of both shares [%]."""
         return min(100.0 * some / every if every else 100.0 for some, every in (self.states, self.transitions))
 
     def gaps(self) -> list[Gap]:
-        """What is left, by file and line."""
+        """Return what was not covered, sorted by file and line."""
         return sorted(gap for behavior in self.entered for gap in self._gaps(behavior))
 
     def _gaps(self, behavior: str) -> Iterator[Gap]:
@@ -79,7 +81,7 @@ class _Watcher(Observer):
 
 
 def described(machine: MachineDefinition, transition: Transition) -> str:
-    """`ask_name` on `heard`, as GUARD, to `offer`: a transition in words."""
+    """Return a transition in words, as in "`ask_name` on `heard`, as GUARD, to `offer`"."""
     source = machine.states[transition.source].name
     guard = f", as {transition.guard.shown}" if transition.guard else ""
     names = ", ".join(f"`{machine.states[path].name or machine.id}`" for path in transition.targets)
@@ -87,7 +89,7 @@ def described(machine: MachineDefinition, transition: Transition) -> str:
 
 
 def trigger(transition: Transition) -> str:
-    """What a transition waits for, in words."""
+    """Return in words which event or time a transition waits for."""
     if transition.hears:
         return f"on `{transition.hears.title}`"
     if transition.timed:

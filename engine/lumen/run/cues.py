@@ -1,4 +1,4 @@
-"""What motions say and sound: words become a `Say` like any other, sounds a `PlaySound`."""
+"""Cues of motions: their words become `Say` commands, their sounds `PlaySound` commands."""
 
 import logging
 from collections.abc import Mapping
@@ -13,10 +13,10 @@ _log = logging.getLogger(__name__)
 
 
 class MotionCues:
-    """Answers the events that a robot raises for the cues of a motion.
+    """A translator from a motion's cue events to commands.
 
-    Words wait for the voice as every `say` does, under ids `cue1`, `cue2`, …; they end with a motion that is cancelled
-    or fails; so do sounds. One whose file is not there, or can't be played, is logged, once, and stays silent.
+    Words wait for the voice like every `say`, under ids `cue1`, `cue2`, …. If a motion is cancelled or fails, its words
+    and sounds are cancelled. A sound that is missing or can't be played is logged once and left out.
     """
 
     def __init__(self) -> None:
@@ -26,13 +26,13 @@ class MotionCues:
         self._number = 0
 
     def performing(self, command: Command) -> None:
-        """Take note of a motion that is about to be played."""
+        """Remember the id of a motion that is about to be played."""
         match command:
             case Start(id, Play(motion)):
                 self._playing[id] = motion
 
     def answered(self, event: Event, project: Project, language: str) -> list[Command]:
-        """What has to be done about an event of the robot."""
+        """Return the commands that an event of the robot asks for."""
         if event.name == CUE and isinstance(event.data, Mapping):
             return self._cue(event.data, project, language)
         kind, _, id = event.name.partition(".command.")
@@ -68,7 +68,7 @@ class MotionCues:
 
 
 def words(value: object, language: str, default: str) -> str:
-    """The text of a `say` in that language, else in the default one, else any; empty where it has none."""
+    """Return the text of a `say` in `language`, else in `default`, else in any; empty if it has none."""
     if isinstance(value, Mapping):
         value = value.get(language) or value.get(default) or next(iter(value.values()), "")
     return value if isinstance(value, str) else ""

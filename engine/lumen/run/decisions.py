@@ -1,4 +1,4 @@
-"""What people decide while an exhibition runs: what waits for approval goes or stays, and whether anything waits."""
+"""Decisions of people while an exhibition runs: approvals, and whether events wait for them at all."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
@@ -11,21 +11,22 @@ HOW = {"waits": "waits for GO", "goes": "goes", "stays": "stays"}
 
 
 class DecisionRecords(Protocol):
-    """The records of a run, as far as people's decisions are kept in them."""
+    """The part of a run's records that keeps people's decisions."""
 
     def write(self, entry: Mapping[str, Any]) -> None:
-        """Keep an entry of the journal."""
+        """Write an entry of the journal."""
         ...
 
     def keep_decisions(self, decisions: Mapping[str, Any]) -> None:
-        """Keep what people decided, and what waits for them, for the run after a crash."""
+        """Save people's decisions and the waiting events for a run after a crash."""
         ...
 
 
 class Decisions:
-    """Lets people decide, and tells of it: a line of the transcript, and by `record` an entry of the journal.
+    """People's decisions, each with a line in the transcript.
 
-    `keep` has it written what was decided and what waits; `publish` tells the bus what became of each event.
+    `record` writes an entry of the journal, `keep` saves the current decisions and waiting events, and `publish` sends
+    to the bus how each event was decided.
     """
 
     def __init__(
@@ -41,7 +42,7 @@ class Decisions:
         approvals.watchers.append(self)
 
     def recover(self, kept: Any, *, resumed: bool) -> None:
-        """Go on with the autonomy that a run had which ended without notice, and say what it lost."""
+        """Restore the autonomy of a run that crashed, and report the events that waited then and are lost."""
         match kept:
             case {"autonomy": "ask" | "alone" as level, "waiting": list(waiting)} if resumed:
                 self._approvals.autonomy = level
@@ -54,7 +55,7 @@ class Decisions:
             self._write()
 
     def approve(self, id: str, by: str, *, go: bool) -> dict[str, Any]:
-        """GO, or not, for the event of that id; of an empty one for what waits longest."""
+        """Let the event with an id go or stay (the oldest for an empty id); return the verdict."""
         if self._approvals.decide(id, by, go=go):
             return {"verdict": "done"}
         waiting = ", ".join(f"`{held.id}` ({held.event.name})" for held in self._approvals.waiting)
@@ -64,7 +65,7 @@ class Decisions:
         }
 
     def autonomy(self, level: Autonomy, by: str) -> dict[str, Any]:
-        """Whether marked transitions wait for GO from now on."""
+        """Set whether marked transitions wait for GO; return the verdict."""
         self._narrator.line("operator", f"autonomy: {level}, by {by}")
         self._record({"autonomy": level, "by": by})
         self._approvals.set(level, by)
@@ -72,7 +73,7 @@ class Decisions:
         return {"verdict": "done", "autonomy": level}
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """Tell what became of an event that waited for approval, and keep it."""
+        """Report and record that an event waits, goes or stays."""
         machine, wanted, _ = held.marked
         targets = ", ".join(machine.states[path].name for path in wanted.targets) or "what it does"
         self._narrator.line("operator", f"{held.event.name} {HOW[how]}, to {targets}" + (f": {why}" if why else ""))

@@ -1,4 +1,4 @@
-"""What the brain has the motion module do where there is one, and does itself where there is none."""
+"""Tracking and motions that the brain delegates to a motion module if there is one, and else does itself."""
 
 import logging
 from collections.abc import Callable
@@ -13,21 +13,22 @@ from lumen.run.tracking import LocalTracking
 
 MOTION_ROUTE = "motion"
 MOTION_TTL = 2.0
+"""Lifetime of a request to the motion module [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 def motion_key(project: Project) -> str:
-    """Under which key the motion module of a project's robot takes requests."""
+    """Return the key on which the motion module of a project's robot receives requests."""
     row = project.routes.get(MOTION_ROUTE)
     return row.key_for(project.robot) if row else default_key(MOTION_ROUTE, project.robot)
 
 
 class DelegatedTracking:
-    """Controllers that are on, and motions, in the hands of the motion module while it is `able`.
+    """Controllers and motions, done by the motion module while it is available and else by `own`.
 
-    `able` is the session of a motion module that has the very files that run here, empty where there is none; `time`
-    is the robot's clock [s], by which poses and sights are dated, None as long as nothing is known of it.
+    `able` returns the session of a motion module that has the same files as this process, or an empty string. `time`
+    returns the robot's clock [s], by which poses and sightings are dated, or None while it is unknown.
     """
 
     def __init__(
@@ -39,16 +40,17 @@ class DelegatedTracking:
 
     @property
     def on(self) -> tuple[str, ...]:
+        """Names of the controllers that are on."""
         return tuple(self._on)
 
     def reload(self, project: Project) -> None:
-        """Go on with another bundle; a controller that is gone is off."""
+        """Switch to another bundle; controllers that it lacks go off."""
         self._own.reload(project)
         self._project = project
         self._on = {name: None for name in self._on if name in project.controllers}
 
     def switch(self, track: Track) -> None:
-        """Switch a controller on or off, wherever that is done."""
+        """Switch a controller on or off, in the motion module or here."""
         if not track.on:
             self._on.pop(track.controller, None)
         elif track.controller in self._project.controllers:
@@ -59,7 +61,7 @@ class DelegatedTracking:
             self._own.switch(track)
 
     def tick(self, now: float) -> None:
-        """See who does it now, and do it where that is us."""
+        """Move the controllers if the motion module came, left or restarted, and run them while they are here."""
         helper = self._able()
         if helper != self._helper:
             self._helper = helper
@@ -72,21 +74,21 @@ class DelegatedTracking:
             self._own.tick(time)
 
     def restart(self) -> None:
-        """The robot was restarted, and counts its time anew: what was seen before is worth nothing."""
+        """Restart the controllers here after the robot restarted its clock: earlier sightings have wrong times."""
         for name in self._on:
             if not self._helper:
                 self._own.switch(Track(name, False))
                 self._own.switch(Track(name))
 
     def play(self, id: str, command: Perform) -> bool:
-        """Have the motion module play a motion under that id; false where there is none that could."""
+        """Ask the motion module to play a motion under an id; return False if it can't."""
         name = command.motion.name
         if not self._able() or self._project.motions.get(name) is not command.motion:
             return False
         return self._ask({"id": id, "play": name, "bundle": self._project.hash})
 
     def _delegate(self, track: Track) -> None:
-        """Have the motion module switch a controller, where that one moves joints."""
+        """Ask the motion module to switch a controller, if the controller moves joints or goes off."""
         found = self._project.controllers.get(track.controller)
         if not track.on or (found and found.output_bindings):
             self._ask({"track": track.controller, "on": track.on})

@@ -1,4 +1,4 @@
-"""What an exhibition is busy with: since when each state is active, what is said, moved and heard, and what waits."""
+"""An exhibition's current activity: since when each state is active, what is said, moved, heard, and under way."""
 
 import re
 from collections import deque
@@ -19,33 +19,38 @@ from lumen.statechart import Snapshot, Step
 from lumen.statechart.nesting import active_names, entered_names
 
 _OWN = re.compile(r"(.*\.)?[cd]\d+(@.*)?")
-"""The id of a command of the behaviour, as it travels between processes, too."""
+"""The id of a command of the behaviour, also with the suffix it has between processes."""
 MAX_UNDER_WAY = 200
-"""Commands that are remembered as not over; of more, the oldest is forgotten."""
+"""Unfinished commands of a kind that are remembered; one more makes the oldest be forgotten."""
 
 
 class UnderWay(NamedTuple):
-    """A text, or a motion by its verb and name, since a time [s]; `seconds` it takes, None where nobody knows."""
+    """A text that is said, or a motion under way."""
 
     what: str
+    """The verb."""
     name: str
+    """The text, or the name of the motion or posture."""
     since: float
+    """When it began [s]."""
     seconds: float | None = None
+    """How long it takes [s], None if unknown."""
     language: str = ""
+    """The language of a text."""
 
 
 class Spoken(NamedTuple):
-    """What a visitor said, at `at` [s]."""
+    """A visitor's words, at `at` [s]."""
 
     text: str
     at: float
 
 
 class Doings(Observer):
-    """Notes what happens; `project` is asked for the bundle, `snapshot` for where it stands, `now` for the time [s].
+    """An observer that records the current activity.
 
-    A command that waits for another of its kind counts from when that one has ended. `told` takes the texts on the bus
-    that robots say, on any thread.
+    `project`, `snapshot` and `now` return the bundle, where the behaviour is, and the time [s]. A command that waits
+    for another of its kind counts from the end of that one.
     """
 
     def __init__(
@@ -54,15 +59,18 @@ class Doings(Observer):
         self._project, self._snapshot, self._now = project, snapshot, now
         self._last: Snapshot | None = None
         self.since: dict[str, float] = {}
+        """When each active state became active [s], by name."""
         self.heard: Spoken | None = None
+        """The last words of a visitor."""
         self._speaking: dict[str, UnderWay] = {}
         self._moving: dict[str, UnderWay] = {}
         self._others: dict[str, None] = {}
         self.told: deque[Message] = deque(maxlen=MAX_UNDER_WAY)
+        """Texts for the robot that arrived on the bus; any thread may append."""
 
     @property
     def saying(self) -> UnderWay | None:
-        """What is said now; of what nobody says the end, as long as it takes at most."""
+        """What is said now. A text whose end is not reported counts for at most its expected duration."""
         for id, said in tuple(self._speaking.items()):
             if said.seconds is None or self._now() - said.since < said.seconds:
                 return said
@@ -71,16 +79,16 @@ class Doings(Observer):
 
     @property
     def motion(self) -> UnderWay | None:
-        """The motion under way that was asked for first."""
+        """The oldest motion under way."""
         return next(iter(self._moving.values()), None)
 
     @property
     def commands(self) -> int:
-        """How many commands are not over."""
+        """How many commands are unfinished."""
         return len(self._speaking) + len(self._moving) + len(self._others)
 
     def look(self) -> None:
-        """Note where the behaviour stands before a tick: elsewhere than after its last step, it was reloaded."""
+        """Read the texts from the bus, and update the active states if a reload changed them; called before a tick."""
         while self.told:
             self._hear(self.told.popleft())
         now = self._snapshot()
@@ -99,7 +107,7 @@ class Doings(Observer):
             self.heard = Spoken(said, step.event.at)
 
     def approval(self, how: str, held: HeldEvent, why: str) -> None:
-        """A visitor's words are heard before a person decides what comes of them."""
+        """Record a visitor's words when their event starts to wait: they are heard before a person decides."""
         if how == "waits" and (said := self._words(held.event)):
             self.heard = Spoken(said, held.event.at)
 
@@ -125,19 +133,19 @@ class Doings(Observer):
             self._end(self._moving, id)
 
     def forget(self, person: PersonName) -> None:
-        """Forget what was said and heard, which may contain the name."""
+        """Forget what was said and heard, because it may contain the name."""
         self.heard = None
         self._speaking.clear()
 
     def _hear(self, message: Message) -> None:
-        """Somebody else than the behaviour lets the robot say something: nobody says when that has ended."""
+        """Record a text that did not come from the behaviour; its end is never reported, so it is estimated."""
         body = message.body
         if isinstance(body, dict) and not _OWN.fullmatch(message.cause) and (text := str(body.get("text") or "")):
             said = UnderWay("say", text, self._now(), speech_duration(text), str(body.get("language") or ""))
             self._begin(self._speaking, f"said {message.id}", said)
 
     def _words(self, event: Event) -> str:
-        """What a visitor said, if that is what the event is."""
+        """Return a visitor's words in an event of the route `speech`, else an empty string."""
         route = self._project().routes.get(SPEECH_ROUTE)
         if route is None or event.name != route.event or not isinstance(event.data, Mapping):
             return ""
@@ -157,7 +165,7 @@ class Doings(Observer):
         _keep_few(all)
 
     def _end(self, all: dict[str, UnderWay], id: str) -> None:
-        """One has ended; where it was the first, the next of its kind begins."""
+        """Remove a command. If it was the first of its kind, the next one begins now."""
         was_first = next(iter(all), None) == id
         if all.pop(id, None) is not None and was_first and all:
             first = next(iter(all))

@@ -1,4 +1,4 @@
-"""A robot of the project's own: a class in drivers/NAME.py, or in an installed package as `package:Class`."""
+"""The driver of a robot: a class in the project's drivers/NAME.py, or in an installed package as `package:Class`."""
 
 import sys
 from collections.abc import Callable, Mapping
@@ -22,17 +22,17 @@ from lumen.upkeep.arguments import missing_methods
 
 
 def drivers_in(root: Path) -> dict[str, Path]:
-    """Return the files of drivers/ in a project by their names."""
+    """Return the files of drivers/ in a project by their names, without those that begin with `_`."""
     return {file.stem: file for file in sorted((root / DRIVERS_FOLDER).glob("*.py")) if not file.stem.startswith("_")}
 
 
 def is_driver(name: str, root: Path) -> bool:
-    """Return whether a name is that of a file of drivers/, or a `package:Class`."""
+    """Return whether a name is a file of drivers/ or has the form `package:Class`."""
     return ":" in name or name in drivers_in(root)
 
 
 def make_robot(driver: str, project: Project) -> Robot:
-    """Return a new robot of a driver, made by its class from the project.
+    """Return a new robot that a driver's class makes for the project.
 
     Raises UsageError if there is no such class, RobotError if it fails or lacks a method of `lumen.ports.Robot`.
     """
@@ -61,7 +61,7 @@ def robot_class(driver: str, root: Path) -> type:
 
 
 def _guarded(kind: type, driver: str) -> type:
-    """Return the class with methods that raise RobotError, with the line, for any error of the driver."""
+    """Return a subclass whose public methods turn any error of the driver into a RobotError with its line."""
 
     def named(name: str, method: Callable[..., Any]) -> Callable[..., Any]:
         @wraps(method)
@@ -81,7 +81,7 @@ def _guarded(kind: type, driver: str) -> type:
 
 
 def fault_of(driver: str) -> Callable[[str], LumenError]:
-    """Return the function from what a driver did wrong to the error that ends the run."""
+    """Return a function that turns a description of a driver's fault into the error that ends the run."""
     return lambda what: RobotError(f"the driver `{driver}` {what}")
 
 
@@ -105,7 +105,7 @@ def _imported(driver: str, module: str, root: Path) -> ModuleType:
 
 
 def _module_of(file: Path) -> ModuleType:
-    """Import a file of a project, once; others of the same name are other modules."""
+    """Import a file of a project once; the hash of the path keeps files of the same name apart."""
     name = f"lumen_driver_{file.stem}_{sha256(str(file.absolute()).encode()).hexdigest()[:8]}"
     if name in sys.modules:
         return sys.modules[name]
@@ -122,7 +122,7 @@ def _module_of(file: Path) -> ModuleType:
 
 
 def _only_robot(driver: str, module: ModuleType) -> type:
-    """Return the class of a file that has the methods of a robot."""
+    """Return the one class of a file with all methods of a robot. Raises RobotError if there are none or several."""
     own = [v for v in vars(module).values() if isinstance(v, type) and v.__module__ == module.__name__]
     robots = [kind for kind in own if not isabstract(kind) and not missing_methods(kind, Robot)]
     if len(robots) == 1:
@@ -144,7 +144,7 @@ def _need_methods(driver: str, kind: type) -> None:
 
 
 def _line_of(error: BaseException, kind: type) -> str:
-    """Return the last line of the class's own module that an error passed, as `(FILE:LINE)`."""
+    """Return the class's own last line in an error's traceback, as ` (FILE:LINE)`; empty if there is none."""
     lines = [
         f"{frame.f_code.co_filename}:{line}"
         for frame, line in walk_tb(error.__traceback__)

@@ -1,4 +1,4 @@
-"""Which states a step entered, and why, in a few words."""
+"""Short explanations of why a step entered its states."""
 
 from collections.abc import Iterable, Mapping
 
@@ -8,7 +8,7 @@ from lumen.statechart import Step
 
 
 def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:
-    """Of these states the ones that no other of them lies in."""
+    """Return those of these states that are no parent of another of them."""
     listed = list(names)
     states = {state.name: state for state in machine.states.values()}
     parents = {states[name].parent for name in listed if name in states}
@@ -16,7 +16,7 @@ def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:
 
 
 def why(step: Step) -> str:
-    """The transitions that led somewhere, one after the other: what each waited for, and the guard that held."""
+    """Return what led to a step's entries: each transition's trigger, and its guard if it has one; at most three."""
     causes = list(dict.fromkeys(_cause(t, step) for t in step.transitions if t.targets))
     if not causes:
         return "at the start" if step.event is None else step.event.name
@@ -24,7 +24,7 @@ def why(step: Step) -> str:
 
 
 def reason_of(event: Event) -> str:
-    """The reason that an error says, empty where it says none."""
+    """Return the reason in an error's data, empty if there is none."""
     return str(event.data.get("reason", "")) if isinstance(event.data, Mapping) else ""
 
 

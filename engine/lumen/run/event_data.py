@@ -1,4 +1,4 @@
-"""What is wrong with the data of an event that a person lets happen, by what is declared of that event."""
+"""Check an event's data, as a person entered it, against the schemas declared for that event."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -12,14 +12,14 @@ from lumen.language.projects import Project
 
 
 class EventData:
-    """Looks at data by the schemas of a project: those under `events:`, of messages on routes, and of robots."""
+    """A checker of event data by the schemas of a project: under `events:`, of routes, and of robots."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
         self._checks: dict[str, list[tuple[Mapping[str, Any], SchemaCheck]]] = {}
 
     def wrong(self, name: str, data: Any) -> str:
-        """Why an event can't have this data, as a sentence; empty where it can, or nothing is declared of it."""
+        """Return in a sentence why an event can't have this data; empty if it can, or no schema is declared."""
         if name not in self._checks:
             self._checks[name] = [(schema, SchemaCheck(schema)) for schema in _schemas(self.project, name)]
         reasons = [(schema, check(data)) for schema, check in self._checks[name]]
@@ -30,7 +30,7 @@ class EventData:
 
 
 def _schemas(project: Project, name: str) -> Iterator[Mapping[str, Any]]:
-    """The JSON Schemas of that event's data; several where behaviours that run within another declare it, too."""
+    """Yield the JSON Schemas of an event's data; several if invoked behaviours declare it too."""
     own = [machine.events[name] for _, machine in machines_in(project.machine) if name in machine.events]
     routed = [project.messages.get(route.schema) for route in project.routes.values() if route.event == name]
     steady = {**controller_events(project.controllers.values()), **own_module_events(project.modules), **robot_events()}
@@ -40,7 +40,7 @@ def _schemas(project: Project, name: str) -> Iterator[Mapping[str, Any]]:
 
 
 def _right(schema: Mapping[str, Any]) -> str:
-    """Which fields it takes, of which types."""
+    """Return a sentence that lists the allowed fields and their types, empty if the schema has none."""
     fields = schema.get("properties")
     if not isinstance(fields, Mapping) or not fields:
         return ""

@@ -1,4 +1,4 @@
-"""An exhibition in this process: opened, stepped or run, observed, reloaded, asked to stop, and closed."""
+"""An exhibition inside a Python program."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -29,10 +29,9 @@ from lumen.statechart import Step
 
 
 class Exhibition:
-    """A whole exhibition, for a program that holds it: `start` it, then `tick` or `run`.
+    """A whole exhibition, held by a program that calls `start` and then `tick` or `run`.
 
-    It is made of a plan; `services` are all its parts, `node` is what ticks them. Raises BusError if the bus can't be
-    reached.
+    It is made from a plan; `services` are its parts, `node` ticks them. Raises BusError if the bus can't be reached.
     """
 
     def __init__(self, plan: Plan) -> None:
@@ -46,7 +45,7 @@ class Exhibition:
 
     @property
     def visitor(self) -> VisitorActor | None:
-        """Whoever stands in the hall, to be made to `arrive`, `speak` and `leave`; None where there is no hall."""
+        """The visitor in the hall, to control by `arrive`, `speak` and `leave`; None if there is no hall."""
         visitor = self.services.get(VisitorPart)
         return visitor.actor if visitor else None
 
@@ -68,7 +67,7 @@ class Exhibition:
 
     @property
     def robot(self) -> RobotPart:
-        """The robot, as it takes part."""
+        """The part that runs the robot."""
         return self.services[RobotPart]
 
     @property
@@ -83,12 +82,12 @@ class Exhibition:
 
     @property
     def configuration(self) -> frozenset[str]:
-        """The active states but the root, by alias where there is one, else by path."""
+        """The active states except the root, by alias if there is one, else by path."""
         return self.loop.runtime.snapshot.configuration
 
     @property
     def context(self) -> dict[str, Any]:
-        """What the behaviour remembers."""
+        """A copy of the behaviour's context."""
         return dict(self.loop.runtime.snapshot.context)
 
     @property
@@ -98,86 +97,89 @@ class Exhibition:
 
     @property
     def over(self) -> bool:
-        """Whether its story is at its end, or it was interrupted."""
+        """Whether its story has ended, or it was interrupted."""
         return self.node.over
 
     def start(self) -> None:
-        """Begin all parts: enter the initial states, or go on where the run before ended without notice.
+        """Begin all parts: enter the initial states, or continue where the previous run crashed.
 
-        Raises UsageError where another process on the bus is this robot already.
+        Raises UsageError if another process on the bus already is this robot.
         """
         start([self.services])
 
     def tick(self) -> float:
-        """Live through a tick, a 50th of a second; its time [s]."""
+        """Run one tick, a 50th of a second; return its time [s]."""
         return self.node.tick()
 
     def run(self, seconds: float | None = None) -> float:
-        """Live for so long [s], or until it is over; how long it lived [s]."""
+        """Run for `seconds` [s], or until it is over; return how long it ran [s]."""
         return self.node.run(seconds)
 
     def send(self, route: str, body: Mapping[str, Any]) -> None:
-        """Send a message on a route, as a module would. Raises UsageError where there is none, or it is not allowed."""
+        """Send a message on a route, as a module would.
+
+        Raises UsageError if there is no such route, or the body is not allowed on it.
+        """
         if reason := send(self.services.bus, self.project, route, body, MessageOrigin(sender=PROGRAM)):
             raise UsageError(f"can't send on `{route}`: {reason}")
 
     def say(self, text: str, language: str = "") -> None:
-        """Let the robot say something, whatever the behaviour is doing."""
+        """Make the robot say a text, whatever the behaviour does."""
         said = Say(text, language)
         self.robot.robot.start("operator", said)
         self.robot.server.begins(said)
 
     def stop(self) -> None:
-        """Let the robot rest, at once, and the behaviour hear of it (`stop`); nobody moves it until `resume`."""
+        """Make the robot rest at once and raise `stop` in the behaviour; no motion is possible until `resume`."""
         self.brain.rest(PROGRAM)
 
     def resume(self) -> None:
-        """Let the robot move again, and the behaviour hear of it (`resume`), which may wake it.
+        """Allow motions again and raise `resume` in the behaviour, which may wake the robot.
 
-        Where the behaviour knows no such event the robot stands up.
+        If the behaviour does not use this event, the robot stands up.
         """
         self.robot.server.resume(PROGRAM)
 
     def status(self) -> dict[str, Any]:
-        """How it is, as `lumen status --format json` prints it."""
+        """Return the state of the exhibition, as `lumen status --format json` prints it."""
         return self.services[OperatorPart].status()
 
     def view(self) -> dict[str, Any]:
-        """How it is and what can happen next, as `{"ask": "now"}` gets it over the bus: docs/processes.md."""
+        """Return the state and possible next events, as `{"ask": "now"}` does over the bus: docs/processes.md."""
         return self.services[OperatorPart].now()
 
     def why(self, what: str = "", at: str | None = None) -> dict[str, Any]:
-        """Why something happened, as `lumen why --format json` prints it; the last thing that did without `what`.
+        """Return why something happened, as `lumen why --format json` prints it.
 
-        `what` is a text that was said, a state, a motion or the id of a command; `at` an ISO 8601 time until which it
-        happened. Raises UsageError, saying what to do, where it did not.
+        `what` is a text that was said, a state, a motion or the id of a command; without it the last of these is
+        explained. `at` is an ISO 8601 time until which to look. Raises UsageError, with advice, if it did not happen.
         """
         return answer(self.history(), WHY.ask, what, at)
 
     def why_not(self, what: str, at: str | None = None) -> dict[str, Any]:
-        """Why something did not happen, as `lumen why-not --format json` prints it; raises as `why` does."""
+        """Return why something did not happen, as `lumen why-not --format json` prints it. Raises as `why` does."""
         return answer(self.history(), WHY_NOT.ask, what, at)
 
     def history(self) -> list[RecordedStep]:
-        """The steps of the last minutes, the oldest first: what `why` and `why_not` are answered from."""
+        """Return the steps of the last minutes, the oldest first; `why` and `why_not` use them."""
         return self.services[OperatorPart].steps.steps()
 
     def observe(self, handler: Callable[[Step], None]) -> None:
-        """Call this with each step from now on, in the order taken."""
+        """Call `handler` with each step from now on, in order."""
         self.loop.observers.append(_StepHandler(handler))
 
     def reload(self) -> ReloadReport:
-        """Take the files as they are on the disk; what came of it.
+        """Reload the files from disk, and return a report.
 
-        Its `verdict` is `unchanged`, `applied`, `refused` (see `diagnostics`), or `waiting` for what the behaviour is
-        doing: then it is applied at a later tick. Raises UsageError where it was opened without `reload`.
+        Its `verdict` is `unchanged`, `applied`, `refused` (see `diagnostics`), or `waiting` while the behaviour is
+        busy: then it is applied at a later tick. Raises UsageError if the exhibition was opened without `reload`.
         """
         if self.reloader is None:
             raise UsageError('this exhibition was opened with reload="off", so it can\'t reload files')
         return self.reloader.reload(self.now)
 
     def close(self) -> None:
-        """End what has threads, files or windows open."""
+        """Close its threads, files and windows."""
         self.node.close()
 
     def __enter__(self) -> Self:

@@ -1,4 +1,4 @@
-"""A behaviour explored in its project: what was found, where that stands, and the story that leads there."""
+"""The exploration of a behaviour in its project: findings with their places, and stories that lead to them."""
 
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -21,7 +21,7 @@ from lumen.run.visitor import SPEECH_ROUTE
 
 HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
 ROBOT_TIMEOUT = "2min"
-"""How long the story waits until the robot has done something."""
+"""How long the story waits for a robot's command to end."""
 
 
 @dataclass(frozen=True)
@@ -36,34 +36,37 @@ class ExploredFinding:
 
 @dataclass(frozen=True)
 class Explored:
-    """An exploration of a behaviour: how many `configurations` it came to in how many `steps`, and how many were left
-    `waiting` in sight.
-
-    `kept` are the properties that hold wherever it came, `unseen` is what it did not come upon, `took` how long it took
-    [s]. `known` ones were explored at another time.
-    """
+    """The result of exploring a behaviour."""
 
     behavior: str
     configurations: int
+    """How many configurations were reached."""
     steps: int
+    """How many steps were taken."""
     waiting: int
+    """How many reached configurations were not explored, because of the bound."""
     kept: tuple[str, ...]
+    """Properties that hold in every reached configuration."""
     findings: tuple[ExploredFinding, ...]
     unseen: tuple[Gap, ...]
+    """States and transitions that were not reached."""
     took: float
+    """How long it took [s]."""
     known: bool = False
+    """Whether it is the kept result of an earlier exploration."""
 
     @property
     def complete(self) -> bool:
+        """Whether every reached configuration was explored."""
         return not self.waiting
 
 
 def explored(
     project: Project, behavior: str, *, bound: int, home: str = "", tell: Callable[[int, int], None] | None = None
 ) -> Explored:
-    """Explore a behaviour of the project under every event that its routes, its robot and its file declare.
+    """Explore a behaviour under every event that the project's routes, its robot and its own file declare.
 
-    `tell` hears how far it is: how many configurations were explored, and how many are in sight.
+    `bound` limits the search. `tell` is called with how many configurations were explored, and how many are known.
     """
     began = time.perf_counter()
     machine = project.behaviors[behavior]
@@ -84,7 +87,7 @@ def explored(
 
 
 def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
-    """The events that come to a behaviour from outside, each with the JSON Schema of its data, None for any."""
+    """Return the events that reach a behaviour from outside, with the JSON Schemas of their data (None: any)."""
     routes = {r.event: project.messages.get(r.schema) for r in project.routes.values() if r.event}
     pressed = {button.event: None for state in machine.states.values() for button in state.buttons}
     steady = {**controller_events(project.controllers.values()), **robot_events(), **own_module_events(project.modules)}
@@ -92,7 +95,7 @@ def outside(project: Project, machine: MachineDefinition) -> Mapping[str, Any]:
 
 
 def story(project: Project, behavior: str, finding: ExplorationFinding) -> str:
-    """A story file that leads to what was found."""
+    """Return the YAML of a story that leads to a finding."""
     robot = dict(_broken(finding.path))
     lines = [HEAD, f"title: {_flow(finding.message)}"]
     lines += [f"behavior: {_flow(behavior)}"] if behavior != project.behavior else []
@@ -125,7 +128,7 @@ def _steps(project: Project, path: tuple[PathStep, ...]) -> Iterator[str]:
 
 
 def _happens(project: Project, name: str, data: Any) -> str:
-    """The step that lets an event happen: as words, as a message, or from nowhere."""
+    """Return the story step that raises an event: as spoken words, as a message on its route, or as a bare event."""
     route = next((r.name for r in project.routes.values() if r.event == name), None)
     if route == SPEECH_ROUTE and isinstance(data, Mapping) and isinstance(data.get("result"), str) and data["result"]:
         return f"says: {_flow(data['result'])}"
@@ -135,13 +138,13 @@ def _happens(project: Project, name: str, data: Any) -> str:
 
 
 def _expect(states: tuple[str, ...], before: tuple[str, ...], more: Mapping[str, Any]) -> str:
-    """The step that expects the states that are active now and were not before."""
+    """Return the story step that expects the states that became active."""
     fresh = [state for state in states if state not in before] or list(states)
     return f"expect: {_flow({'state': fresh[0] if len(fresh) == 1 else fresh, **more})}"
 
 
 def _broken(path: tuple[PathStep, ...]) -> Iterator[tuple[str, str]]:
-    """What the robot has to do badly on the way: verbs that fail, and verbs that hang while a timer ends."""
+    """Yield the verbs that must fail on the way, and those that must hang while a timer ends."""
     for step in path:
         if step.stimulus and step.stimulus.kind is StimulusKind.FAILED:
             yield _verb(step.stimulus.command), "fails"
@@ -154,7 +157,7 @@ def _verb(command: object) -> str:
 
 
 def _flow(value: Any) -> str:
-    """The value as YAML in one line."""
+    """Return a value as YAML on one line."""
     text: str = yaml.safe_dump([value], default_flow_style=True, allow_unicode=True, sort_keys=False, width=10_000)
     return text.strip()[1:-1]
 

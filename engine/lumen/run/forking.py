@@ -1,4 +1,4 @@
-"""`{"ask": "fork"}`: what would have been from a moment on, with another event or with the saved files."""
+"""`{"ask": "fork"}`: what would have happened from some moment on, with another event or with the saved files."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
@@ -23,12 +23,13 @@ from lumen.run.replaying.kept_bundles import KeptBundles
 from lumen.run.replaying.other_files import takes
 
 PATIENCE = 3.0
-"""How long an answer may take [s]."""
+"""Longest time for an answer [s]."""
 MAX_NAME = 100
+"""Longest name of an event, in characters."""
 
 
 def forked(journal: JournalWriter, running: Project, body: Mapping[str, Any]) -> dict[str, Any]:
-    """The answer: `was` and `would`, entries of a journal each; a refusal that says why where there is none."""
+    """Return the answer: `was` and `would`, each a list of journal entries, or a refusal with its reason."""
     try:
         return _forked(journal, running, body)
     except LumenError as error:
@@ -63,7 +64,7 @@ def _event(said: Any) -> Event | None:
 
 
 def _saved(running: Project) -> Project:
-    """The files as they are saved, with what can't change while it runs. Raises ProjectError."""
+    """Return the project as it is saved, with the settings that can't change during a run. Raises ProjectError."""
     root = Path(running.root)
     project, diagnostics = check_files(root, read_files(root))
     if project is None:
@@ -72,7 +73,7 @@ def _saved(running: Project) -> Project:
 
 
 def _entries(journal: JournalWriter, body: Mapping[str, Any]) -> tuple[Sequence[RecordedEntry], int]:
-    """The entries around where it is to fork, and the position of the first that may be otherwise."""
+    """Return the entries around the fork, and the position of the first entry that may differ."""
     position, at = body.get("position"), body.get("at")
     if type(position) is not int and not isinstance(at, str):
         raise UsageError("add `position`, the position of an entry, or `at`, a time such as 2026-11-22T14:03:00Z")
@@ -98,14 +99,14 @@ def _remembered(journal: JournalWriter) -> list[RecordedEntry]:
 
 
 def _knows(entries: Sequence[RecordedEntry], position: int) -> bool:
-    """Whether they say where the behaviour stood at that position."""
+    """Return whether the entries have a snapshot at or before that position."""
     return any(
         isinstance(one, JournalJump) and one.snapshot is not None and one.position <= position for one in entries
     )
 
 
 def _kept(journal: JournalWriter, position: int) -> Sequence[RecordedEntry]:
-    """Those of the file in which that position is."""
+    """Return the entries of the file that contains that position. Raises UsageError if no file does."""
     files = sorted((header.first, file) for file, header in _files(journal) if header.first <= position)
     if not files:
         raise UsageError(f"entry {position} is no longer in the journal")
@@ -122,6 +123,6 @@ def _read(file: Path) -> Sequence[RecordedEntry]:
 
 
 def _after(entries: Sequence[RecordedEntry], moment: float) -> int | None:
-    """The position of the first entry at or after that moment [s since 1970]; None where there is none."""
+    """Return the position of the first entry at or after a moment [s since 1970]; None if there is none."""
     clock = JournalClock()
     return next((entry.position for entry in entries if clock.of(entry) >= moment), None)

@@ -14,9 +14,9 @@ from lumen.upkeep.garbage import GcScheduler
 class House:
     """Exhibitions by the names of their robots; each has its own time, keys, journal, files and stop.
 
-    They live tick by tick, in the order given: where their worlds have one clock in common, they are in step. One that
-    is over is closed, and the others go on. So do they if an error ends one of them: `lost` is called at once, with its
-    name and the error. With `together` the house is over as soon as one of them is, as when a story has ended.
+    They are ticked in the order given, and are in step if their worlds share a clock. One that is over is closed, and
+    the others continue. The same happens if an error ends one: `lost` is then called with its name and the error. With
+    `together` the house is over as soon as one of them is, as at the end of a story.
     """
 
     def __init__(
@@ -38,19 +38,20 @@ class House:
 
     @property
     def over(self) -> bool:
+        """Whether no robot runs any more, or with `together` one has ended."""
         return not self._going or (self._together and len(self._going) < len(self.nodes))
 
     def interrupt(self, times: int = 1, *, leave: bool = False) -> None:
-        """Ctrl-C: once rests all robots, twice ends; safe in a signal handler."""
+        """Handle Ctrl-C: the first rests all robots, the second ends the run; safe in a signal handler."""
         for node in self.nodes.values():
             node.interrupt(times, leave=leave)
 
     def start(self) -> None:
-        """Begin all of them. Raises UsageError where another process on the bus is one of these robots already."""
+        """Begin all exhibitions. Raises UsageError if another process on the bus already is one of these robots."""
         start(self._exhibitions)
 
     def tick(self) -> float:
-        """Let each live through a tick; the time of the first that goes on [s]."""
+        """Tick each robot once; return the time of the first that continues [s]."""
         for name, node in list(self._going.items()):
             try:
                 now = node.tick()
@@ -65,17 +66,17 @@ class House:
         return self.now
 
     def run(self, seconds: float | None = None) -> float:
-        """Live for so long [s], or until it is over; how long it lived [s]."""
+        """Run for `seconds` [s], or until it is over; return how long it ran [s]."""
         with closing(GcScheduler()) as garbage:
             return live(self, seconds, garbage)
 
     def close(self) -> None:
-        """End all that go on."""
+        """Close the exhibitions that are not over."""
         for name in self.going:
             self._end(name)
 
     def nap(self, most: float = inf) -> None:
-        """Sleep while nothing is due in any of them: on the clock of the first, until something comes for one."""
+        """Sleep on the first robot's clock for at most `most` [s], until something is due or arrives in any."""
         going = list(self._going.values())
         with ExitStack() as stack:
             for node in going:

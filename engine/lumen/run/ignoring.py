@@ -1,4 +1,4 @@
-"""What happened and changed nothing, in a line; once where it happens many times a second."""
+"""One-line reports of events that changed nothing; frequent ones are reported once."""
 
 import json
 import re
@@ -11,34 +11,38 @@ from lumen.run.visitor import SPEECH_ROUTE
 from lumen.statechart import Step
 
 _TIME = re.compile(r"(after|at)\.(.+)\.[^.]*")
-"""The event of an `after` or `at`: the key, and its time."""
+"""The event of an `after` or `at`: its key and its time."""
 _ENDS = {
     f"{kind}.{what}.": key
     for kind, key in (("done", "onDone"), ("error", "onError"))
     for what in ("do", "state", "invoke")
 }
-"""What the file calls the events of an end, by how their names begin."""
+"""The keys for the ends of actions, states and invocations in the file, by the beginnings of their events' names."""
 
 BURST = 1.0
-"""How soon after one the next event of its name, with the same texts, says nothing new [s]."""
+"""Time within which another event with the same name and texts is not reported [s]."""
 MAX_GUARDS = 3
-"""How many false guards a line shows."""
+"""False guards that a line shows."""
 MAX_VALUE = 40
-"""How many characters of a value it shows."""
+"""Characters of a value that a line shows."""
 MAX_REMEMBERED = 1_000
+"""Events that are remembered for bursts; then all are forgotten."""
 
 
 class IgnoredEvents:
-    """Says of each step whether its event changed nothing, and why.
+    """The reports on steps whose event changed nothing.
 
-    A face is seen many times a second, and only some state cares: what follows one of its kind soon is not told of.
+    A face is seen many times a second, and few states use it, so an event soon after one of its kind is not reported.
     """
 
     def __init__(self) -> None:
         self._last: dict[tuple[str, tuple[str, ...]], float] = {}
 
     def line(self, machine: MachineDefinition, step: Step) -> str:
-        """`“dance” while goodbye does not listen`; empty where something happened, or nobody would want to know."""
+        """Return a line such as `“dance” while goodbye does not listen`.
+
+        Return an empty string if the step changed something, or a similar event came just before.
+        """
         if step.event is None or self._follows(step.event, step.snapshot.at):
             return ""
         found = ignored(machine, step)
@@ -80,7 +84,7 @@ def _shown(event: Event) -> str:
 
 
 def _said(event: Event) -> str:
-    """What a visitor said, where that is what happened."""
+    """Return a visitor's words if the event is speech, else an empty string."""
     said = event.data.get("result") if event.name == SPEECH_ROUTE and isinstance(event.data, dict) else None
     return said if isinstance(said, str) else ""
 

@@ -1,4 +1,4 @@
-"""From messages to events: what arrives on any thread waits here for the next tick, with whom it came from."""
+"""From messages to events: messages from any thread wait here, with their senders, for the next tick."""
 
 import logging
 from collections import deque
@@ -14,12 +14,13 @@ from lumen.ports import Bus, Message
 from lumen.upkeep.drops import DropLog
 
 MAX_WAITING_EVENTS = 10_000
+"""Events that may wait; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
 
 class Inbox:
-    """Subscribes to every route that becomes an event; bounded, the oldest gives way."""
+    """A bounded queue of the events on every route that raises one; a new event drops the oldest if it is full."""
 
     def __init__(self, bus: Bus) -> None:
         self._bus = bus
@@ -30,7 +31,7 @@ class Inbox:
         self._known, self._robots = set[str](), set[str]()
 
     def listen(self, project: Project) -> None:
-        """Listen to the routes of this project: new ones first, then no longer to those that are gone."""
+        """Subscribe to the routes of a project: first to new ones, then cancel those that are gone."""
         wanted = {(route.key_for(project.robot), route.event) for route in project.routes.values() if route.event}
         for key, event in sorted(wanted - self._undo.keys()):
             self._undo[key, event] = self._bus.subscribe(key, self._receiver(event))
@@ -40,14 +41,14 @@ class Inbox:
 
     @property
     def empty(self) -> bool:
-        """Whether nothing has arrived since it was drained."""
+        """Whether no event waits."""
         return not self._waiting
 
     def __len__(self) -> int:
         return len(self._waiting)
 
     def hear_robots(self, project: Project) -> None:
-        """Listen to what other robots of the house tell this one, where it has any."""
+        """Subscribe to events from other robots of the house, if the project has any; else unsubscribe."""
         self._known = {t.event for state in project.machine.states.values() for t in state.transitions if t.event} - {
             SHARED_EVENT
         }
@@ -60,7 +61,10 @@ class Inbox:
             self._told = None
 
     def _hear_robot(self, message: Message) -> None:
-        """Only what the behaviour waits for by that very name, from a robot of the house: nobody fakes an answer."""
+        """Queue an event from a robot of the house if the behaviour waits for exactly that name; else log it.
+
+        The exact name is required so that another robot can't fake an answer.
+        """
         match message.body:
             case {"event": str(event), "data": data, "from": str(robot)} if (
                 event in self._known and robot in self._robots
@@ -71,7 +75,7 @@ class Inbox:
                 _log.warning("a message on %s is ignored: it is not an event that this robot expects", message.key)
 
     def drain(self, now: float) -> list[Event]:
-        """Everything that has arrived, as events at `now` [s]; each is caused by its message."""
+        """Return everything that arrived, as events at `now` [s], each with its message as the cause."""
         events = []
         self._drops.tell()
         while self._waiting:

@@ -1,4 +1,4 @@
-"""A program as a module of an exhibition: it reaches the bus, and sends signs of life."""
+"""A program that joins an exhibition as a module: it reaches the bus and sends signs of life."""
 
 import os
 import platform
@@ -22,8 +22,9 @@ from lumen.run.reaching import reach_exhibition
 from lumen.upkeep.arguments import need_text
 
 REACH_TIMEOUT = 30.0
-"""The time that an exhibition may need until its bus can be reached [s]."""
+"""How long to wait until the bus of an exhibition can be reached [s]."""
 REACH_PAUSE = 0.2
+"""Pause between two attempts [s]."""
 
 
 class JoinedModule:
@@ -55,13 +56,16 @@ class JoinedModule:
         self.bus.subscribe(self.key(route), handler)
 
     def alive(self) -> None:
-        """Send a sign of life, at most two a second; `wait` does it too. Raises BusError if the bus is gone."""
+        """Send a sign of life, at most one per period; `wait` does it too. Raises BusError if the bus is gone."""
         if time.monotonic() >= self._next:
             self._next = time.monotonic() + PRESENCE_PERIOD
             self._say(HERE)
 
     def wait(self, seconds: float) -> bool:
-        """Wait, sending signs of life; return False as soon as the exhibition ends this program, or its bus is gone."""
+        """Wait for `seconds` [s] and send signs of life.
+
+        Return False as soon as the exhibition ends this program, or its bus is gone.
+        """
         until = time.monotonic() + seconds
         while not self._ending.is_set():
             try:
@@ -75,7 +79,7 @@ class JoinedModule:
         return False
 
     def close(self) -> None:
-        """Say that the program leaves, and disconnect; harmless when repeated."""
+        """Announce that the program leaves, and disconnect; harmless when repeated."""
         self._ending.set()
         with suppress(BusError):
             self._say(LEAVES)
@@ -103,7 +107,7 @@ class JoinedModule:
 
 
 def join(name: str = "", *, robot: str = "", bus: str = "", project: str = "") -> JoinedModule:
-    """Take part in a running exhibition as the module `name` of lumen.yaml.
+    """Join a running exhibition as the module `name` of lumen.yaml.
 
     A program that `lumen run` starts needs no arguments. One that runs elsewhere passes its name, the name of the
     robot, and the address of the bus, or for an exhibition on the same machine the folder of the project. Raises

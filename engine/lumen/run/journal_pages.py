@@ -1,4 +1,4 @@
-"""Entries of the journal from a position on, for who asks on the bus: a page at a time."""
+"""Pages of the journal from a position on, for requests on the bus."""
 
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -14,21 +14,21 @@ from lumen.journal.journal_tail import PositionedLine
 from lumen.journal.journal_writer import JournalWriter
 
 MAX_ENTRIES = 500
-"""On one page."""
+"""Entries on one page."""
 MAX_PAGE_BYTES = 500_000
-"""Of their lines; one that is longer is a page of its own."""
+"""Size of a page's lines [bytes]; a longer line gets a page of its own."""
 PATIENCE = 5.0
-"""How long a journal that begins may take to find its first position [s]."""
+"""How long to wait until a new journal knows its first position [s]."""
 
 
 def journal_page(writer: JournalWriter, position: int, most: int = MAX_ENTRIES) -> dict[str, Any]:
-    """Up to `most` entries of the journal that is being written, those from `position` on; `next` is where to go on.
+    """Return up to `most` entries from `position` on, of the journal that is being written.
 
-    Each is the JSON data of its entry, with its `position`. The last ones come from memory, older ones from the files.
-    What is not kept any more is left out: the first position on the page may be a later one. `run` is the run that
-    writes now: in another one, what a power cut took may have its position once more, so `next` is never later than
-    what comes next. `epoch` is when the exhibition's time 0 was before the first of them [s since 1970], None where
-    that is not kept: entries tell their time from there.
+    `entries` are the JSON data of each entry, with its `position`: the newest from memory, older ones from the files.
+    Those no longer kept are left out, so the first position may be a later one. `next` is the position of the next
+    page. `run` identifies the current run: after a power cut, another run may reuse the positions of lost entries, so
+    `next` never exceeds the next position to be written. `epoch` is the date of the exhibition's time 0 before the
+    first entry [s since 1970], None if unknown; the entries' times count from there.
     """
     if not writer.begun.wait(PATIENCE):
         return {"entries": [], "next": position, "run": writer.run, "epoch": None}
@@ -48,7 +48,7 @@ def journal_page(writer: JournalWriter, position: int, most: int = MAX_ENTRIES) 
 
 
 def _kept(folder: Path, position: int, most: int) -> tuple[list[bytes], list[PositionedLine]]:
-    """Lines of a file before that position, and those from there on; what can't be read is left out."""
+    """Return the lines of a file before that position, and the lines from it on; unreadable files are left out."""
     files = sorted((header.first, file) for file, header in headers(folder) if file.parent == folder)
     begin = max((number for number, (first, _) in enumerate(files) if first <= position), default=0)
     before, found = list[bytes](), list[PositionedLine]()
@@ -65,7 +65,7 @@ def _kept(folder: Path, position: int, most: int) -> tuple[list[bytes], list[Pos
 
 
 def _epoch_after(lines: Sequence[bytes]) -> float | None:
-    """When time 0 was after these entries: the last of them that says so does."""
+    """Return the date of time 0 after these entries [s since 1970]: the last that is recorded, None if none is."""
     clock = JournalClock()
     for line in reversed(lines):
         if b'"epoch"' in line:
@@ -77,7 +77,7 @@ def _epoch_after(lines: Sequence[bytes]) -> float | None:
 
 
 def _fitting(lines: Iterable[PositionedLine]) -> list[PositionedLine]:
-    """The first ones, as many as fit on a page."""
+    """Return as many of the first lines as fit on a page, at least one."""
     found, size = list[PositionedLine](), 0
     for line in lines:
         size += len(line[1])

@@ -1,4 +1,4 @@
-"""What exploring has found, kept under `.lumen/explored/` by all that it hangs on: so nothing is explored twice."""
+"""Results of explorations, kept under `.lumen/explored/` by everything they depend on, so that none is repeated."""
 
 import json
 from collections.abc import Mapping
@@ -17,24 +17,25 @@ from lumen.upkeep.private_folder import private_folder
 
 FOLDER = "explored"
 MAX_KEPT = 20
-"""Explorations that are kept of a project: the oldest give way."""
+"""Explorations that are kept of a project; more replace the oldest."""
 
 
 class KeptExplorations:
-    """Of one project. A folder that can't be written, or a file in it that can't be read, is as good as none."""
+    """The kept explorations of a project. A folder or file that can't be used counts as empty."""
 
     def __init__(self, project: Project) -> None:
         self._home = Home(home_of(Path(project.root)) / FOLDER)
         self._content = [project.hash, repr(project.body.name), list(project.languages), engine()]
 
     def recall(self, behavior: str, bound: int, home: str) -> Explored | None:
-        """What came of it before with the same files, software and choices."""
+        """Return the earlier result for the same files, software and options; None if there is none."""
         try:
             return _from_json(self._home.read_json(self._name(behavior, bound, home)))
         except (KeyError, TypeError, ValueError, AttributeError):
             return None
 
     def keep(self, explored: Explored, bound: int, home: str) -> None:
+        """Save a result, and delete the oldest ones; do nothing if the folder can't be written."""
         try:
             private_folder(self._home.folder.parent)
             private_folder(self._home.folder)

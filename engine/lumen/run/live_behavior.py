@@ -1,4 +1,4 @@
-"""A behaviour that runs, and goes on with another bundle where that is asked for."""
+"""A behaviour that runs, and switches to another bundle on request."""
 
 import logging
 import os
@@ -31,7 +31,7 @@ _LINK, _NAME = Path("/etc/localtime"), Path("/etc/timezone")
 
 
 def local_timezone() -> str:
-    """The IANA name of this machine's time zone; `UTC+02:00` where it has none to tell, as it is now."""
+    """Return the IANA name of this machine's time zone, or its present offset as `UTC+02:00` if the name is unknown."""
     wanted = os.environ.get("TZ", "").removeprefix(":")
     found = next((name for name in (wanted, _linked(), _named()) if name and _known(name)), "")
     if not found:
@@ -68,17 +68,16 @@ class Forgetter(Protocol):
     """Something that may hold a person's name."""
 
     def forget(self, person: PersonName) -> None:
-        """Keep nothing in which the name may stand."""
+        """Delete everything that may contain the name."""
         ...
 
 
 class LiveBehavior:
     """A project's behaviour in its `loop`, on a robot, a bus and a clock.
 
-    A story says which behaviour it is about, in which language and at what time of day it begins, and remembering
-    what. `adopt` switches everything around the loop to another bundle; it may raise BusError. If it is `published`,
-    each step goes to the bus. `forgetters` forget a person with it. `refuse` returns the reason why the robot may not
-    begin a command, empty if it may.
+    A story sets the behaviour, the language, the time of day and the context at the start. `adopt` switches everything
+    around the loop to another bundle, and may raise BusError. With `published` each step is sent to the bus. `refuse`
+    returns why the robot may not begin a command, empty if it may.
     """
 
     def __init__(
@@ -107,6 +106,7 @@ class LiveBehavior:
         )
         self._adopt = adopt
         self.forgetters: list[Forgetter] = []
+        """Called to forget a person together with the behaviour."""
         if published:
             self.loop.observers.append(self.trace)
 
@@ -130,20 +130,20 @@ class LiveBehavior:
         )
 
     def forget(self, person: PersonName) -> None:
-        """Go on without somebody's name, and tell so."""
+        """Remove a person's name from the behaviour and all forgetters, and publish the new snapshot."""
         for one in self.forgetters:
             one.forget(person)
         if self.loop.runtime.forget(person):
             self.trace.standing(self.loop.runtime.snapshot)
 
     def plan(self, project: Project, *, now: bool = False, back: bool = False) -> MigrationVerdict:
-        """How another bundle would go on from here, or why it can't; nothing changes."""
+        """Return how another bundle would continue from here, or why it can't; nothing changes."""
         return self.loop.plan(staged(project, self._story), now=now, back=back)
 
     def apply(self, project: Project, plan: MigrationPlan, begun: Callable[[], None] = lambda: None) -> None:
-        """Go on with another bundle as planned for this moment; `begun` is called before what that asks for is done.
+        """Switch to another bundle as planned for this moment, and perform the plan's commands.
 
-        Raises what `switch` raises.
+        `begun` is called between the switch and the commands. Raises what `switch` raises.
         """
         old = self.project
         self.switch(project, plan)
@@ -151,9 +151,9 @@ class LiveBehavior:
         self.loop.perform(plan, old)
 
     def switch(self, project: Project, plan: MigrationPlan, kind: JumpKind = "reload") -> None:
-        """Go on with another bundle, and leave undone what that asks for.
+        """Switch to another bundle without performing the plan's commands.
 
-        Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
+        Raises BusError if the bus refuses its routes, and any internal error; then nothing has changed.
         """
         old, new = self.project, staged(project, self._story)
         try:
@@ -166,5 +166,5 @@ class LiveBehavior:
             self.trace.migrated(plan)
 
     def _timezone(self) -> str:
-        """The project's; where it names none this machine's, and for a story, which is the same everywhere, UTC."""
+        """Return the project's time zone, else this machine's; for a story, which must run the same everywhere, UTC."""
         return self.project.timezone or ("" if self._story else self._local_timezone)

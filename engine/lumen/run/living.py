@@ -1,4 +1,4 @@
-"""The loop of a process: tick by tick, asleep while nothing is due, until it is over."""
+"""The loop of a process: ticks, and sleep while nothing is due, until it is over."""
 
 import sys
 from collections.abc import Callable
@@ -8,7 +8,7 @@ from typing import Protocol
 from lumen.run.watcher import SWITCH_INTERVAL
 
 ROUNDING = 1e-6
-"""How far the sum of many ticks may be off [s]."""
+"""Tolerance for the rounding error in the sum of many ticks [s]."""
 
 
 class Living(Protocol):
@@ -20,19 +20,23 @@ class Living(Protocol):
         ...
 
     @property
-    def over(self) -> bool: ...
-
-    def nap(self, most: float) -> None:
-        """Sleep through the ticks in which nothing happens, for at most `most` [s]."""
+    def over(self) -> bool:
+        """Whether it has ended."""
         ...
 
-    def tick(self) -> float: ...
+    def nap(self, most: float) -> None:
+        """Sleep through ticks in which nothing happens, for at most `most` [s]."""
+        ...
+
+    def tick(self) -> float:
+        """Run one tick; return its time [s]."""
+        ...
 
 
 def live(one: Living, period: float | None, tidy: Callable[[], None]) -> float:
-    """Tick until it is over, or has lived for the period [s]; return how long it lived [s].
+    """Tick until `one` is over or `period` [s] has passed (None: no limit); return how long it ran [s].
 
-    `tidy` is called after each tick, when there is the most time until the next.
+    `tidy` is called after each tick, when the most time is left until the next.
     """
     began, usual = one.now, sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_INTERVAL)

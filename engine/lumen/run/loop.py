@@ -1,4 +1,4 @@
-"""The loop of a running behaviour: the order of things, fifty times a second."""
+"""The loop of a running behaviour: what happens in which order, fifty times a second."""
 
 from collections.abc import Callable, Mapping, Sequence
 from datetime import date
@@ -33,13 +33,16 @@ from lumen.statechart import Snapshot, Step, due
 from lumen.statechart.offers import offers
 
 REMIND_PERIOD = 5.0
-"""How long after the last time the robot is told again [s]: one that was restarted meanwhile has forgotten it."""
+"""Time after which the robot is sent its style again [s], in case it was restarted and lost it."""
 
 _STILL = Live(STILL_STYLE)
 
 
 class LifeDirector:
-    """Watches where the behaviour stands. It takes no part in its steps, so that journals know nothing of it."""
+    """A director of the robot's life: it sends the style of the active states.
+
+    It takes no part in the steps, so journals do not contain it.
+    """
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
@@ -48,7 +51,7 @@ class LifeDirector:
         self._seen: tuple[object, object] = (None, None)
 
     def tick(self, project: Project, snapshot: Snapshot, now: float) -> None:
-        """Tell the robot where that is something else, or a file has changed; and again now and then."""
+        """Send the robot its style if the style or a file has changed, and again every REMIND_PERIOD."""
         if self._seen[0] is not project or self._seen[1] != snapshot.configuration:
             self._seen = project, snapshot.configuration
             self._wanted = _wanted(project, snapshot)
@@ -68,11 +71,11 @@ def _wanted(project: Project, snapshot: Snapshot) -> Live:
 
 _BY_PEOPLE = ("stop", "resume")
 _FROM_THE_START = ("lost.command.", "brain.lost")
-"""What is told where the behaviour was away, and goes on."""
+"""Events that the behaviour gets if it was away and resumes."""
 
 
 def caused(event: Event) -> Event:
-    """The event with its cause, which is left as it is where somebody has named one."""
+    """Return the event with its cause, which is left unchanged if it already has one."""
     return event if event.cause else event._replace(cause=_cause(event))
 
 
@@ -89,14 +92,16 @@ def _cause(event: Event) -> Cause:
 
 
 TICK_PERIOD = 0.02
+"""Time between two ticks [s]."""
 BRAIN_LOST_AFTER = 5.0
+"""Gap between ticks from which the behaviour gets `brain.lost` [s]."""
 NOTHING_WAITS = "nothing is waiting for approval"
 CAUSES = ("stop", "brain.lost", "robot.lost")
-"""Events that the behaviour gets before the failures that they cause: a stop cancels what the robot does."""
+"""Events that the behaviour gets before the failures that they cause: a stop cancels the robot's commands."""
 
 
 class Observer:
-    """Somebody who watches: called for everything as it happens, and changing nothing of it."""
+    """A base class of observers, which are called for everything that happens and change nothing."""
 
     def stepped(self, step: Step) -> None:
         """The behaviour took a step."""
@@ -108,7 +113,7 @@ class Observer:
         """A command of the behaviour is not performed because a person keeps the robot still."""
 
     def answered(self, event: Event) -> None:
-        """The robot answered a command, or noticed something; the behaviour has not heard of it yet."""
+        """The robot answered a command or noticed something; the behaviour has not received the event yet."""
 
     def troubled(self, trouble: RunTrouble) -> None:
         """A trouble occurred: the run no longer counts as successful."""
@@ -118,21 +123,17 @@ class Rescuer(Protocol):
     """A handler of faults that may switch to another bundle."""
 
     def rescue(self, error: Exception) -> Sequence[Command] | None:
-        """Switch to another bundle, and return the commands for that; None to let the fault end the run."""
+        """Switch to another bundle, and return the commands for that; return None to let the fault end the run."""
         ...
 
 
 class BehaviorLoop:
     """A project on a robot, a bus and a clock.
 
-    At each tick: the clock waits, tracking lives, what happened becomes events, the behaviour steps, its commands are
-    performed; `observers` are called. Where ticks stop for `patience` [s] of the clock the behaviour gets the event
-    `brain.lost`. If a tick fails for a fault of the bundle or of ours, one of the `rescuers` may switch to
-    another bundle.
-    `tracking` lets controllers follow what is seen; without one that is done here. `refuse` returns the reason why the
-    robot may not begin a command, empty if it may. `rests` is whether the behaviour has
-    let the robot rest. `wall_clock` says where the time of day has become another. `step` is the number of the step
-    whose commands are being performed (`Runtime.steps`).
+    At each tick the clock waits, tracking runs, what happened becomes events, the behaviour steps, its commands are
+    performed, and `observers` are called. If a tick fails because of the bundle or an internal error, one of the
+    `rescuers` may switch to another bundle. `tracking` lets controllers follow sightings; without it this is done here.
+    `refuse` returns why the robot may not begin a command, empty if it may.
     """
 
     def __init__(
@@ -148,6 +149,7 @@ class BehaviorLoop:
         self.observers: list[Observer] = []
         self.rescuers: list[Rescuer] = []
         self.wall_clock: WallClockWatch | None = None
+        """Detects changes of the time of day, None if that is not wanted."""
         self.runtime = Runtime(project, self._stepped, self._rescued, self._dropped)
         self.inbox, self.board = Inbox(bus), SharedBoard(bus)
         self.tracking: TrackingService = tracking or LocalTracking(project, robot, bus)
@@ -159,12 +161,16 @@ class BehaviorLoop:
         self._events: list[Event] = []
         self._last = clock.now()
         self.patience = BRAIN_LOST_AFTER
+        """Gap between ticks on the clock from which the behaviour gets `brain.lost` [s]."""
         self.rests = False
+        """Whether the behaviour has made the robot rest."""
         self.step = 0
+        """Number of the step whose commands are being performed (`Runtime.steps`)."""
         self._lost_at = -inf
 
     @property
     def project(self) -> Project:
+        """The bundle that runs."""
         return self.runtime.project
 
     def start(
@@ -175,14 +181,14 @@ class BehaviorLoop:
         timezone: str = "",
         context: Mapping[str, Any] | None = None,
     ) -> None:
-        """Listen, and enter the initial states; `context` gives keys of the context other first values."""
+        """Subscribe, and enter the initial states; `context` overrides initial values of the context."""
         self._last = self.clock.now()
         self._listen(self.project)
         first = self.runtime.start(self._last, language=language, epoch=epoch, timezone=timezone, context=context)
         self._perform(first, self._last)
 
     def resume(self, resumption: Resumption) -> None:
-        """Listen, and go on from where this project's behaviour stood before the engine was away."""
+        """Subscribe, and continue from where the behaviour was before the engine was away."""
         self._last = self.clock.now()
         self._listen(self.project)
         self.runtime.apply(self.project, resumption.snapshot, "resume", resumption.commands)
@@ -194,19 +200,19 @@ class BehaviorLoop:
         self._events += resumption.answers(self._last)
 
     def happen(self, event: Event) -> None:
-        """Let something happen at the next tick."""
+        """Raise an event at the next tick."""
         self._events.append(event)
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Decide what waits longest for a person; why that can't be, empty where it can."""
+        """Let the event that has waited longest go or stay; return why that can't be done, empty if it was."""
         return "" if self.runtime.approvals.decide("", by, go=go) else NOTHING_WAITS
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:
-        """Whether marked transitions wait for GO."""
+        """Set whether marked transitions wait for GO."""
         self.runtime.approvals.set(level, by)
 
     def press(self, label: str, by: str) -> str:
-        """Let the event of a button happen at the next tick; why that can't be, empty where it can."""
+        """Raise the event of a button at the next tick; return why that can't be done, empty if it was."""
         found = pressed(self.project.machine, self.runtime.snapshot, label, self.clock.now(), by)
         if isinstance(found, str):
             return found
@@ -214,7 +220,7 @@ class BehaviorLoop:
         return ""
 
     def tick(self, now: float | None = None) -> float:
-        """Live through one tick at `now` [s], where nobody says so a period after the last; its time [s]."""
+        """Run one tick at `now` [s], by default one period after the last; return its time [s]."""
         if now is None:
             self.clock.wait(self._last + TICK_PERIOD)
             now = self.clock.now()
@@ -238,11 +244,11 @@ class BehaviorLoop:
         return len(self._events) + len(self.performer.events) + len(self.inbox)
 
     def take(self, step: Step) -> None:
-        """Go on with a step from where the behaviour stands, which nobody else made, and perform its commands."""
+        """Continue with a step that was made elsewhere from the current snapshot, and perform its commands."""
         self._perform(self.runtime.take(step), self._last)
 
     def quiet_until(self, now: float) -> float:
-        """Until when nothing happens unless something comes from outside [s]; `now` where that is not known."""
+        """Return until when nothing happens without an input from outside [s]; `now` if that is unknown."""
         pending = self._events or self.performer.events or not (self.inbox.empty and self.performer.questions.empty)
         pending = pending or not self.board.empty
         if pending or self.tracking.on or self.performer.navigator.busy:
@@ -251,24 +257,24 @@ class BehaviorLoop:
         return max(now, min(event.at if event else inf, self.runtime.approvals.due, self.board.due))
 
     def leap(self, now: float) -> None:
-        """It is `now` [s] after a time in which nothing happened."""
+        """Set the time to `now` [s] after an interval in which nothing happened."""
         self._last = now
         self.performer.navigator.leap(now)
 
     def plan(self, project: Project, *, now: bool = False, back: bool = False) -> MigrationVerdict:
-        """How another bundle would go on from here, or why it can't; nothing changes."""
+        """Return how another bundle would continue from here, or why it can't; nothing changes."""
         return self.runtime.plan(project, self._last, now=now, back=back)
 
     def apply(self, project: Project, plan: MigrationPlan) -> None:
-        """Go on with another bundle as planned for this moment, between two macrosteps; what that asks for is done."""
+        """Switch to another bundle as planned, between two macrosteps, and perform the plan's commands."""
         old = self.project
         self.switch(project, plan)
         self.perform(plan, old)
 
     def switch(self, project: Project, plan: MigrationPlan, kind: JumpKind = "reload") -> None:
-        """What `apply` does, but for what has to be performed.
+        """Switch to another bundle without performing the plan's commands.
 
-        Raises BusError where the bus refuses its routes, and whatever a fault of ours raises; nothing has changed then.
+        Raises BusError if the bus refuses its routes, and any internal error; then nothing has changed.
         """
         old = self.project
         try:
@@ -284,7 +290,7 @@ class BehaviorLoop:
             raise
 
     def perform(self, plan: MigrationPlan, old: Project) -> None:
-        """Do what a plan asks for that has been switched to: what is left is left by the old bundle."""
+        """Perform the commands of a plan after its switch; the old bundle performs those that leave states."""
         self._perform(plan.leaving, self._last, old)
         self._perform(plan.entering, self._last)
 
@@ -298,12 +304,12 @@ class BehaviorLoop:
         self.board.listen(project)
 
     def _today(self) -> date:
-        """The day on the exhibition's clock."""
+        """Return the date on the exhibition's clock."""
         now = self.runtime.snapshot
         return local_time(moment(now.epoch, self.clock.now()), now.timezone).date()
 
     def _track(self, track: Track) -> None:
-        """Switch a controller on or off: what moves joints where that is done, the rest here."""
+        """Switch a controller on or off: joints in the tracking service, the rest in `regulation`."""
         self.tracking.switch(track)
         self.regulation.switch(track)
 
@@ -373,7 +379,7 @@ class BehaviorLoop:
         self._note_rest(command)
 
     def _lose(self, seconds: float) -> None:
-        """We were away: the behaviour hears it, and not again when the robot says so, too."""
+        """Raise `brain.lost`, and remember when, so that the robot's own report of it is ignored."""
         self._lost_at = self.clock.now()
         self._events.append(Event("brain.lost", {"seconds": seconds}, self._lost_at))
 
@@ -388,7 +394,7 @@ class BehaviorLoop:
                 self.rests = False
 
     def _recover(self, error: Exception, now: float) -> None:
-        """Go on with another bundle after a fault; raises it where there is none."""
+        """Let a rescuer switch the bundle after a fault, and perform its commands; raise the fault if none does."""
         commands = self._rescued(error)
         if commands is None:
             raise error
@@ -396,9 +402,10 @@ class BehaviorLoop:
 
 
 def _ours(event: Event) -> bool:
-    """Whether it is for the behaviour: its own commands are c1, d2@quiz, …; others' answers are theirs alone.
+    """Return whether an event is for the behaviour.
 
-    The words and sounds of a motion are for us, recordings for modules.
+    Answers are, if the id is one of its own commands (c1, d2@quiz, …). Cues of a motion are for the loop, recordings
+    for modules.
     """
     if event.name in (CUE, RECORDED):
         return False

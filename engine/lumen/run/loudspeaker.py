@@ -1,4 +1,4 @@
-"""Where the simulated robot's sounds are heard: on this machine's player, and in the film of the run."""
+"""Output of the simulated robot's sounds: on this machine's player, and in the film of the run."""
 
 import shutil
 import subprocess
@@ -15,19 +15,19 @@ from lumen.run.audio_track import AudioTrack
 from lumen.run.sound import Sound
 
 PLAYERS = (("aplay", "-q"), ("paplay",), ("afplay",), ("pw-play",))
-"""Programs that play a WAV file, the first that there is."""
+"""Programs that play a WAV file; the first that is installed is used."""
 
 
 def player_here() -> tuple[str, ...] | None:
-    """The program that plays sounds on this machine, None where there is none."""
+    """Return the command that plays sounds on this machine, None if there is none."""
     return next((player for player in PLAYERS if shutil.which(player[0])), None)
 
 
 class Loudspeaker:
-    """Plays the sound files of the project in `root`; that there is no player here is said once.
+    """A player of the sound files of the project in `root`; a missing player is reported once.
 
-    What is heard goes into `track`, too, where there is one. One that is not `audible` is for a film, and for time that
-    runs faster than real. `close` ends what still sounds.
+    Sounds are also added to `track`, if there is one. With `audible=False` nothing is played here, for films and for
+    runs faster than real time. `close` ends the sounds that still play.
     """
 
     def __init__(self, root: Path, track: AudioTrack | None = None, *, audible: bool = True) -> None:
@@ -37,6 +37,7 @@ class Loudspeaker:
         self._playing: list[subprocess.Popen[bytes]] = []
 
     def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
+        """Start a sound at `now` [s], recorded at `volume`; return a function that ends it at a later time [s]."""
         file = on_disk(self._root, sound.file)
         playing, cut = self._heard(file), None
         if self._track is not None and (found := _mono(file, sound.length)):
@@ -51,6 +52,7 @@ class Loudspeaker:
         return end
 
     def close(self) -> None:
+        """End all sounds."""
         for playing in [*self._playing]:
             self._hush(playing)
 
@@ -74,7 +76,7 @@ class Loudspeaker:
 
 
 def _mono(file: Path, length: float) -> Sound | None:
-    """So much [s] of a WAV of 16 bits, two channels as one; None where it is gone."""
+    """Return the first `length` [s] of a 16-bit WAV, two channels mixed to one; None if the file can't be used."""
     try:
         with wave.open(str(file)) as opened:
             rate, channels = opened.getframerate(), opened.getnchannels()
@@ -98,4 +100,6 @@ def _mono(file: Path, length: float) -> Sound | None:
 class Sounds(Protocol):
     """A robot that can be given a loudspeaker."""
 
-    def sound_with(self, playback: Loudspeaker) -> None: ...
+    def sound_with(self, playback: Loudspeaker) -> None:
+        """Play all sounds on a loudspeaker."""
+        ...

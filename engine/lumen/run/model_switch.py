@@ -1,4 +1,4 @@
-"""Whether the language model may speak: switched by people, and kept until somebody switches it again."""
+"""The switch that silences the language model; people set it, and it lasts until it is set again."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -15,10 +15,10 @@ UNREADABLE = f"a person whom {SILENCED_FILE} does not name"
 
 
 class ModelSwitch:
-    """Silences the model, or lets it speak again: at once, also in the middle of an answer.
+    """The switch of the language model; it takes effect at once, also in the middle of an answer.
 
-    `record` keeps an entry of the journal of files. It restores the choice of the run before from
-    a `folder`, and keeps its own there.
+    `record` writes an entry of the journal. The choice is restored from `folder` and saved there; without a folder it
+    ends with the run.
     """
 
     def __init__(
@@ -30,19 +30,19 @@ class ModelSwitch:
     ) -> None:
         self._questions, self._project, self._record = questions, project, record
         self._home = Home(folder) if folder else None
-        if folder and self._home and (folder / SILENCED_FILE).exists():  # even if the name in it is unreadable
+        if folder and self._home and (folder / SILENCED_FILE).exists():  # also if the name in it is unreadable
             found = self._home.read_json(SILENCED_FILE)
             self._questions.silence(str((found.get("by") if isinstance(found, dict) else "") or UNREADABLE))
 
     @property
     def state(self) -> str | None:
-        """`on` or `off`; None where the exhibition has no model."""
+        """`on` or `off`; None if the exhibition has no model."""
         if ANSWERS not in self._project().modules:
             return None
         return "off" if self._questions.silenced else "on"
 
     def switch(self, by: str, *, on: bool) -> dict[str, Any]:
-        """Let it speak, or not; the answer for who asked."""
+        """Let the model speak, or silence it; return the verdict."""
         if self.state is None:
             return refusal("this exhibition has no language model: lumen.yaml has no module `answers`")
         self._questions.silence("" if on else by)

@@ -1,4 +1,4 @@
-"""What every module is: it handles messages on a thread of its own, and whatever fails is a line to the operator."""
+"""The base class of modules: it handles messages on a thread of its own, and reports failures to the operator."""
 
 import logging
 import threading
@@ -19,24 +19,23 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING_MESSAGES = 1_000
-"""Messages that wait for a module; then the oldest are dropped."""
+"""Messages that wait for a module; one more drops the oldest."""
 MAX_REASONS = 50
-"""Different lines of trouble that are said until it works again; then no more are."""
+"""Different troubles that are reported until the module works again."""
 KEEP_DAYS = 30.0
-"""How many days a module keeps what it knows of people, where `lumen.yaml` does not say."""
+"""How long a module keeps data about people by default [days]."""
 DAY = 86_400.0
-"""[s]."""
+"""Seconds in a day [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class Module:
-    """Handles the routes of `hears` one message at a time, in the order they came, on its own thread.
+    """A handler of the messages on the routes of `hears`, one at a time, in order, on its own thread.
 
-    A handler that raises ModuleError costs that message: `tell` says why, once for each reason until it works again,
-    and the route `trouble` to the operators of other processes. Of a route that keeps one message only the newest
-    waits. While one is handled, `came` is when it arrived, by `clock` [s]. Subclasses name themselves and give `hears`;
-    they call `begin` when they are ready.
+    If a handler raises ModuleError, its message is lost. Each reason is then reported once until the module works
+    again: to `tell`, and on the route `trouble` for operators of other processes. Of a route that keeps one message,
+    only the newest waits. Subclasses set `name`, override `hears`, and call `begin` when they are ready.
     """
 
     name = ""
@@ -46,7 +45,9 @@ class Module:
     ) -> None:
         self.project, self.bus, self.clock = project, bus, clock
         self.handled = 0
+        """Number of messages handled so far."""
         self.came = 0.0
+        """When the message being handled arrived, by `clock` [s]."""
         self._tell = tell
         self._waiting: deque[tuple[str, Message, float]] = deque(maxlen=MAX_WAITING_MESSAGES)
         self._drops = DropLog(_log)
@@ -65,26 +66,26 @@ class Module:
         return cls(project, bus, tell)
 
     def hears(self) -> Mapping[str, MessageHandler]:
-        """The routes that it listens on, and what it does with a message of each."""
+        """Return the handlers of messages by route."""
         raise NotImplementedError
 
     @property
     def refused(self) -> int:
-        """How many messages it did not carry on, where it counts them."""
+        """How many messages it refused, if it counts them."""
         return 0
 
     @property
     def settings(self) -> ModuleSettings:
-        """What `lumen.yaml` says of it."""
+        """Its settings in `lumen.yaml`."""
         return self.project.modules.get(self.name, ModuleSettings())
 
     def begin(self) -> None:
-        """Listen, and start working."""
+        """Subscribe to its routes, and start the thread."""
         self._listen()
         self._thread.start()
 
     def use(self, project: Project) -> None:
-        """Use the routes of this project from now on."""
+        """Switch to the routes of another project."""
         old, self.project = self._undo, project
         self._undo = []
         self._listen()
@@ -92,12 +93,12 @@ class Module:
             undo()
 
     def settle(self, timeout: float = 5.0) -> bool:
-        """Wait until everything that has come so far is handled; whether that was so within `timeout` [s]."""
+        """Wait until everything that has arrived is handled; return False if `timeout` [s] passed before."""
         with self._changed:
             return self._changed.wait_for(lambda: not (self._waiting or self._busy), timeout)
 
     def close(self) -> None:
-        """Handle what waits, and end; harmless when repeated."""
+        """Handle what waits, and end the thread; harmless when repeated."""
         for undo in self._undo:
             undo()
         self._undo = []
@@ -107,7 +108,7 @@ class Module:
         self._thread.join(5.0)
 
     def publish(self, route: str, body: Any) -> None:
-        """Send a body on a route; where the bus refuses, that is a line to the operator."""
+        """Send a body on a route; report an error of the bus to the operator."""
         row = self.project.routes.get(route)
         try:
             self.bus.publish(self.key(route), body, ttl=row.ttl if row else None)
@@ -115,19 +116,19 @@ class Module:
             self.tell(str(error))
 
     def reply(self, message: Message, body: Any) -> None:
-        """Answer the sender of a message; nobody where the bus is gone."""
+        """Answer the sender of a message; report an error of the bus to the operator."""
         try:
             self.bus.reply(message, body)
         except BusError as error:
             self.tell(str(error))
 
     def key(self, route: str) -> str:
-        """The routing key of a route."""
+        """Return the routing key of a route."""
         row = self.project.routes.get(route)
         return row.key_for(self.project.robot) if row else default_key(route, self.project.robot)
 
     def tell(self, text: str) -> None:
-        """A line to the operator, once until `well`."""
+        """Report a line to the operator, once until `well`."""
         if text not in self._told and len(self._told) < MAX_REASONS:
             self._told.add(text)
             self._tell(text)
@@ -137,7 +138,7 @@ class Module:
                 _log.debug("an error of the module could not be published: %s", error)
 
     def well(self) -> None:
-        """It works (again): from now on the same trouble is told once more."""
+        """Note that it works again, so that the same troubles are reported again."""
         self._told.clear()
 
     def _listen(self) -> None:
@@ -161,21 +162,24 @@ class Module:
         while job := self._next():
             route, message, self.came = job
             try:
-                if handler := self.hears().get(route):  # else it is not listened on any more
+                if handler := self.hears().get(route):  # else the route was unsubscribed meanwhile
                     handler(message)
             except ModuleError as error:
                 self.tell(str(error))
-            except BaseException as error:  # a fault of ours, or of a package, costs this message
+            except BaseException as error:  # an internal error, or one of a package, loses only this message
                 _log.exception("the module `%s` failed on `%s`", self.name, message.key)
                 self.tell(fault_of_package(error) or f"failed on a message: {error!r}")
             self.handled += 1
         self.end()
 
     def end(self) -> None:
-        """Close what its thread has open; called on that thread."""
+        """Close the resources of its thread; called on that thread."""
 
     def idle(self) -> float | None:
-        """Called on its thread when nothing waits; in how many seconds again, None for not before a message."""
+        """Do idle work; called on its thread when no message waits.
+
+        Return after how many seconds to call it again, None for not before a message.
+        """
         return None
 
     def _next(self) -> tuple[str, Message, float] | None:

@@ -7,14 +7,17 @@ from lumen.ports import Dozes
 
 
 class Nap:
-    """A sleep in which nothing is due, and which `end` cuts short from any thread."""
+    """A sleep while nothing is due; `end` cuts it short from any thread."""
 
     def __init__(self) -> None:
         self._clock: Dozes | None = None
 
     @contextmanager
     def on(self, clock: Dozes | None) -> Iterator[None]:
-        """Nap on a clock, if it dozes. Begin before you look what is due: a message that comes later ends the nap."""
+        """Enable naps on a clock, if it can doze.
+
+        Enter this before you check what is due: a message that arrives later ends the nap.
+        """
         self._clock = clock
         try:
             yield
@@ -22,6 +25,6 @@ class Nap:
             self._clock = None
 
     def end(self) -> None:
-        """Let the nap end, if there is one."""
+        """End the nap, if there is one."""
         if clock := self._clock:
             clock.hurry()

@@ -1,4 +1,4 @@
-"""What happens in an exhibition, in words: who, what, and why."""
+"""The transcript of an exhibition: who does what, and why, in words."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
@@ -31,44 +31,48 @@ from lumen.statechart import Step, finished
 from lumen.statechart.nesting import flattened_steps
 
 MAX_TROUBLES = 100
-"""The number of troubles of a run that are kept for its end; later ones are dropped."""
+"""Troubles of a run that are kept for its end; later ones are dropped."""
 
 
 class VisitorWatcher(Protocol):
     """An observer of the visitor."""
 
     def visitor_action(self, action: VisitorAction) -> None:
-        """The visitor does something."""
+        """Called when the visitor acts."""
         ...
 
 
 class Narrator(Observer):
-    """Tells what happens, a line each, and counts it; who shows the lines overrides `line` and `note`.
+    """An observer that describes and counts what happens, a line each.
 
-    `now` is asked for the time [s], `machine` for the one that runs. Where it `explains`, it tells of what changed
-    nothing, and why. `watchers` see each action of the visitor.
+    Subclasses that show the lines override `line` and `note`. `now` returns the time [s], `machine` the running
+    machine.
     """
 
     explains = False
+    """Whether it also reports events that changed nothing, and why."""
 
     def __init__(self, now: Callable[[], float], machine: Callable[[], MachineDefinition]) -> None:
         self._now, self._machine = now, machine
         self._running: dict[str, str] = {}
         self.states: set[str] = set()
         self.said = 0
+        """Number of texts said."""
         self.played: dict[str, int] = {}
+        """Number of finished performances by motion."""
         self._ignored = IgnoredEvents()
         self.troubles: list[str] = []
         self.watchers: list[VisitorWatcher] = []
+        """Called for each action of the visitor."""
 
     def line(self, who: str, text: str) -> None:
-        """One line: who it is about, and what happens now."""
+        """Show a line about `who`, at the present time."""
 
     def note(self, text: str) -> None:
-        """A text about the run itself, outside of its time."""
+        """Show a text about the run itself, without a time."""
 
     def counted(self) -> str:
-        """What happened altogether."""
+        """Return a summary of the states, texts and motions so far."""
         counts = f"{counted(len(self.states), 'state')}, {counted(self.said, 'text')}"
         return f"{counts}, motions: {', '.join(self.played) or 'none'}"
 
@@ -132,7 +136,7 @@ class Narrator(Observer):
         elif kind == "cancelled" and running:
             self.line("robot", f"ends early: {running}")
         elif event.name == CUE:
-            return  # what comes of it is performed
+            return  # its commands are reported when they are performed
         elif event.name == RECORDED:
             self.line("robot", "has recorded what it heard")
         elif not id:
@@ -147,7 +151,7 @@ class Narrator(Observer):
             self.troubles.append(trouble.what)
 
     def visitor_action(self, action: VisitorAction) -> None:
-        """The visitor does something."""
+        """Notify the watchers of a visitor's action, and show its line."""
         for watcher in self.watchers:
             watcher.visitor_action(action)
         match action:

@@ -1,1 +1,1 @@
-"""Somebody forgotten by an exhibition: in its files, and what is told of it."""
+"""Forget a person in an exhibition and its files, and report the result."""

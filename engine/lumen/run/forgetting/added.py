@@ -1,4 +1,4 @@
-"""People whom features forget, by the rows of their manifests."""
+"""The forgetting of people by features, by the rows of their manifests."""
 
 import logging
 from collections.abc import Callable
@@ -11,16 +11,17 @@ _log = logging.getLogger(__name__)
 
 
 class FeatureForgetter:
-    """Lets features forget a person; `find` returns the part or service of a class in this process, or None.
+    """A forgetter that calls every feature; `find` returns the part or service of a class in this process, or None.
 
-    If code of an installed package fails, the others forget nevertheless. The log then has the type of the error
-    alone, because its message may contain the name.
+    If code of an installed package fails, the other features still forget. The log then has only the type of the error,
+    because its message may contain the name.
     """
 
     def __init__(self, find: Callable[[type[Any]], Any]) -> None:
         self._find = find
 
     def forget(self, person: PersonName) -> None:
+        """Call the forgetting function, or the `forget` of the part, of each feature's row."""
         for feature, where in rows("forgets"):
             try:
                 self._forget(resolve(where), person)

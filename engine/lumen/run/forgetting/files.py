@@ -1,4 +1,4 @@
-"""The files of an exhibition's home, without somebody."""
+"""Delete a person from the files in an exhibition's home."""
 
 import json
 import time
@@ -22,15 +22,15 @@ from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 from lumen.run.snapshot_store import SNAPSHOT_FILE
 
 DRAFT_AGE = 5.0
-"""After how long a draft of a file is one that a crash has left behind [s]."""
+"""Age from which an unfinished draft of a file counts as left behind by a crash [s]."""
 PATIENCE = 5.0
-"""How long a running exhibition has to forget what it remembers [s]."""
+"""How long to wait until a running exhibition has forgotten what it remembers [s]."""
 
 
 def forget_in(folder: Path, name: str, found: Forgetting) -> None:
-    """Forget somebody in all files of the home in `folder`, and add to `found` what came of it and what is left.
+    """Forget a person in all files of the home in `folder`, and add to `found` what was deleted and what is left.
 
-    What a running exhibition remembers it forgets itself: that is waited for.
+    A running exhibition forgets its own memory; this waits for it.
     """
     for feature, where in rows("file_forgetters"):
         called(feature, where, folder, name, found)
@@ -41,7 +41,7 @@ def forget_in(folder: Path, name: str, found: Forgetting) -> None:
 
 
 def forget_inputs(folder: Path, name: str, found: Forgetting) -> None:
-    """Forget a person in the journal of inputs, in the snapshot of the behaviour, and in small records."""
+    """Forget a person in the journal, the behaviour's snapshot and small records, and add the result to `found`."""
     person, home = PersonName(name, map(name_key, found.others)), Home(folder)
     for file in sorted(folder.glob("*.jsonl*")):
         attempt(found, file, lambda file=file: _lines(file, person, found))  # type: ignore[misc]
@@ -53,7 +53,7 @@ def forget_inputs(folder: Path, name: str, found: Forgetting) -> None:
 
 
 def attempt(found: Forgetting, file: Path, work: Callable[[], None]) -> None:
-    """Do `work` if there is such a file; one that can't be written is left, and keeps no other from being forgotten."""
+    """Do `work` if the file exists; record a file that can't be written in `found.left`, and continue."""
     try:
         if file.exists():
             work()
@@ -67,14 +67,14 @@ def _lines(file: Path, person: PersonName, found: Forgetting) -> None:
 
 
 def _journal(folder: Path, person: PersonName, found: Forgetting) -> None:
-    """What happened, but for the file that a running exhibition writes."""
+    """Redact the name in the journal's files, except in the one that a running exhibition writes."""
     files, held = sorted((folder / JOURNAL_FOLDER).rglob(f"*{JOURNAL_SUFFIX}")), Home(folder).held()
     if named := sum(redact(file, person) for file in files if not (held and file == newest(folder))):
         found.deleted.append(ForgottenPlace(JOURNAL_FOLDER, f"the name, in entries: {named}"))
 
 
 def _names_in_journal(folder: Path, person: PersonName) -> bool:
-    """Whether the file says the name that a running exhibition writes, and nobody else can."""
+    """Return whether the newest file of the journal, which only a running exhibition writes, has the name."""
     file = newest(folder)
     try:
         return file is not None and any(names(entry, person) for entry in read_journal(file).entries)
@@ -83,7 +83,7 @@ def _names_in_journal(folder: Path, person: PersonName) -> bool:
 
 
 def _snapshot(home: Home, person: PersonName, found: Forgetting) -> None:
-    """Where the behaviour stood when it ended without notice."""
+    """Remove the name from the snapshot of a crashed run; delete the snapshot if the name can't be removed."""
     content = home.read(SNAPSHOT_FILE)
     if content is None or not line_names(content, person):
         return
@@ -102,15 +102,15 @@ def _snapshot(home: Home, person: PersonName, found: Forgetting) -> None:
 
 
 def _drafts(folder: Path) -> None:
-    """What a crash left half written may name anybody."""
+    """Delete drafts that a crash left half-written, because they may name anyone."""
     for draft in folder.rglob("*.new"):
-        with suppress(OSError):  # whoever writes it has just done so
+        with suppress(OSError):  # its writer may just have renamed it
             if not Home(folder).held() or time.time() - draft.stat().st_mtime > DRAFT_AGE:
                 draft.unlink()
 
 
 def _left(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
-    """Files that still name the person."""
+    """Yield the files that still contain the name."""
     for file in sorted(folder.rglob("*.json*")):
         if _names(file, person):
             held = file.name == SNAPSHOT_FILE and Home(folder).held()
@@ -121,7 +121,7 @@ def _left(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
 
 
 def _own_files(folder: Path, person: PersonName) -> Iterator[ForgottenPlace]:
-    """Files of the exhibition itself, as they are kept for a start after a crash, that say the name."""
+    """Yield the exhibition's own files that contain the name, in the bundles kept for a start after a crash."""
     for file in sorted(folder.glob("*.zip")):
         with suppress(OSError, DamagedBundleError):
             for member, content in unpacked(file.read_bytes(), 2 * MAX_PROJECT_BYTES).items():
@@ -137,7 +137,7 @@ def _names(file: Path, person: PersonName) -> bool:
 
 
 def await_others(condition: Callable[[], bool]) -> None:
-    """Look again and again, as the condition is another process's work; no longer than PATIENCE."""
+    """Poll the condition, which another process fulfils, for at most PATIENCE."""
     deadline = time.monotonic() + PATIENCE
     while not condition() and time.monotonic() < deadline:
         time.sleep(0.02)

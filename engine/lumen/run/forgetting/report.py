@@ -1,4 +1,4 @@
-"""What came of forgetting somebody: what was deleted where, what is left, and what can't be looked at from here."""
+"""The report on forgetting a person: what was deleted, what is left, and what is out of reach."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from lumen.language.routes import Carried, Direction, Route
 
 
 class ForgottenPlace(NamedTuple):
-    """A file or another place, and what was deleted there, or is left there."""
+    """A file or another place, and what was deleted or is left there."""
 
     where: str
     what: str
@@ -18,19 +18,22 @@ class ForgottenPlace(NamedTuple):
 
 @dataclass
 class Forgetting:
-    """What came of it: counts, the places where something was deleted, and those where something is `left`.
-
-    What is `elsewhere` can't be deleted from here. `others` are names of visitors that hold the name and are somebody
-    else's.
-    """
+    """The result of forgetting a person."""
 
     visitors: int = 0
+    """Number of deleted visitors."""
     entries: int = 0
+    """Number of deleted entries."""
     pictures: int = 0
+    """Number of deleted pictures."""
     deleted: list[ForgottenPlace] = field(default_factory=list)
+    """Places where something was deleted."""
     left: list[ForgottenPlace] = field(default_factory=list)
+    """Places where something could not be deleted."""
     elsewhere: list[ForgottenPlace] = field(default_factory=list)
+    """Places that can't be reached from here."""
     others: tuple[str, ...] = ()
+    """Names of other visitors that contain the name."""
 
 
 FILES_ELSEWHERE = "each machine that runs a part has its own files: run the command there, too"
@@ -39,7 +42,10 @@ COPIES = "videos, sounds and transcripts of runs, recordings that were moved, co
 
 
 def out_of_reach(routes: Iterable[Route], broker: str) -> Iterator[ForgottenPlace]:
-    """Places that can't be looked at from here; the `broker` at that address keeps messages of these routes."""
+    """Yield the places that can't be reached from here.
+
+    With the address of a `broker`, they include its streams and queues that keep messages of these routes.
+    """
     if broker:
         for route in (route for route in routes if route.carried is Carried.JOURNAL):
             if route.direction is Direction.OUT:

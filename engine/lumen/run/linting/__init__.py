@@ -1,1 +1,1 @@
-"""What lint finds in projects that somebody names: by their files, by a reload, and by physics."""
+"""Lint of the projects on a command line: of their files, of a reload to them, and by physics."""

@@ -1,4 +1,4 @@
-"""What lint found in one project, and how its files are called where somebody stands."""
+"""Findings of lint in one project, and the names of its files as seen from the working directory."""
 
 import os
 from collections.abc import Collection, Mapping, Sequence
@@ -11,21 +11,22 @@ from lumen.language.diagnostics import Diagnostic, Severity
 
 @dataclass(frozen=True)
 class Findings:
-    """The findings of one project that are to be shown.
-
-    `root` is its folder, empty where there is none; `elsewhere` counts what was found in files that nobody asked about,
-    and `asked` are those that somebody did.
-    """
+    """The findings of one project that will be shown."""
 
     diagnostics: Sequence[Diagnostic]
     files: Mapping[str, bytes]
+    """Contents of the project's files."""
     root: str = ""
+    """Folder of the project, empty if there is none."""
     asked: Collection[str] = ()
+    """Files that the user named; empty for the whole project."""
     elsewhere: int = 0
+    """Number of findings in other files, which are not shown."""
     names: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
+    """Cache of `name`."""
 
     def name(self, file: str) -> str:
-        """How to call a file of the project from the working directory, so that a terminal finds it."""
+        """Return the path of a project's file from the working directory, so that a terminal can open it."""
         if file not in self.names:
             self.names[file] = _near(os.path.join(self.root, file)) if self.root else file
         return self.names[file]
@@ -37,11 +38,12 @@ class Findings:
         return str(next((folder for folder in above if (folder / ".git").exists()), Path.cwd()))
 
     def count(self, severity: Severity) -> int:
+        """Return how many findings have a severity."""
         return sum(d.severity is severity for d in self.diagnostics)
 
 
 def _near(path: str) -> str:
-    """The path as seen from here, or as it is where that is shorter."""
+    """Return the path relative to the working directory, or the absolute one if that is shorter."""
     try:
         seen = os.path.relpath(path)
     except (ValueError, OSError):

@@ -1,9 +1,9 @@
-"""What lint found in files before, byte for byte and by this very engine: they are not judged again.
+"""Earlier findings of lint, reused for files that are the same byte for byte, by the same engine.
 
-It lies in the user's own cache, under a hash of the project's files, of where they lie, of the day (a fact may be
-past), of the engine's own files and of Python. With it lies what lint looked at beside them: sounds, models, time
-zones, the libraries that were imported. Where one of these is another now, the files are judged; where one changed a
-moment before it was looked at, nothing is kept.
+They are in the user's cache, under a hash of the project's files, their place, the day (a fact may be past), the
+engine's own files and Python. With them is kept what lint looked at beside the files: sounds, models, time zones, the
+imported libraries. If one of these differs now, the files are checked again; if one changed just before lint looked at
+it, nothing is kept.
 """
 
 import hashlib
@@ -19,11 +19,11 @@ from lumen.project.looks import Looks, unchanged
 from lumen.upkeep.cache_folder import CacheFolder
 
 MAX_KEPT = 256
-"""How many verdicts are kept: of a few kB each."""
+"""Sets of findings that are kept, a few kB each."""
 
 
 def known_or_checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
-    """Everything wrong with these files: what was kept of them where it still holds, else what lint finds."""
+    """Return all findings in these files: the kept ones if they still hold, else those of a new check."""
     folder, name = CacheFolder("findings", MAX_KEPT), _name(root, files)
     known = _read(folder.read(name))
     if known is not None:
@@ -43,7 +43,7 @@ def known_or_checked(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic
 
 
 def _name(root: Path, files: Mapping[str, bytes]) -> str:
-    """A name for all that is known before lint begins."""
+    """Return the cache's name for everything that is known before lint begins."""
     about = f"{time.strftime('%Y-%m-%d')} {surroundings(root)}"
     digest = hashlib.sha256(about.encode("utf-8", "surrogatepass"))
     for path, content in sorted(files.items()):
@@ -57,7 +57,7 @@ def _plain(found: Diagnostic) -> list[Any]:
 
 
 def _read(content: bytes | None) -> tuple[Diagnostic, ...] | None:
-    """The findings that are kept there, None where there are none or they hold no more."""
+    """Return the kept findings, None if there are none or they no longer hold."""
     try:
         kept = json.loads(content or b"null")
         if not unchanged(kept["looks"]):
@@ -68,5 +68,5 @@ def _read(content: bytes | None) -> tuple[Diagnostic, ...] | None:
             )
             for code, message, place, hint, severity, related in kept["findings"]
         )
-    except (ValueError, KeyError, TypeError, AttributeError):  # whatever is in the file: lint looks anew
+    except (ValueError, KeyError, TypeError, AttributeError):  # the file may contain anything: lint checks again
         return None

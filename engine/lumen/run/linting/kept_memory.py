@@ -1,8 +1,8 @@
-"""What lint worked out of each file of a project, kept for the next lint of it: most files are as they were.
+"""Intermediate results of lint for each file of a project, kept for the next lint: most files do not change.
 
-It is what a process that lives on remembers (project/memoization.py), in the user's own cache, under a hash of where
-the project lies, of the engine's own files and of Python; time zones and libraries have to be as they were. Each part
-of it counts only for the very content that it was made of.
+It is the memory of a process that keeps running (project/memoization.py), saved in the user's cache under a hash of the
+project's place, the engine's own files and Python; time zones and libraries must be the same. Each result is used only
+for the exact content that it was made from.
 """
 
 import hashlib
@@ -16,32 +16,32 @@ from lumen.project.memoization import begin, newly_made, packed, unpack
 from lumen.upkeep.cache_folder import CacheFolder
 
 MAX_KEPT = 8
-"""Of how many projects it is kept: some MB each."""
+"""Projects whose memory is kept, some MB each."""
 MUCH = 0.2
-"""The part that has to be new before it is kept anew, which takes as long as reading some files."""
+"""Share of new results from which the memory is saved again, which takes as long as reading some files."""
 
 
 def recall_memory(root: Path) -> None:
-    """Remember what was kept of that project, where it holds."""
+    """Load the kept memory of a project, if it still holds."""
     content = CacheFolder("memory", MAX_KEPT).read(_name(root)) or b""
     looks, _, memory = content.partition(b"\n")
     begin()
     try:
         if unchanged(json.loads(looks)):
             unpack(memory)
-    except Exception:  # whatever is in the file: it is worked out again
+    except Exception:  # the file may contain anything: everything is worked out again
         return
 
 
 def keep_memory(root: Path) -> None:
-    """Keep what is remembered now, where much of it is new."""
+    """Save the memory, if at least the share MUCH of it is new."""
     if newly_made() < MUCH:
         return
     looks = Looks()
     looks.around()
     try:
         content = json.dumps(looks.to_json()).encode() + b"\n" + packed()
-    except (RecursionError, pickle.PicklingError):  # files that are nested deeper than can be packed
+    except (RecursionError, pickle.PicklingError):  # some files are nested too deeply for pickle
         return
     if looks.settled():
         CacheFolder("memory", MAX_KEPT).write(_name(root), content)

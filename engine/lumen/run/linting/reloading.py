@@ -1,4 +1,4 @@
-"""What a reload would refuse, move or forget, among the findings of a project."""
+"""What a reload would refuse, move or forget, added to the findings of a project."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,7 +12,7 @@ from lumen.run.versions import version
 
 
 def compared(found: Findings, name: str, wanted: Callable[[Diagnostic], bool]) -> Findings:
-    """The findings of a project with those of a reload from another version of it, where it has no errors."""
+    """Return the findings with those of a reload from the version `name`, if the project has no errors."""
     root = Path(found.root)
     old, new = version(name, root).project, check_files(root, found.files)[0]
     more = [d for d in against(old, new) if wanted(d)] if new else []

@@ -1,4 +1,4 @@
-"""Which projects and files somebody asks lint about, and what it finds in them."""
+"""The projects and files that lint is asked about, and its findings in them."""
 
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -17,38 +17,40 @@ from lumen.run.linting.findings import Findings
 from lumen.run.linting.kept_findings import known_or_checked
 
 Wanted = Callable[[Diagnostic], bool]
+"""A function that returns whether a finding is shown."""
 STDIN = "-"
 
 
 @dataclass(frozen=True)
 class LintTarget:
-    """A project; `only` are the files of it that were named, none where it is meant as a whole.
-
-    `typed` are contents that stand in place of those on the disk.
-    """
+    """A project to lint, or some of its files."""
 
     root: Path
     only: frozenset[str] = frozenset()
+    """The files that were named; empty for the whole project."""
     typed: tuple[tuple[str, bytes], ...] = ()
+    """Contents that replace those on the disk, with their paths."""
 
     def files(self) -> dict[str, bytes]:
+        """Return the project's own files with their contents, sorted by path."""
         return dict(sorted({**own_files(read_files(self.root)), **dict(self.typed)}.items()))
 
     def shown(self, diagnostic: Diagnostic) -> bool:
+        """Return whether a finding is in a file that was asked about."""
         return not self.only or diagnostic.place.file in self.only
 
 
 class FindingsOf(Protocol):
-    """What finds what is wrong in a project; `files` are what it holds, where somebody has read them already."""
+    """A function that lints a project; `files` are its contents if they were already read."""
 
     def __call__(self, what: LintTarget, files: Mapping[str, bytes] | None = None) -> Findings: ...
 
 
 def lint_targets(paths: Sequence[str], stdin_name: str | None = None, *, whole: bool = False) -> list[LintTarget]:
-    """The projects that these folders and files are or belong to; without any, the one here or above.
+    """Return the projects that these folders and files are or belong to; without paths, the one here or above.
 
-    Of a file its project is meant with nothing shown but what is in that file; with `whole` all of the project.
-    Raises UsageError for what is neither, and for a file that lint does not read.
+    For a file, only findings in that file are shown; with `whole`, those of its whole project. Raises UsageError for a
+    path outside a project, and for a file that lint does not read.
     """
     if STDIN in paths:
         return [_typed(paths, stdin_name)]
@@ -65,9 +67,9 @@ def lint_targets(paths: Sequence[str], stdin_name: str | None = None, *, whole: 
 
 
 def lint(what: LintTarget, wanted: Wanted, files: Mapping[str, bytes] | None = None, *, kept: bool = False) -> Findings:
-    """The findings of a project that are wanted, those in files that nobody asked about counted.
+    """Return the wanted findings of a project, and count those in files that were not asked about.
 
-    `files` are what it holds, where somebody has read them already. With `kept` also from what was found before.
+    `files` are its contents if they were already read. With `kept`, earlier findings may be reused.
     """
     files = what.files() if files is None else own_files(files)
     found = [d for d in checked(what.root, files, kept=kept) if wanted(d)]
@@ -76,7 +78,7 @@ def lint(what: LintTarget, wanted: Wanted, files: Mapping[str, bytes] | None = N
 
 
 def checked(root: Path, files: Mapping[str, bytes], *, kept: bool = False) -> tuple[Diagnostic, ...]:
-    """Everything wrong with these files; with `kept` also from what was found in the very same ones before."""
+    """Return all findings in these files; with `kept`, earlier ones of the same files may be reused."""
     if kept:
         return known_or_checked(root, files)
     from lumen.lint import check_files  # not where everything is known
@@ -85,7 +87,7 @@ def checked(root: Path, files: Mapping[str, bytes], *, kept: bool = False) -> tu
 
 
 def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
-    """The project of a folder or file, and which of its files are meant; empty for the whole."""
+    """Return the project of a folder or file, and which of its files are meant; no files mean the whole project."""
     here = Path(path)
     try:
         alone = here.is_file() and here.name != MAIN_FILE
@@ -107,7 +109,7 @@ def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
 
 
 def _root(path: Path) -> Path | None:
-    """The nearest project around a file or folder."""
+    """Return the nearest project above a file or folder, None if there is none."""
     return project_above(path.absolute().parent)
 
 

@@ -1,4 +1,4 @@
-"""Lumen's own modules, in the process of an exhibition or in one of theirs."""
+"""Makers of Lumen's own modules, in the process of an exhibition or in separate ones."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,17 +18,16 @@ from lumen.run.services import Services
 
 @dataclass(frozen=True, slots=True)
 class ModulesPlan:
-    """How modules take part: what they keep is in `folder`, None if nothing lasts.
-
-    If they are `awaited`, each tick waits for the eyes, so that their faces do not depend on the machine.
-    """
+    """How modules take part."""
 
     folder: Path | None = None
+    """Folder for their files, None if nothing may last."""
     awaited: bool = False
+    """Whether each tick waits for the eyes, so that their faces do not depend on the machine's speed."""
 
 
 def modules(services: Services) -> list[Part]:
-    """Make the modules that `lumen.yaml` wants here, or those that this process is."""
+    """Make the modules that `lumen.yaml` places in this process, or those of the process's roles."""
     here = [name for name, said in services.project.modules.items() if said.here and not said.own]
     wanted = [role for role in services.plan.roles if role in module_names()] if services.plan.roles else here
     begun = [part for name in wanted if (part := _module(services, name))]
@@ -38,7 +37,7 @@ def modules(services: Services) -> list[Part]:
 
 
 def own_modules(services: Services) -> list[OwnModulePart]:
-    """Make the parts that watch the programs of the project's own; a story is played without them."""
+    """Make the parts that watch the project's own programs; a story has none."""
     if services.plan.story is not None:
         return []
     return [_own_module(services, name) for name in own_modules_of(services.project.modules)]
@@ -57,9 +56,9 @@ def _own_module(services: Services, name: str) -> OwnModulePart:
 
 
 def _module(services: Services, name: str) -> Part | None:
-    """Make a module. An exhibition reports one that can't work, and runs without it.
+    """Return a module, or None if it can't work, which is reported.
 
-    Raises ModuleError if the process is to be that module.
+    Raises LumenError instead if running modules is the role of this process.
     """
     how: ModulesPlan = services.plan.options["modules"]
     tell = services.narrator.line
@@ -73,7 +72,7 @@ def _module(services: Services, name: str) -> Part | None:
 
 
 def _share(services: Services, names: list[str]) -> None:
-    """Say which modules are here, and leave faces to the eyes."""
+    """Announce which modules are here, and leave reports of faces to the eyes if they are here."""
     faces = services[RobotPart].faces
     if faces and EYES in names:
         faces.quiet = True

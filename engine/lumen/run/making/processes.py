@@ -1,4 +1,4 @@
-"""The parts of one process of several."""
+"""Makers of the parts of one process of several."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from lumen.run.story import staged
 
 
 def follower(services: Services) -> BundleFollower:
-    """Make the part that loads the bundles which the brain's process has made active."""
+    """Make the part that loads the bundles which the brain's process activates."""
     project = services.plan.project
     root, tell = Path(project.root), services.tell("reload")
     return BundleFollower(root, project, services.bus, services.node.use, tell)
@@ -43,10 +43,10 @@ def behavior(services: Services) -> None:
 
 
 def robot(services: Services) -> HostedRobotPart:
-    """Make a robot whose brain is in another process, or finds it over the bus in this one."""
+    """Make a robot for a brain that reaches it over the bus, from another process or from this one."""
     noticed = services.noticed if not services.plan.brain else lambda _: None
     project, bus, setup = services.plan.project, services.bus, services.setup
-    analyse(project.motions.values(), project.body)  # now, so that the first motion waits for nothing
+    analyse(project.motions.values(), project.body)  # now, so that the first motion starts without a delay
     return HostedRobotPart(project, bus, setup, _presence(services), services.narrator, noticed)
 
 
@@ -57,7 +57,7 @@ def motion(services: Services) -> MotionPart:
 
 
 def narrator(services: Services) -> None:
-    """Let the narrator hear the behaviour's steps, and with it what predicts whether the robot refuses a command."""
+    """Subscribe the narrator to the behaviour's steps, and with it the predictor of the robot's refusals."""
     services.behavior.loop.observers += [services.narrator, services[RemoteHold]]
 
 

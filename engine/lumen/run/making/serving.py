@@ -1,4 +1,4 @@
-"""The parts that serve the behaviour: its journal, people to forget, saved files, and operators."""
+"""Makers of the parts that serve the behaviour: its journal, forgetting, reload, and operators."""
 
 from lumen.journal.journal_writer import JournalWriter
 from lumen.motion.bounds import analyse
@@ -20,7 +20,7 @@ from lumen.run.status import LastReload
 
 
 def journal(services: Services) -> None:
-    """Provide the records of the run, and the journal of what happens to the behaviour."""
+    """Provide the records of the run, and the journal of the behaviour's inputs."""
     plan, directory = services.plan, directory_of(services)
     records = directory.records if directory else RunRecords(None)
     rehearsed = plan.story is not None or directory is None
@@ -30,7 +30,7 @@ def journal(services: Services) -> None:
 
 
 def forgetting(services: Services) -> ForgettingPart | None:
-    """Make the part that forgets a visitor, if this process knows any."""
+    """Make the part that forgets a visitor; None if this process stores no visitors."""
     project, bus, added = services.plan.project, services.bus, FeatureForgetter(services.get)
     if services.plan.brain:
         forget = services.behavior.forget, services[RunRecords].forget, added.forget
@@ -40,7 +40,7 @@ def forgetting(services: Services) -> ForgettingPart | None:
 
 
 def reload(services: Services) -> ReloadPart:
-    """Make the part that takes saved files."""
+    """Make the part that reloads saved files."""
     mode, directory = services.plan.options["reload"], directory_of(services)
     take = directory.reloader if directory else Reloader
     reloader = take(services.behavior, services.narrator, ReloadOptions(mode), wake=services.nap.end)
@@ -80,9 +80,9 @@ def operator(services: Services) -> OperatorPart:
 
 
 def records(services: Services) -> RecordsPart:
-    """Make the part that keeps where the behaviour stands, and writes the journal to its end.
+    """Make the part that saves the behaviour's snapshot and completes the journal.
 
-    A story keeps nothing in one process; in a brain's own process it continues after a crash.
+    A story in one process saves nothing; in a brain's own process it continues after a crash.
     """
     plan = services.plan
     lasts = directory_of(services) is not None and (plan.story is None or bool(plan.roles))
@@ -90,7 +90,7 @@ def records(services: Services) -> RecordsPart:
 
 
 def recovered(services: Services) -> Resumption | FreshStart:
-    """Go on with the run before, or begin; the operator's decisions with it. All parts hear which it is."""
+    """Resume the previous run with its operator's decisions, or begin a new one; notify all parts which it is."""
     directory, options = directory_of(services), services.plan.options
     if directory is None:
         return FreshStart()

@@ -1,4 +1,4 @@
-"""Visitor, robot and brain of an exhibition that is in one process."""
+"""Makers of visitor, robot and brain for an exhibition in one process."""
 
 from lumen.errors import UsageError
 from lumen.language.events import Event
@@ -38,9 +38,9 @@ def behavior(services: Services) -> None:
 
 
 def visitor(services: Services) -> VisitorPart | None:
-    """Make the visitor in the hall around the robot, if it has one.
+    """Make the visitor in the hall around the robot; None if there is no hall.
 
-    Raises UsageError if a story needs another hall.
+    Raises UsageError if a story needs a hall, or a touch sensor, that the robot lacks.
     """
     hall, story = services.setup.hall, services.plan.story
     if story and hall is None:
@@ -54,7 +54,7 @@ def visitor(services: Services) -> VisitorPart | None:
 
 
 def robot(services: Services) -> RobotPart:
-    """Make the robot, which hears of the behaviour's steps before the narrator does."""
+    """Make the robot, which is notified of the behaviour's steps before the narrator."""
     plan, options = services.plan, services.plan.options
     directory = options.get("directory")
     record = directory.records.write if directory and services.lasts else lambda _: None
@@ -72,7 +72,7 @@ def robot(services: Services) -> RobotPart:
 
 
 def narrator(services: Services) -> None:
-    """Let the player of the story and then the narrator hear of the behaviour's steps."""
+    """Subscribe the player of the story, then the narrator, to the behaviour's steps."""
     visitor = services.get(VisitorPart)
     player = visitor.player if visitor else None
     services.behavior.loop.observers += [*([player] if player else []), services.narrator]
@@ -92,7 +92,7 @@ def brain(services: Services) -> BrainPart:
 
 
 class _Noticing(CommandListener):
-    """Lets the behaviour hear that a person stopped the robot."""
+    """A listener that raises an event in the behaviour when a person stops the robot."""
 
     def __init__(self, behavior: LiveBehavior) -> None:
         self._behavior = behavior
