@@ -1,4 +1,4 @@
-"""Walks to places by name: each a row of ordinary walks of the robot, planned anew from where the last one led."""
+"""Walks to places by name: each is a series of the robot's ordinary walks, replanned from where the last one ended."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -12,39 +12,46 @@ from lumen.motion.wayfinding import distance_to, most_legs, next_leg, place_at
 from lumen.ports import Joints, Robot, RobotCommand, Sense, Whereabouts
 
 POSITION_PATIENCE = 2.0
-"""How long the robot may not say where it is [s]; a walk to a place has failed then."""
+"""Time without a reported position after which a walk to a place fails [s]."""
 
 FRESH_READINGS = 2
-"""Which reading after a walk's end says where it led: the first may have been on its way when it ended."""
+"""Readings after a walk's end that are skipped: they may have been measured before it ended."""
 
 LOOK_PERIOD = 0.1
-"""Time between two looks at where the robot is while it walks to no place [s]."""
+"""Time between two checks of the robot's place while it is not on a way [s]."""
 
 LEG_SEPARATOR = "~"
-"""Stands between the id of a walk to a place and the number of a walk of the robot: `d3~1`."""
+"""Separates the id of a walk to a place from the number of one of its walks: `d3~1`."""
 
 
 @dataclass(eq=False)
 class _Way:
-    """A walk to a place under way; `leg` is the robot's walk that is not over, empty between two of them."""
+    """A walk to a place that is waiting or under way."""
 
     id: str
     name: str
     since: float
+    """When its last walk ended, or it became the first in the queue [s]."""
     target: HallPlace | None = None
+    """The place as its walks are planned, None before the first and after the place moved."""
     leg: str = ""
+    """Id of the robot's current walk, empty between two walks."""
     walked: int = 0
+    """Walks begun so far."""
     left: int = 0
+    """Walks that may still follow."""
     cancelled: bool = False
     seen: float | None = None
+    """Time of the last reading [s]."""
     fresh: int = 0
+    """Readings since the last walk."""
 
 
 class Navigator:
-    """Leads the robot to places, and says where it is: `arrived`, `left` and `doubtful`.
+    """A guide of the robot to places; it also reports where the robot is, by `arrived`, `left` and `doubtful`.
 
-    `begin` has the robot begin a walk, which is answered as any command. A place that is moved meanwhile is walked to
-    where it is now, one that is gone fails.
+    `begin` starts a walk of the robot, which is answered like any command. If a place is moved during the walk, the
+    robot walks to its new position; if it is removed, the walk fails.
     """
 
     def __init__(self, robot: Robot, begin: Callable[[str, RobotCommand, float], None]) -> None:
@@ -55,11 +62,11 @@ class Navigator:
         self._doubted = ""
 
     def start(self, id: str, name: str, now: float) -> None:
-        """Walk to that place once the walks to others are over."""
+        """Walk to a place once the earlier walks to places have ended."""
         self._ways.append(_Way(id, name, now))
 
     def cancel(self, id: str) -> bool:
-        """End the walk to a place of that id; whether it is one."""
+        """Cancel the walk to a place with an id; return False if there is none."""
         meant = [way for way in self._ways if way.id == id]
         for way in meant:
             way.cancelled = True
@@ -68,18 +75,18 @@ class Navigator:
         return bool(meant)
 
     def stop(self) -> None:
-        """Something ends all that the robot does: no walk follows."""
+        """Cancel all walks to places, because something stops the robot."""
         for way in self._ways:
             way.cancelled = True
 
     def renew(self) -> None:
-        """Another behaviour, or another's snapshot, has to hear where the robot is."""
+        """Report the robot's place again, for another behaviour or snapshot."""
         self._told = None
 
     def tick(self, project: Project, standing: str, answers: Iterable[Event], now: float) -> list[Event]:
-        """What has happened, with the answers of walks to places in place of their single walks'.
+        """Return the events of this tick; a walk to a place is answered instead of its single walks.
 
-        `standing` is where the behaviour knows the robot to be.
+        `standing` is the place where the behaviour believes the robot to be.
         """
         events: list[Event] = []
         for event in answers:
@@ -95,11 +102,11 @@ class Navigator:
 
     @property
     def busy(self) -> bool:
-        """Whether it leads the robot anywhere."""
+        """Whether a walk to a place is waiting or under way."""
         return bool(self._ways)
 
     def leap(self, now: float) -> None:
-        """Look next when it would be time to after `now` [s]."""
+        """Schedule the next check of the robot's place after `now` [s]."""
         while self._look <= now:
             self._look += LOOK_PERIOD
 
@@ -108,11 +115,11 @@ class Navigator:
         return next((way for way in self._ways if separator and way.leg and way.leg == id), None)
 
     def _answered(self, way: _Way, event: Event, now: float) -> Iterator[Event]:
-        """A single walk is over."""
+        """Handle the end of a single walk, and yield the answer of the whole way if it ends with it."""
         way.leg, way.since, way.fresh = "", now, 0
         kind = event.name.partition(".")[0]
         if kind == "cancelled" and way.target is None and not way.cancelled:
-            return  # it was ended because the place is elsewhere now
+            return  # it was cancelled because the place has moved: the next walk is planned anew
         if kind != "done":
             yield from self._end(way, event._replace(name=f"{kind}.command.{way.id}"))
 
@@ -147,7 +154,7 @@ class Navigator:
             yield from self._end(way, Event(f"done.command.{way.id}", None, now))
 
     def _fresh(self, way: _Way) -> Whereabouts | None:
-        """Where the last walk led; None before the robot has said it."""
+        """Return where the last walk led, None until enough readings have arrived."""
         reading = self._robot.read(Sense.JOINT)
         if not isinstance(reading, Joints) or reading.position is None:
             return None
@@ -165,9 +172,9 @@ class Navigator:
         yield answer
 
     def _look_around(self, project: Project, standing: str, now: float) -> Iterator[Event]:
-        """Say where the robot is, where that is another place than the behaviour knows of.
+        """Yield an event if the robot is at another place than the behaviour believes.
 
-        On its way to a place it passes others without being there.
+        Places that it passes on a way to another do not count.
         """
         if now < self._look:
             return
@@ -187,7 +194,7 @@ class Navigator:
             yield self._event(ARRIVED if found else LEFT, found or standing, here, now)
 
     def _doubt(self, project: Project, place: str, here: Whereabouts, now: float) -> Iterator[Event]:
-        """Say once that the robot, which is at a place by its odometry, may be farther from it than `within`."""
+        """Yield `doubtful` once if the robot may be farther from its place than `within`, by its odometry's error."""
         places = project.section(HallPlaces).by_name
         doubts = place in places and here.doubt > places[place].within
         if doubts and self._doubted != place:

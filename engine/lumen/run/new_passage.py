@@ -1,4 +1,4 @@
-"""A question that nobody could answer becomes a passage: one file in knowledge/, which counts as any saved file."""
+"""An unanswered question that becomes a passage: a file in knowledge/, loaded like any saved file."""
 
 import os
 import re
@@ -13,20 +13,21 @@ from lumen.language.folders import KNOWLEDGE_FOLDER
 from lumen.language.language_tags import is_language_tag
 
 MAX_TEXT = 1_000
-"""Characters of a question, or of an answer."""
+"""Longest question or answer, in characters."""
 MAX_NAME = 40
+"""Longest file name before its number, in characters."""
 MAX_SAME = 100
-"""Files whose names begin in the same way."""
+"""Files with the same name before their numbers."""
 HEADER = "# yaml-language-server: $schema=../schemas/knowledge.schema.json\n\n"
 
 
 def write_passage(
     root: Path, question: str, answer: str, language: str, also: Mapping[str, tuple[str, str]] | None = None
 ) -> Path:
-    """Write the passage of a question and its answer; return its file, from the project's folder.
+    """Write a passage for a question and its answer; return its file, relative to the project's folder.
 
-    `also` has the question and the answer in other languages. No file is written over. Raises UsageError if that is no
-    question, no answer or no language, or the folder can't be written.
+    `also` has the question and the answer in other languages. No file is overwritten. Raises UsageError if a question,
+    answer or language is invalid, or the folder can't be written.
     """
     pairs = {language: (question, answer), **(also or {})}
     questions, answers = dict[str, list[str]](), dict[str, str]()
@@ -51,13 +52,13 @@ def write_passage(
 
 
 def check_language(language: str) -> None:
-    """Raise UsageError if that can't be the name of a language."""
+    """Raise UsageError if a text is no language code."""
     if not is_language_tag(language):
         raise UsageError("`language` must be a code such as `en`")
 
 
 def one_line(text: str, what: str) -> str:
-    """Return a text without line breaks and invisible signs. Raises UsageError if nothing is left, or too much."""
+    """Return a text on one line without invisible characters. Raises UsageError if it is empty or too long."""
     line = " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())
     if not any(sign.isalnum() for sign in line) or len(line) > MAX_TEXT:
         raise UsageError(f"`{what}` must be a string of 1 to {MAX_TEXT} characters")
@@ -71,7 +72,7 @@ def _names(question: str) -> list[str]:
 
 
 def _created(file: Path, text: str) -> bool:
-    """Whether the file was not there, and now holds the text: all of it or nothing, under this name."""
+    """Write a new file; return False if it exists. After an error no part of it is left."""
     try:
         held = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
     except FileExistsError:

@@ -1,4 +1,4 @@
-"""A saying that the console adds: one more entry of behaviors/sayings/day.yaml, which counts as any saved file."""
+"""A saying that the console adds: an entry in behaviors/sayings/day.yaml, loaded like any saved file."""
 
 import copy
 import json
@@ -30,10 +30,10 @@ _WORDS = frozenset(("null", "true", "false"))
 
 
 def write_saying(root: Path, saying: Saying, robot: str = "") -> Path:
-    """Add a saying to the file of the console; its path from the project's folder.
+    """Add a saying to the console's file; return its path relative to the project's folder.
 
-    Everything else in the file stays as it is, to the byte. Raises UsageError if the file has errors before or
-    afterwards, or can't be written: nothing is written then.
+    All other bytes of the file stay the same. Raises UsageError, and writes nothing, if the file has errors before or
+    afterwards, or can't be written.
     """
     check_language(saying.language)
     text = one_line(saying.text, "text")
@@ -51,9 +51,9 @@ def write_saying(root: Path, saying: Saying, robot: str = "") -> Path:
 
 
 def with_saying(content: bytes, saying: Saying) -> bytes:
-    """Return the content of a file of sayings with one more, unless it has it.
+    """Return the content of a file of sayings with one more, unchanged if it has it already.
 
-    Raises UsageError if it is written in a way in which no place can be found for it.
+    Raises UsageError if the way it is written leaves no place to add it.
     """
     keys = (saying.behavior, saying.state, saying.row, saying.language)
     if _is_blank(content):
@@ -77,7 +77,7 @@ def with_saying(content: bytes, saying: Saying) -> bytes:
 
 
 def _edit(document: Document, text: FileText, keys: tuple[str, ...], depth: int, said: str) -> Edit:
-    """The edit that writes the saying behind the last entry of the deepest of its keys that is there."""
+    """Return the edit that adds the saying after the last entry below the longest existing part of its keys."""
     around = keys[:depth]
     report, whole = DocumentReport(document), document.spans[around].value
     last: NodePath = (*around, _last(document.value(around)))
@@ -90,7 +90,7 @@ def _edit(document: Document, text: FileText, keys: tuple[str, ...], depth: int,
 
 
 def _is_blank(content: bytes) -> bool:
-    """Whether a file holds nothing but comments."""
+    """Return whether a file has only comments and blank lines."""
     return all(line.lstrip().startswith(b"#") for line in content.splitlines() if line.strip())
 
 
@@ -106,7 +106,7 @@ def _refuse_errors(files: Mapping[str, bytes], what: str) -> None:
 
 
 def _save(root: Path, before: bytes, after: bytes) -> None:
-    """Put the new content in place of the old one at once."""
+    """Replace the file in one step. Raises UsageError if it has changed since it was read, or can't be written."""
     file = root / DAY_FILE
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -124,7 +124,7 @@ def _last(node: Any) -> str | int:
 
 
 def _is_flow(text: FileText, place: Place) -> bool:
-    """Whether a node stands between brackets."""
+    """Return whether a node is written in brackets (YAML flow style)."""
     return text.line(place.line)[place.column - 1 : place.column] in ("{", "[")
 
 
@@ -133,7 +133,7 @@ def _key(key: str) -> str:
 
 
 def _flow(keys: tuple[str, ...], text: str) -> str:
-    """The entry between brackets, with the keys that lead to it."""
+    """Return the entry in brackets, below its keys."""
     said = json.dumps(text, ensure_ascii=False)
     if not keys:
         return said
@@ -144,14 +144,14 @@ def _flow(keys: tuple[str, ...], text: str) -> str:
 
 
 def _block(keys: tuple[str, ...], text: str, indent: int) -> str:
-    """The entry on lines of its own, with the keys that lead to it; the first line is not indented."""
+    """Return the entry on lines of its own, below its keys; the first line is not indented."""
     lines = [f"{_key(key)}:" for key in keys]
     lines.append(f"- {json.dumps(text, ensure_ascii=False)}" if keys else json.dumps(text, ensure_ascii=False))
     return "\n".join(f"{' ' * (indent + 2 * i) if i else ''}{line}" for i, line in enumerate(lines))
 
 
 def _expected(data: Any, keys: tuple[str, ...], text: str) -> Any:
-    """The data with the saying."""
+    """Return a copy of the data with the saying."""
     whole = copy.deepcopy(data)
     node = whole
     for key in keys[:-1]:

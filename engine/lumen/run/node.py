@@ -1,4 +1,4 @@
-"""One process of an exhibition: its parts in one loop, among the processes that have the others, if there are any."""
+"""One process of an exhibition: its parts in one loop, alone or among processes with the other parts."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -26,16 +26,13 @@ from lumen.upkeep.garbage import GcScheduler
 from lumen.upkeep.threads import ThreadWatch, WatchedThread
 
 SLOW, WELL = 0.95, 0.98
-"""Under which part of its speed time is slow, and above which it is well again [1]."""
+"""Share of its speed below which time is slow, and above which it has recovered [1]."""
 LOOK_PERIOD = 1.0
-"""How often it is looked at [s]."""
+"""Time between two checks of the pace [s]."""
 
 
 class PaceWatch:
-    """Watches a clock that says how much of its speed it keeps (`realtime`); one that does not, keeps all of it.
-
-    `tick` returns a line when that falls under `SLOW`, and one when it is above `WELL` again; `worst` is the least.
-    """
+    """A watch over the share of its speed that a clock keeps; a clock that can't measure it counts as keeping all."""
 
     def __init__(self, clock: Clock, monotonic: Callable[[], float] = time.monotonic) -> None:
         self._clock, self._monotonic, self._next = clock, monotonic, 0.0
@@ -43,10 +40,11 @@ class PaceWatch:
 
     @property
     def realtime(self) -> float:
-        """How much of its speed the clock keeps, of late; never above 1."""
+        """The recent share of its speed that the clock keeps, at most 1."""
         return round(min(1.0, self._clock.realtime if isinstance(self._clock, MeasuresPace) else 1.0), 3)
 
     def tick(self) -> str:
+        """Return a line if the share has fallen below SLOW or risen above WELL again, else an empty string."""
         if self._monotonic() < self._next:
             return ""
         self._next = self._monotonic() + LOOK_PERIOD
@@ -64,36 +62,35 @@ class PaceWatch:
         return ""
 
     def summary(self) -> list[str]:
-        """What is said of it at the end."""
+        """Return a line about the slowest pace, if it was slow."""
         return [f"at its slowest, the exhibition ran at {self.worst:.2f} × real time"] if self.worst < SLOW else []
 
 
 NAP = 0.2
-"""How long it sleeps at most where nothing is due [s]: what nobody wakes it for waits no longer than that."""
+"""Longest sleep while nothing is due [s], and so the longest delay of an input that does not wake the loop."""
 
 
 @dataclass(frozen=True, slots=True)
 class NodeTime:
-    """The way in which the time of a process passes.
-
-    `speed` is that of its time, if those of other processes must be the same. With `leaps` it passes over ticks in
-    which nothing happens. `paced` is called when it begins or ends to keep less than real time, with how much of it.
-    """
+    """How the time of a process passes."""
 
     speed: float | None = None
+    """Multiple of real time that other processes must share, None if it does not matter."""
     leaps: bool = False
+    """Whether ticks in which nothing happens are skipped."""
     paced: Callable[[float], None] = lambda _: None
+    """Called with the share of real time when it becomes slow or recovers."""
 
 
 EVERY_TICK = NodeTime()
 
 
 class Node:
-    """Ticks its parts in their order until one is over or somebody ends it.
+    """A loop that ticks its parts in order until one is over or it is interrupted.
 
-    With a `presence` it is one of several processes, or a whole exhibition that others on the same bus can see: it
-    begins when it has claimed what it is. The functions in `before` are called at each tick with its time [s], before
-    the parts. In real time `run` sleeps until something is due, or until `nap` ends because a message has come.
+    With a `presence` it is one of several processes, or a whole exhibition visible to others on the bus, and begins
+    after its claim. The functions in `before` are called at each tick with its time [s], before the parts. In real time
+    `run` sleeps until something is due, or until an arriving message ends `nap`.
     """
 
     def __init__(
@@ -130,12 +127,12 @@ class Node:
 
     @property
     def over(self) -> bool:
-        """Whether one of its parts is at its end, or it was interrupted twice."""
+        """Whether one of its parts is over, or it was interrupted twice."""
         return self._interrupts > 1 or any(part.over for part in self._begun)
 
     @property
     def failed(self) -> bool:
-        """Whether a story has failed, or was not played to its end though nobody interrupted it."""
+        """Whether a story has failed, or was interrupted before its end."""
         return any(part.failed for part in self._begun)
 
     @property
@@ -145,15 +142,16 @@ class Node:
 
     @property
     def interrupted(self) -> bool:
+        """Whether it was interrupted."""
         return self._interrupts > 0
 
     @property
     def leaving(self) -> bool:
-        """Whether it was ended so that the next run goes on where this one was."""
+        """Whether it was ended so that the next run continues from here."""
         return self._leaving
 
     def interrupt(self, times: int = 1, *, leave: bool = False) -> None:
-        """Ctrl-C: once rests the robot where there is one to rest, twice ends; safe in a signal handler."""
+        """Handle Ctrl-C: the first rests a robot that is here, the second ends the run; safe in a signal handler."""
         self._interrupts += times
         self._leaving = leave
 
@@ -162,7 +160,7 @@ class Node:
         self._asked = time.monotonic()
 
     def claims(self) -> bool:
-        """Whether other processes can still object to this process's roles. Raises UsageError if one objects."""
+        """Return whether other processes can still object to this process's roles. Raises UsageError if one objects."""
         if self.presence is None or self.presence.settled:
             return False
         self.presence.tick()
@@ -174,12 +172,12 @@ class Node:
         self._begin(self.now)
 
     def run(self, period: float | None = None) -> float:
-        """Tick until it is over, or has lived for the period [s]; how long it lived [s]."""
+        """Tick until it is over, or for `period` [s]; return how long it ran [s]."""
         with closing(GcScheduler()) as garbage:
             return live(self, period, garbage)
 
     def tick(self) -> float:
-        """Wait for the next tick and live through it; its time [s]."""
+        """Wait for the next tick and run it; return its time [s]."""
         if self._time.leaps:
             self._leap()
         self._clock.wait(self.now + TICK_PERIOD)
@@ -202,16 +200,16 @@ class Node:
         return self.now
 
     def nap(self, most: float = inf) -> None:
-        """Sleep through the ticks before the next in which something happens, for so long [s] at most, until woken."""
+        """Sleep through ticks in which nothing happens, for at most `most` [s], until woken."""
         with self.napping(self):
             self.pass_over(self.doze(min(most, self.rest())))
 
     def napping(self, on: "Node") -> AbstractContextManager[None]:
-        """Nap on the clock of a node: this one, or another one of this process."""
+        """Return the context in which to nap on the clock of this node or of another one in this process."""
         return self._nap.on(on._dozes)
 
     def rest(self) -> float:
-        """For how long nothing happens in it unless something comes [s]; 0 where that is not known."""
+        """Return for how long nothing happens without an input [s]; 0 if that is unknown."""
         if self.presence and not self.presence.settled:
             return 0.0
         until = inf
@@ -222,13 +220,13 @@ class Node:
         return until - self.now
 
     def doze(self, rest: float) -> int:
-        """Sleep through a rest of at most NAP, until woken, where the clock can; how many ticks that were."""
+        """Sleep for at most `rest` and NAP, until woken, if the clock can; return how many ticks that was."""
         if self._dozes is None or rest < 2 * TICK_PERIOD:
             return 0
         return int((self._dozes.doze(self.now + min(rest, NAP) - TICK_PERIOD) - self.now) / TICK_PERIOD + ROUNDING)
 
     def pass_over(self, ticks: int) -> None:
-        """Let the time of so many ticks pass, in which nothing happens."""
+        """Let the time of `ticks` ticks pass, in which nothing happens."""
         if ticks > 0:
             self.now = to_the_nanosecond(self.now + ticks * TICK_PERIOD)
             self._clock.wait(self.now)
@@ -236,7 +234,7 @@ class Node:
                 part.leap(self.now)
 
     def _leap(self) -> None:
-        """Pass over the ticks before the next in which something happens, where all parts know when that is."""
+        """Skip the ticks before the next in which something happens, if all parts know when that is."""
         if (rest := self.rest()) < inf:
             self.pass_over(ceil(rest / TICK_PERIOD - ROUNDING) - 1)
 
@@ -248,7 +246,7 @@ class Node:
             part.use(project)
 
     def close(self) -> None:
-        """End all parts, whatever one of them may raise; then the bus."""
+        """Close all parts, even if one raises an error; then the bus."""
         with ExitStack() as stack:
             stack.callback(self.bus.close)
             if self.presence:
@@ -257,11 +255,11 @@ class Node:
                 stack.callback(part.close)
 
     def summary(self) -> list[str]:
-        """What is said of its parts at the end, a line each."""
+        """Return the lines that the parts print at the end, and those of `losses`."""
         return [*(line for part in self._begun for line in part.summary()), *self.losses()]
 
     def losses(self) -> list[str]:
-        """What is said at the end of time that was not kept, and of messages that were dropped."""
+        """Return the lines at the end about slow time and dropped messages."""
         counts = self.bus.ability(CountsDrops)
         dropped = ", ".join(f"{count:,} on {key}" for key, count in sorted(counts.dropped.items() if counts else ()))
         return [*self.pace.summary(), *([f"dropped messages: {dropped}"] if dropped else [])]
@@ -280,7 +278,7 @@ class Node:
                 self._begun.append(part)
 
     def _ready(self, part: Part) -> bool:
-        """Whether those are there that it needs; where not, that is said once."""
+        """Return whether the parts that it needs are there; if not, print that once."""
         for need in part.needs:
             if self.presence and need not in self.presence.parts and not self._here(self.presence, need):
                 key = self._project.key_of(COMMAND_ROUTE if need == ROBOT_PART else TRACE_ROUTE)
@@ -296,7 +294,7 @@ class Node:
         return peer is not None and peer.state == HERE
 
     def _check_speed(self) -> None:
-        """Raises UsageError where the others' time runs at another speed."""
+        """Raise UsageError if another process's time runs at a different speed."""
         for peer in self.presence.peers() if self.presence and self._time.speed else ():
             theirs = peer.said.get("speed")
             if isinstance(theirs, int | float) and theirs != self._time.speed:
@@ -305,14 +303,14 @@ class Node:
                 )
 
     def _lose(self, thread: WatchedThread) -> None:
-        """A thread could not be begun again: tell it, and let the robot rest where that leaves nobody to stop it."""
+        """Report a thread that can't be restarted; without a vital one no person can stop the robot, so it rests."""
         self._narrator.line("trouble", thread.lost)
         if thread.vital:
             for part in self._begun:
                 part.helpless(thread.lost)
 
     def _follow(self, clock: FollowingClock, presence: Presence) -> None:
-        """Live in the robot's time, where it says what that is."""
+        """Follow the robot's time, if its process publishes it."""
         robot = presence.find(ROBOT_PART)
         if robot and isinstance(at := robot.said.get("time"), int | float):
             clock.follow(robot.session, float(at), robot.heard)
@@ -320,13 +318,13 @@ class Node:
 
     def _keep_pace(self) -> None:
         if isinstance(self._clock, FollowingClock):
-            return  # whose time it is says so
+            return  # the process with the robot's clock reports its pace
         if line := self.pace.tick():
             self._narrator.line("time", line)
             self._time.paced(self.pace.realtime)
 
     def _heed(self) -> None:
-        """What the first interrupt asks for; where nobody has anything to do for it, it ends."""
+        """Pass the first interrupt on to the parts; end if none of them handles it."""
         if self._interrupts == 1 and not self._heeded:
             self._heeded = True
             heeded = [part.interrupt() for part in self._begun]

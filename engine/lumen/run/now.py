@@ -1,4 +1,4 @@
-"""How a running exhibition is at this moment, in one object: for whoever shows it to the people who run it."""
+"""The present state of a running exhibition in one JSON object, for consoles."""
 
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
@@ -21,24 +21,27 @@ Status = dict[str, Any]
 
 
 class PresentMoment(NamedTuple):
-    """What is taken from an exhibition between two ticks; `status` makes the rest of it, on any thread.
-
-    `at` is the exhibition's time [s], `position` that of the last entry of the journal.
-    """
+    """The state of an exhibition between two ticks; `status` adds the rest, on any thread."""
 
     project: Project
     snapshot: Snapshot
     at: float
+    """The exhibition's time [s]."""
     position: int
+    """Position of the last entry of the journal."""
     since: dict[str, float]
+    """When each active state became active [s], by name."""
     saying: UnderWay | None
     motion: UnderWay | None
     heard: Spoken | None
     waiting: tuple[HeldEvent, ...]
     autonomy: Autonomy
     model: str | None
+    """Whether the language model is `on` or `off`, None if there is none."""
     events: int
+    """Events that wait for the next tick."""
     commands: int
+    """Unfinished commands."""
     status: Callable[[], Status]
 
 
@@ -54,7 +57,7 @@ def moment(
     events: int,
     status: Callable[[], Status],
 ) -> PresentMoment:
-    """What is so now; nothing is computed from it yet."""
+    """Return the present state, without computing anything from it yet."""
     said, moved = doings.saying, doings.motion
     return PresentMoment(
         project,
@@ -75,13 +78,13 @@ def moment(
 
 
 class NowView:
-    """Tells moments as JSON data; what a bundle makes of it is kept as long as that is the same bundle."""
+    """A converter of moments to JSON data, which caches what depends only on the bundle."""
 
     def __init__(self) -> None:
         self._bundle: _Bundle | None = None
 
     def tell(self, now: PresentMoment) -> dict[str, Any]:
-        """The object, with all keys of the status."""
+        """Return a moment as JSON data, with all keys of the status."""
         bundle = self._bundle
         if bundle is None or bundle.project is not now.project:
             bundle = self._bundle = _Bundle(now.project)
@@ -108,7 +111,7 @@ class NowView:
 
 
 class _Bundle:
-    """What of a project never changes: the places of its states, and what there is to choose from."""
+    """The data that depends only on a project: the places of its states, and the choices it offers."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
@@ -123,7 +126,7 @@ class _Bundle:
         }
 
     def place(self, machine: MachineDefinition, where: NodePath) -> dict[str, Any]:
-        """The file and line where it stands in the document of that machine."""
+        """Return the file and line of a node in a machine's document, None for both if unknown."""
         found = self._places.get((id(machine), where))
         if found is None:
             file = self._files.get(id(machine)) or self._by_id.get(machine.id)
@@ -134,7 +137,7 @@ class _Bundle:
 
 
 def handled_events(machine: MachineDefinition) -> set[str]:
-    """The names of events from outside that a behaviour, or one that it invokes, has a transition for."""
+    """Return the names of external events for which a behaviour, or one that it invokes, has a transition."""
     found = set[str]()
     for _, inner in machines_in(machine):
         declared = set(inner.events)
@@ -159,7 +162,7 @@ def _names(transition: Transition, declared: set[str]) -> Iterator[str]:
 
 
 def _tree(now: PresentMoment, bundle: _Bundle, time: Callable[[float], str]) -> list[dict[str, Any]]:
-    """The active states, each with those within it, and what it has invoked."""
+    """Return the active states as a tree, with the states of invoked behaviours below their invokers."""
     found: dict[str, dict[str, Any]] = {}
     outermost: list[dict[str, Any]] = []
     for one in running(now.project.machine, now.snapshot):

@@ -1,4 +1,4 @@
-"""Which of the robots of a project is meant."""
+"""The choice among the robots of a project."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,9 +10,9 @@ from lumen.project.settings import Settings
 
 
 def one_robot(root: Path, name: str = "") -> str:
-    """What the robot's folder in the home of the project is called: empty where lumen.yaml has one `robot:`.
+    """Return the name of a robot's folder in the project's home; empty if lumen.yaml has one `robot:`.
 
-    Without a name it is the first. Raises UsageError for one that is not there.
+    Without a name it is the first robot. Raises UsageError for an unknown name.
     """
     settings = main_settings(root) or Settings()
     robots = list(settings.robots)
@@ -22,9 +22,9 @@ def one_robot(root: Path, name: str = "") -> str:
 
 
 def robots_of(root: Path, names: str | None) -> Sequence[str]:
-    """Those robots of `robots:` that a list of names means, in its order; all of them without one.
+    """Return the robots of `robots:` in a comma-separated list of names, in its order; all of them if `names` is None.
 
-    Empty where lumen.yaml has one `robot:`. Raises UsageError for a name that is not there.
+    Return nothing if lumen.yaml has one `robot:`. Raises UsageError for an unknown name.
     """
     settings = main_settings(root) or Settings()
     if names is None:

@@ -1,4 +1,4 @@
-"""An exhibition for a program of somebody else's: `lumen.open`."""
+"""An exhibition for other programs: `lumen.open`."""
 
 from pathlib import Path
 
@@ -25,15 +25,15 @@ def open(
     story: str | None = None,
     language: str = "",
 ) -> Exhibition:
-    """The exhibition of a project, begun: `path` is its folder, without one the project here or above.
+    """Open and start the exhibition of a project; `path` is its folder, by default the project here or above.
 
-    `robot` is the name of a robot, such as `recording`, `simulation`, `naoqi` or `none`, or an object that is one
-    (`lumen.ports.Robot`); `bus` is an address (`memory://`, `amqp://…`) or an open bus, which the exhibition closes at
-    its end. Time is that of the robot's own world, `speed` times real time or as fast as it can (`max`); with a `clock`
-    it is what that one says. `story` is a scripted visitor. Use it in a `with` block, or `close` it.
+    `robot` is the name of a robot, such as `recording`, `simulation`, `naoqi` or `none`, or an object
+    (`lumen.ports.Robot`); `bus` is an address (`memory://`, `amqp://…`) or an open bus, which the exhibition closes.
+    Time is that of the robot's world, at `speed` times real time or as fast as possible (`max`), or that of `clock` if
+    there is one. `story` is a scripted visitor. Use the result in a `with` block, or `close` it.
 
-    Raises UsageError for a name that is none, or an object that lacks a method, ProjectError for files with errors,
-    BusError and RobotError where those can't be reached.
+    Raises UsageError for an unknown name or an object that lacks a method, ProjectError for files with errors, BusError
+    and RobotError if the bus or the robot can't be reached.
     """
     if not isinstance(bus, str):
         need_methods(bus, Bus, "a bus")

@@ -1,4 +1,4 @@
-"""The stand-in for the visual module: a face detector that is never wrong, and takes its time."""
+"""A replacement for the visual module: a face detector without errors, but with a delay."""
 
 import logging
 from collections import deque
@@ -10,15 +10,17 @@ from lumen.run.sending import send
 _log = logging.getLogger(__name__)
 
 FACE_PERIOD = 0.1
+"""Time between two images [s]."""
 FACE_LATENCY = 0.1
+"""Time from an image to its message [s]."""
 FACE_ROUTE = "face"
 
 
 class FaceDetector:
-    """Publishes where the visitor's face stands in the camera's image [px], every `period` [s], `latency` [s] late.
+    """A publisher of the visitor's face in the camera's image [px], every `period` [s] and `latency` [s] late.
 
-    The body is the original's (`x`, `y` as integers) and `time` [s], when the image was taken. While it is `quiet`
-    somebody with eyes publishes instead.
+    The body is the original's (integers `x` and `y`), with `time` [s], when the image was taken. While `quiet` is set,
+    another process publishes real faces instead.
     """
 
     def __init__(
@@ -34,15 +36,15 @@ class FaceDetector:
 
     @property
     def busy(self) -> bool:
-        """Whether a face is seen, or was and is not yet told."""
+        """Whether a face is seen, or a message waits to be published."""
         return bool(self._developing) or self._hall.face() is not None
 
     def use(self, project: Project) -> None:
-        """Publish on the route of this project from now on; on none where it has none."""
+        """Switch to this project's route, or stop publishing if it has none."""
         self._project = project
 
     def tick(self, now: float) -> None:
-        """Look, where it is time to, and publish what has been recognised by now."""
+        """Take an image if one is due, and publish the faces whose latency has passed."""
         if FACE_ROUTE not in self._project.routes:
             return
         if now >= self._next:
@@ -55,7 +57,7 @@ class FaceDetector:
                 _log.warning("a face could not be published: %s", reason)
 
     def leap(self, now: float) -> None:
-        """It is `now` [s] after a time in which there was nobody to see."""
+        """Set the time to `now` [s] after an interval without a face."""
         while self._next <= now:
             self._next += self._period
 

@@ -1,4 +1,4 @@
-"""The edge: performs what a step asked for, and answers what no robot has to."""
+"""The boundary between the behaviour and the world: it performs commands, and answers those that need no robot."""
 
 import logging
 from collections.abc import Callable
@@ -38,18 +38,15 @@ from lumen.run.questions import Questions
 from lumen.run.sending import send
 
 LEFT_OUT = "left_out"
-"""The field of an answer that says what the body lacks for a command, which was left out."""
+"""The field of an answer that gives what the body lacks for a command that was left out."""
 
 _log = logging.getLogger(__name__)
 
 
 class Performer:
-    """Hands commands to the robot and the bus.
+    """A performer of commands on the robot and the bus.
 
-    `track` switches a controller on or off. `events` are answers for the next tick: of commands that end at once, of
-    those that are left out because the body lacks what they need, and of those that can't even begin: `refuse` gives
-    the reason why the robot may not begin one, empty where it may. `navigator` makes single walks of the walks to
-    places, `questions` finds answers.
+    `track` switches a controller on or off. `refuse` returns why the robot may not begin a command, empty if it may.
     """
 
     def __init__(
@@ -62,12 +59,15 @@ class Performer:
     ) -> None:
         self._robot, self._bus, self._track = robot, bus, track
         self.events: list[Event] = []
+        """Answers for the next tick: of commands that end at once, lack a part of the body, or may not begin."""
         self.navigator = Navigator(robot, self._begin)
+        """Splits walks to places into single walks."""
         self.questions = questions or Questions(bus)
+        """Finds the answers to visitors' questions."""
         self.refuse = refuse
 
     def refusal(self, project: Project, command: Command) -> str:
-        """Return the reason why the robot may not begin a command; empty if it may, or if no robot performs it."""
+        """Return why the robot may not begin a command; empty if it may, or if no robot performs it."""
         match command:
             case Start(_, Play(name)):
                 return self.refuse(Perform(project.motions[name])) if name in project.motions else ""
@@ -78,7 +78,7 @@ class Performer:
         return ""
 
     def perform(self, project: Project, command: Command, now: float, step: int = 0) -> None:
-        """Begin a command, which the step of that number asked for; what it publishes names it."""
+        """Begin a command of the step with this number; the messages that it publishes name the step as their cause."""
         match command:
             case Start(id, Ask() as asked):
                 origin = MessageOrigin(cause=f"step {step}" if step else "")
@@ -133,7 +133,7 @@ class Performer:
                 self._begin(id, wanted, now)
 
     def _sound(self, project: Project, id: str, file: str, now: float) -> None:
-        """A sound takes as long as its file says."""
+        """Begin a sound, with the duration of its file."""
         try:
             self._begin(id, PlaySound(file, sound_duration(Path(project.root), file)), now)
         except (OSError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""The plan of an exhibition in this process, or of a part of one, before anything of it is made."""
+"""The plan of an exhibition in this process, or of a part of one, before anything is made."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,31 +16,33 @@ from lumen.run.setup import Setup
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """One robot's exhibition in this process: all of it, or the `roles` of one process of several.
-
-    `setup` is the robot, None if another process has it; then `clock` is the time. With a `story` its visitor plays it.
-    The bus is an address or an open bus, which ends with the exhibition. `narrator` prints what happens. `language` is
-    the one that the robot speaks first, empty for the project's. `speed` is a multiple of real time for one process of
-    several, whose others have to have the same.
-
-    A `silent` one publishes nothing of the behaviour, and of the senses only those that the behaviour hears of. With
-    `leaps` it passes over ticks in which nothing happens. The functions in `before` are called at each tick with its
-    time [s], before the parts. `options` has the other wishes, by the names in the rows of parts.
-    """
+    """One robot's exhibition in this process: all of it, or the `roles` of one process of several."""
 
     project: Project
     setup: Setup | None = None
+    """The robot, None if another process has it."""
     bus: str | Bus = "memory://"
+    """Address of the bus, or an open bus, which is closed with the exhibition."""
     story: Story | None = None
+    """Its visitor plays this story."""
     narrator: Narrator | None = None
+    """Prints what happens."""
     roles: tuple[str, ...] = ()
+    """The roles of this process, empty for a whole exhibition."""
     clock: Clock | None = None
+    """The time, if there is no `setup`."""
     language: str = ""
+    """The language that the robot speaks first, empty for the project's."""
     speed: float = 1.0
+    """Multiple of real time of one process of several; the others must have the same."""
     silent: bool = False
+    """Whether to publish nothing of the behaviour, and only the senses that it uses."""
     leaps: bool = False
+    """Whether to skip ticks in which nothing happens."""
     before: Sequence[Callable[[float], None]] = ()
+    """Called at each tick with its time [s], before the parts."""
     options: Mapping[str, Any] = field(default_factory=dict)
+    """Further settings, by the names in the rows of parts."""
 
     @property
     def url(self) -> str:
@@ -59,14 +61,14 @@ class Plan:
 
     @property
     def time(self) -> Clock:
-        """The clock of the robot, else the one of the plan. Raises ValueError if there is none."""
+        """The robot's clock, else the plan's. Raises ValueError if there is neither."""
         clock = self.setup.clock if self.setup else self.clock
         if clock is None:
             raise ValueError("a plan needs a robot or a clock")
         return clock
 
     def meets(self, condition: str) -> bool:
-        """Return whether a condition of a part's row holds (`PartRow.when`)."""
+        """Return whether a condition of a part's row holds (`PartRow.when`). Raises ValueError if it is unknown."""
         kind, _, name = condition.partition(":")
         match kind:
             case "whole":

@@ -1,4 +1,4 @@
-"""Who else belongs to this exhibition: every process says that it is there, and hears who falls silent."""
+"""The processes of an exhibition: each publishes signs of life, and notices when another falls silent."""
 
 import logging
 import os
@@ -19,24 +19,26 @@ from lumen.ports import Bus, Message
 
 PRESENCE_ROUTE = "presence"
 PRESENCE_KEY = DEFAULT_ALIASES[PRESENCE_ROUTE]
-"""Where a process says that it is there if nobody says under which key: the one of a bus with one robot."""
+"""The default key of signs of life: that of a bus with one robot."""
 ROBOT_PART, BRAIN, MOTION, VISITOR = "robot", "brain", "motion", "visitor"
 """The roles that Lumen's own code refers to; `roles` has all of them."""
 PRESENCE_PERIOD = 0.5
-"""How often a process says that it is there [s]."""
+"""Time between two signs of life [s]."""
 LOST_AFTER = 4.0
-"""How long one has to be silent to be lost [s]: a process that hung for 3 s is none."""
+"""Silence after which a process is lost [s]; one that hangs for 3 s is not."""
 PRESENCE_TTL = 2.0
+"""Lifetime of a sign of life on the bus [s]."""
 MAX_PEERS = 100
-"""How many processes are known at most: nobody fills the memory."""
+"""Processes from which those silent for LOST_AFTER are forgotten, to bound the memory."""
 
 ASKS, HERE, LEAVES = "asks", "here", "leaves"
+"""States of a process in its signs of life."""
 
 _log = logging.getLogger(__name__)
 
 
 def roles() -> tuple[str, ...]:
-    """Return the roles that a process can have beside the modules, those of Lumen first."""
+    """Return the roles that a process can have besides the modules, those of Lumen first."""
     return tuple(role for _, role in rows("roles"))
 
 
@@ -52,22 +54,25 @@ def unique_parts() -> tuple[str, ...]:
 
 @dataclass
 class Peer:
-    """Another process: when it was first and last heard of [s, monotonic], and what it said of itself."""
+    """Another process."""
 
     session: str
     parts: tuple[str, ...]
     since: float
+    """When it was first noticed [s, monotonic]."""
     heard: float
+    """When its last sign of life arrived [s, monotonic]."""
     state: str
+    """`asks`, `here` or `leaves`."""
     said: Mapping[str, Any]
+    """The body of its last sign of life."""
 
 
 class Presence:
     """This process among those of one robot's exhibition.
 
-    `tick` says that it is there and returns what has changed: `robot.lost`, `robot.back`, and the same of `motion` and
-    the other modules, each with `seconds`. Until `settle` it asks who is there, and everybody answers at once. `more`
-    is what else it says of itself.
+    Until `settle` it asks who is there, and all others answer at once. `more` returns further fields of its signs of
+    life.
     """
 
     def __init__(
@@ -83,6 +88,7 @@ class Presence:
     ) -> None:
         self.robot, self.parts, self.session = robot, tuple(parts), session or uuid.uuid4().hex[:12]
         self.came: list[Peer] = []
+        """The processes that the last tick noticed first."""
         self._bus, self._key, self._clock, self._more = bus, key, clock, more
         self._state = ASKS
         self._next = 0.0
@@ -95,37 +101,38 @@ class Presence:
 
     @property
     def settled(self) -> bool:
+        """Whether it has been settled and has not left."""
         return self._state == HERE
 
     def settle(self) -> None:
-        """From now on this process is one of them."""
+        """End the claim: this process now has its parts."""
         self._state, self._next = HERE, 0.0
 
     def find(self, part: str) -> Peer | None:
-        """The process that is this part and was heard of lately; the one that has been there longest."""
+        """Return the live process that has a part, None if there is none; the oldest of several."""
         peers = (peer for peer in self._peers.values() if part in peer.parts and peer.state == HERE)
         found = filter(self.alive, peers)
         return min(found, key=lambda p: p.since, default=None)
 
     def get(self, session: str) -> Peer | None:
-        """The process of that session, however long ago it was heard of."""
+        """Return the process of a session, however old its last sign of life is."""
         return self._peers.get(session)
 
     def alive(self, peer: Peer) -> bool:
-        """Whether it was heard of lately."""
+        """Return whether a process has sent a sign of life within LOST_AFTER, and has not left."""
         return self._clock() - peer.heard <= LOST_AFTER and peer.state != LEAVES
 
     def left(self, part: str) -> bool:
-        """Whether the process that was this part last has said that it ends."""
+        """Return whether the process that last had a part has announced its end."""
         peers = [peer for peer in self._peers.values() if part in peer.parts]
         return bool(peers) and max(peers, key=lambda peer: peer.heard).state == LEAVES
 
     def peers(self) -> list[Peer]:
-        """All others that were heard of lately."""
+        """Return all other live processes."""
         return [peer for peer in self._peers.values() if self.alive(peer)]
 
     def rival(self, part: str) -> Peer | None:
-        """Another process that is the same part, and was there before, or asks at the same time and is the first."""
+        """Return another process with the same part that was there before, or asks now with a lower session id."""
         if self.settled:
             return None
         for peer in self.peers():
@@ -135,7 +142,11 @@ class Presence:
         return None
 
     def tick(self) -> list[Event]:
-        """Say that we are there, hear who else is; what has changed, without times. `came` are those newly heard of."""
+        """Send a sign of life when due, and read those of others; return the changes.
+
+        These are `robot.lost`, `robot.back`, and the same of `motion` and the other modules, each with `seconds` and no
+        time.
+        """
         now, self.came = self._clock(), []
         self._excuse(now)
         while self._messages:
@@ -146,14 +157,14 @@ class Presence:
         return self._changes(now)
 
     def _excuse(self, now: float) -> None:
-        """Time in which we did not listen is nobody's silence."""
+        """Add the time in which this process did not listen to the others' last signs of life."""
         stood, self._ticked = now - self._ticked, now
         if stood > PRESENCE_PERIOD:
             for peer in self._peers.values():
                 peer.heard += stood
 
     def close(self) -> None:
-        """Say that we leave; harmless when repeated."""
+        """Announce that this process leaves; harmless when repeated."""
         if self._state != LEAVES:
             self._state = LEAVES
             self._undo()
@@ -193,7 +204,7 @@ class Presence:
         known.parts, known.heard, known.state, known.said = tuple(map(str, parts)), now, state, body
 
     def _changes(self, now: float) -> list[Event]:
-        """What of the robot, the motion module and the others has gone or come back since the last look."""
+        """Return which of the robot, the motion module and the others were lost or came back since the last tick."""
         events = []
         for part in (ROBOT_PART, MOTION, *module_names()):
             if part in self.parts:
@@ -211,5 +222,5 @@ class Presence:
 
 
 def where_it_runs(peer: Peer) -> str:
-    """`process 4711 on stand`, for a line to somebody who looks for it."""
+    """Return where a process runs, as `process 4711 on stand`."""
     return f"process {str(peer.said.get('process', '?'))[:20]} on {str(peer.said.get('host', '?'))[:60]}"

@@ -1,4 +1,4 @@
-"""Visitors' questions: answered from the passages that are known here, else by the module `answers`, else by nobody."""
+"""Visitors' questions: answered from the known passages, else by the module `answers`, else not at all."""
 
 import logging
 from collections import deque
@@ -25,34 +25,35 @@ if TYPE_CHECKING:
 
 ASK_ROUTE, ANSWER_ROUTE = "ask", "answer"
 STRICT = Weights((2.5, 15.0, 5.5), none=6.5, least=0.9)
-"""What holds in a language in which the exhibition has no questions to try it with: about what the shipped ones set."""
+"""Weights for a language without trial questions in the project: about those of the shipped examples."""
 MAX_ANSWERS = 100
-"""Answers that wait for a tick; then the oldest are dropped."""
+"""Answers that wait for a tick; one more drops the oldest."""
 MAX_PASSAGES = 3
-"""How many passages a language model is given."""
+"""Passages that a language model gets."""
 FILLER_AFTER = 1.5
-"""When the filler is said where the project does not say [s]."""
+"""Delay of the filler if the project sets none [s]."""
 SAID = ("text", "language", "source", "confidence", "passage", "more")
-"""What is taken of an answer."""
+"""Fields that are copied from an answer."""
 NOBODY = "no answer was found"
 
 _log = logging.getLogger(__name__)
 
 
 class OpenQuestion(NamedTuple):
-    """A question that the module was asked: what it was offered to raise, and when the filler is due [s]."""
+    """A question that was sent to the module."""
 
     offers: Mapping[str, Any]
+    """Events that the answer may raise, with the schemas of their data."""
     language: str
     filler_at: float
+    """When the filler is due [s], infinite if it is not."""
 
 
 class Questions:
-    """Knows which questions are open; what is found comes as events, at the next tick.
+    """The open questions; answers become events at the next tick.
 
-    Passages are looked up here: that takes less than a millisecond, and no module has to be there for it. `today` is
-    the day on which they have to be true, `offers` gives the events that a language model may raise now. `visit` is
-    the number of the visit. While it is `silenced` by somebody, the module is not asked, and what it says is ignored.
+    Passages are searched here: that takes less than a millisecond and needs no module. `visit` counts the visits.
+    `today` returns the date on which they must be valid, `offers` the events that a language model may raise now.
     """
 
     def __init__(
@@ -61,6 +62,7 @@ class Questions:
         self._bus, self._today, self._offers = bus, today, offers
         self.visit, self._home = 0, ""
         self.silenced = ""
+        """Who silenced the module, else empty; while set, it is not asked, and its answers are ignored."""
         self._fillers: Mapping[str, str] = {}
         self._patience = FILLER_AFTER
         self._open: dict[str, OpenQuestion] = {}
@@ -72,7 +74,7 @@ class Questions:
         self._known: tuple[object, ...] = ()
 
     def listen(self, project: Project) -> None:
-        """Hear what the module `answers` of this project says, where it has one."""
+        """Subscribe to the answers of the project's module `answers`, if it has one."""
         options = project.modules[ANSWERS].options if ANSWERS in project.modules else {}
         filler = options.get("filler") or {}
         self._fillers, self._patience = filler.get("say") or {}, float(filler.get("after", FILLER_AFTER))
@@ -84,11 +86,11 @@ class Questions:
             undo()
 
     def stepped(self, step: Step) -> None:
-        """The behaviour took a step: one that comes home ends a visit."""
+        """Count the visits: a step that enters the home state ends one."""
         self.visit += bool(self._home) and self._home in step.entered
 
     def ask(self, project: Project, id: str, asked: Ask, now: float, origin: MessageOrigin) -> list[Event]:
-        """Begin to find the answer; the events of what is known at once: it, or that nobody knows."""
+        """Search for an answer; return the events that are known at once: the answer, or that there is none."""
         retriever = self._passages(project, asked.language)
         if found := retriever.answer(asked.question, self._weights):
             said = {
@@ -115,20 +117,20 @@ class Questions:
         return []
 
     def cancel(self, id: str) -> bool:
-        """Ignore from now on what is answered under that id; whether it was open."""
+        """Ignore answers to a question from now on; return False if it was not open."""
         return self._open.pop(id, None) is not None
 
     def silence(self, by: str) -> None:
-        """Somebody silences the language model, also in the middle of an answer; or empty, lets it speak."""
+        """Silence the language model for `by`, also in the middle of an answer; an empty `by` lets it speak."""
         self.silenced = by
 
     @property
     def empty(self) -> bool:
-        """Whether nothing has come since it was drained, and nothing comes by itself."""
+        """Whether no answer waits, and no filler is due later."""
         return not self._came and not any(one.filler_at < inf for one in self._open.values())
 
     def drain(self, now: float) -> list[Event]:
-        """What was answered to open questions, each caused by its message; others' answers are a line in the log."""
+        """Return the answers to open questions, each with its message as the cause; log and drop the others."""
         events = []
         while self._came:
             message, at = self._came.popleft()
@@ -165,7 +167,7 @@ class Questions:
         return Event(f"done.command.{id}", None, now)
 
     def _raised(self, id: str, offers: Mapping[str, Any], raised: Any, now: float) -> Event:
-        """What a language model wants to happen, where that was offered and its data fits; else nothing is answered."""
+        """Return the event that a language model raises, if it was offered and its data is valid; else an error."""
         match raised:
             case {"event": str(event), "data": dict(data)} if event in offers:
                 if JsonSchema({"type": "object", **(offers[event] or {})}).fits(data):

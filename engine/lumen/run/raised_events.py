@@ -1,4 +1,4 @@
-"""Events that a person lets happen: each is taken as any other, and whoever asked hears what became of it."""
+"""Events that people raise: they are processed like any other, and the sender gets a report on each."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -14,17 +14,19 @@ from lumen.run.loop import BehaviorLoop, Observer
 from lumen.statechart import Step
 
 _INTERNAL = ("done.", "error.", "cancelled.", "lost.", SHARED_EVENT)
-"""How the names begin of what robots tell themselves or one another: an event of such a name would be taken for it."""
+"""Beginnings of the names of robots' internal events, which an event from a person could be mistaken for."""
 
 Reply = Callable[[Message, Mapping[str, Any]], None]
+"""A function that sends a reply to a message."""
 
 
 def person_in(message: Message) -> str:
-    """Return the person that the message names in `by`, else the program that sent it."""
+    """Return the person that a message names in `by`, else the program that sent it."""
     return str(message.body.get("by") or message.sender or UNNAMED_PROGRAM)[:MAX_NAME]
 
 
 def refusal(reason: str) -> dict[str, Any]:
+    """Return the verdict of a refused request."""
     return {"verdict": "refused", "reason": reason}
 
 
@@ -34,9 +36,9 @@ class _Raised(NamedTuple):
 
 
 class RaisedEvents(Observer):
-    """Lets events happen for who asks; `reply` is called with what became of each.
+    """A raiser of events on request; `reply` is called with the outcome of each.
 
-    An event is known again by its very cause, which no other has.
+    An event is recognised by its cause object, which no other event has.
     """
 
     def __init__(self, loop: BehaviorLoop, reply: Reply) -> None:
@@ -45,7 +47,7 @@ class RaisedEvents(Observer):
         self._data = EventData(loop.project)
 
     def happen(self, message: Message, now: float) -> None:
-        """Let the event in that message, or of the button that it names, happen in this tick, or refuse it."""
+        """Raise the event in a message, or of the button that it names, in this tick, or refuse it."""
         body = message.body
         if body["ask"] == PRESS.ask:
             loop = self._loop
@@ -74,7 +76,7 @@ class RaisedEvents(Observer):
         self._loop.happen(event)
 
     def look(self) -> None:
-        """Say of those that were not stepped that they were not: they wait for approval, or nothing waits any more."""
+        """Report the events without a step: those that wait for approval, and those that were lost."""
         for one in tuple(self._open):
             held = (held for held in self._loop.runtime.approvals.waiting if held.event.cause is one.cause)
             if id := next((held.id for held in held), ""):
@@ -86,6 +88,7 @@ class RaisedEvents(Observer):
             self._open.clear()
 
     def stepped(self, step: Step) -> None:
+        """Report whether the step of a raised event took a transition."""
         for one in self._open:
             if step.event and step.event.cause is one.cause:
                 self._open.remove(one)

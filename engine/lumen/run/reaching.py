@@ -1,4 +1,4 @@
-"""The bus of an exhibition that runs somewhere else: a broker, or the door of one on this machine."""
+"""The bus of an exhibition that runs elsewhere: a broker, or the local address of an embedded bus."""
 
 import os
 from pathlib import Path
@@ -20,25 +20,25 @@ from lumen.run.one_robot import one_robot, robots_of
 
 
 class Reached(NamedTuple):
-    """A running exhibition's bus, its robot, the keys under which that takes commands, and its broker's address.
-
-    `home` is what the robot's own folder is called where the project has `robots:`.
-    """
+    """The bus of a running exhibition, and what is needed to use it."""
 
     bus: Bus
     robot: str
     command: str
+    """Key on which the robot receives commands."""
     stop: str
+    """Key on which it receives stops."""
     broker: str = ""
+    """Address of the broker, empty for an embedded bus."""
     home: str = ""
+    """Name of the robot's own folder if the project has `robots:`."""
 
 
 def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> Reached:
-    """The bus of the exhibition of a project (default: the one here or above), which `bus` may be the address of.
+    """Connect to the exhibition of a project (default: the one here or above); `bus` may be its bus's address.
 
-    Of several robots it is that of `robot`; without a name of the first that runs here, else of the first.
-
-    Raises BusError, saying what to do, where none is found.
+    Of several robots it is that of `robot`; by default the first that runs here, else the first. Raises BusError, with
+    advice, if none is found.
     """
     root = running_project(project)
     wanted = one_robot(root, robot)
@@ -61,18 +61,17 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
 
 
 def robots_meant(project: str | None) -> list[str]:
-    """The robots of `robots:` that run on this machine, all of them where none does; none for one `robot:`."""
+    """Return the robots of `robots:` that run on this machine, or all if none does; nothing for one `robot:`."""
     root = running_project(project)
     robots = robots_of(root, None)
     return [name for name in robots if _running(root, name)] or list(robots)
 
 
 def _running(root: Path, robot: str = "") -> dict[str, Any] | None:
-    """What the exhibition of this project that is running on this machine has said of itself; None where none runs.
+    """Return what the exhibition of this project that runs on this machine has published; None if none runs.
 
-    Of several robots it is that of `robot`, where one is named.
-
-    An address that a killed run has left behind counts for nothing: nobody holds its home any more.
+    Of several robots it is that of `robot`, if one is given. An address left by a killed run is ignored, because no
+    process holds its home any more.
     """
     for home in (*homes_of(root), *homes()):
         found = _said(home)
@@ -82,7 +81,7 @@ def _running(root: Path, robot: str = "") -> dict[str, Any] | None:
 
 
 def runs_here(root: Path) -> bool:
-    """Whether an exhibition of the project in that folder is running on this machine."""
+    """Return whether an exhibition of the project in that folder is running on this machine."""
     return _running(root) is not None
 
 
@@ -99,12 +98,12 @@ def _same_folder(one: object, other: Path) -> bool:
 
 
 def _home(found: dict[str, Any] | None) -> str:
-    """What the folder of the robot that runs is called, empty where it has none of its own."""
+    """Return the name of the running robot's folder, empty if it has none of its own."""
     return str(found.get("home", "")) if found else ""
 
 
 def _robot(root: Path, found: dict[str, Any] | None, home: str) -> str:
-    """The robot's name, as the exhibition says, else as lumen.yaml does despite its errors."""
+    """Return the robot's name from the exhibition, else from lumen.yaml, even if that has errors."""
     if found and isinstance(found.get("robot"), str):
         return str(found["robot"])
     settings = main_settings(root, home)
@@ -112,7 +111,7 @@ def _robot(root: Path, found: dict[str, Any] | None, home: str) -> str:
 
 
 def _keys(root: Path, found: dict[str, Any] | None, home: str) -> tuple[str, str]:
-    """The keys for commands and for what stops, as the exhibition says, else as lumen.yaml does despite its errors."""
+    """Return the keys for commands and stops from the exhibition, else from lumen.yaml, even if that has errors."""
     if found and isinstance(found.get("command"), str) and isinstance(found.get("stop"), str):
         return found["command"], found["stop"]
     settings = main_settings(root, home)

@@ -1,4 +1,4 @@
-"""Steps of a run that is over, or of longer ago than a running one remembers: taken again from the journal."""
+"""Steps of an ended run, or older than a running one remembers: replayed from the journal."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,15 +22,15 @@ from lumen.statechart import Snapshot, Step
 
 NOT_ASKED = "no running exhibition was asked"
 MAX_FILES = 8
-"""Of a run that many files before the moment asked about are read, some hours each."""
+"""Files of a run, up to the requested moment, that are read; some hours each."""
 
 
 def answer_from_journal(
     project: str | None, question: str, what: str, at: str | None, why: str, robot: str = ""
 ) -> dict[str, Any]:
-    """The answer of the run that was begun last before `at` (ISO 8601).
+    """Return an answer from the last run that began before `at` (ISO 8601).
 
-    Raises UsageError, saying what to do, where there is none; `why` says why no running exhibition was asked.
+    Raises UsageError, with advice, if there is none; `why` is the reason in it why no running exhibition was asked.
     """
     root = running_project(project)
     robot = one_robot(root, robot)
@@ -41,23 +41,23 @@ def answer_from_journal(
 
 
 def why(what: str = "", path: str | None = None, at: str | None = None) -> dict[str, Any]:
-    """Why something happened in the last run of a project, as `lumen why --format json` prints it.
+    """Return why something happened in the last run of a project, as `lumen why --format json` prints it.
 
-    `path` is the project's folder, else that here or above; `at` an ISO 8601 time until which it happened. Raises
-    UsageError, saying what to do, where it did not, or no journal is kept.
+    `path` is the project's folder, by default the one here or above; `at` is an ISO 8601 time until which to look.
+    Raises UsageError, with advice, if it did not happen or no journal is kept.
     """
     return answer_from_journal(path, WHY.ask, what, at, NOT_ASKED)
 
 
 def why_not(what: str, path: str | None = None, at: str | None = None) -> dict[str, Any]:
-    """Why something did not happen in the last run of a project; as `why`."""
+    """Return why something did not happen in the last run of a project. Arguments and errors are those of `why`."""
     return answer_from_journal(path, WHY_NOT.ask, what, at, NOT_ASKED)
 
 
 def recalled(root: Path, until: float | None = None, robot: str = "") -> Iterator[RecordedStep]:
-    """The steps of the project's last run that began before `until` [s since 1970, in UTC], as far as they are kept.
+    """Yield the kept steps of the project's last run that began before `until` [s since 1970, in UTC].
 
-    A story lives at a time of its own: it is meant where nothing is asked of a time, or nobody's visit was before that.
+    A story runs on a date of its own, so it is used only without `until`, or if no visit began before it.
     """
     found = sorted(headers(home_of(root, robot) / JOURNAL_FOLDER), key=lambda row: row[1].began)
     visits = [row for row in found if until is not None and not row[1].story and row[1].began <= until]
@@ -77,7 +77,7 @@ def recalled(root: Path, until: float | None = None, robot: str = "") -> Iterato
 
 
 class _Standing:
-    """Turns what was replayed into recorded steps: jumps into reloads, keyframes into nothing."""
+    """A converter of replayed entries to recorded steps: a jump becomes a reload, a keyframe nothing."""
 
     def __init__(self, kept: KeptBundles) -> None:
         self._kept = kept

@@ -1,4 +1,4 @@
-"""Controllers that are on, as far as they move no joint: fed by messages and the context, they speak for themselves."""
+"""Controllers that move no joints: messages and the context are their inputs, signals and events their outputs."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -15,17 +15,17 @@ from lumen.statechart import Snapshot
 
 
 class Regulated(NamedTuple):
-    """What controllers ask for: commands to perform, events to happen."""
+    """The output of controllers: commands to perform, and events to raise."""
 
     commands: tuple[Command, ...]
     events: tuple[Event, ...]
 
 
 class Regulation:
-    """Switches regulators on and off, and lets them hear the bus and the behaviour's context.
+    """The regulators that are on, with their inputs from the bus and the behaviour's context.
 
-    It is where the behaviour is, in one process or several: what a controller changes of a context is an event, which
-    is taken, observed and kept as every other.
+    It runs beside the behaviour, in one process or several: a controller changes a context by an event, which is
+    processed, observed and recorded like any other.
     """
 
     def __init__(self, project: Project, bus: Bus) -> None:
@@ -36,7 +36,7 @@ class Regulation:
         self.reload(project)
 
     def reload(self, project: Project) -> None:
-        """Go on with another bundle: a controller that is on and has changed goes on with what it knew and told."""
+        """Switch to another bundle; a controller that is on and has changed keeps its inputs and past outputs."""
         self._project = project
         for name, before in list(self._on.items()):
             controller = project.controllers.get(name)
@@ -48,7 +48,7 @@ class Regulation:
         self._listen()
 
     def switch(self, track: Track) -> None:
-        """Switch a controller on or off; one that is on already goes on, one that only moves joints is not for us."""
+        """Switch a controller on or off; ignore one that is on already, or that only moves joints."""
         if not track.on:
             self._on.pop(track.controller, None)
         elif track.controller not in self._on:
@@ -58,7 +58,7 @@ class Regulation:
         self._listen()
 
     def tick(self, now: float, snapshot: Snapshot) -> Regulated:
-        """Take what has come in; what is to be told at `now` [s]."""
+        """Read the inputs, and return the outputs that are due at `now` [s]."""
         for route, message in self._inbox.taken():
             for regulator in self._on.values():
                 regulator.take(route, message.body)
@@ -76,12 +76,12 @@ class Regulation:
         return Regulated(tuple(commands), tuple(events))
 
     def _listen(self) -> None:
-        """Hear the routes of the controllers that are on."""
+        """Subscribe to the routes of the controllers that are on."""
         self._inbox.listen(self._project, {name for regulator in self._on.values() for name in regulator.routes})
 
 
 def whole_fields(project: Project) -> frozenset[RouteField]:
-    """The fields to which controllers of the project are bound that hold integers only, by their messages' schemas."""
+    """Return the message fields with bindings that hold only integers, by their schemas."""
     bound = {
         (signal.route, *signal.path)
         for controller in project.controllers.values()
@@ -92,7 +92,7 @@ def whole_fields(project: Project) -> frozenset[RouteField]:
 
 
 def _schema(project: Project, field: RouteField) -> Mapping[str, Any]:
-    """What the schema of its messages says of a field, nothing where it says nothing."""
+    """Return the schema of a message field, empty if there is none."""
     route, *path = field
     row = project.routes.get(route)
     schema = schema_at(project.messages.get(row.schema) if row else None, path)
@@ -100,7 +100,7 @@ def _schema(project: Project, field: RouteField) -> Mapping[str, Any]:
 
 
 def _contexts(snapshot: Snapshot) -> Iterator[Mapping[str, Any]]:
-    """The context of a behaviour, then those of the behaviours that it has invoked."""
+    """Yield the context of a behaviour, then those of the behaviours that it invoked."""
     yield snapshot.context
     for child in snapshot.invoked.values():
         yield from _contexts(child.snapshot)

@@ -1,1 +1,1 @@
-"""What a node ticks: the robot, the visitor, the modules, the brain, or what stands for one in another process."""
+"""The parts that a node ticks: robot, visitor, modules and brain, or proxies for those in other processes."""

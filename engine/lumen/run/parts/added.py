@@ -20,7 +20,7 @@ _log = logging.getLogger(__name__)
 
 
 class AddedPart(Part, Observer):
-    """Passes everything on to `own`, a part that a row of a package made.
+    """A wrapper that passes every call on to `own`, a part made by a row of a package.
 
     After a fault that part is closed and gets no more calls. `stopped` is then called once with the part's name and its
     package, and with a sentence about the fault. Raises TypeError if `own` is no part.
@@ -107,7 +107,7 @@ class AddedPart(Part, Observer):
         self._call(lambda: self._watcher.troubled(trouble), None)
 
     def _call(self, call: Callable[[], T], otherwise: T) -> T:
-        """Return what a call of the part returns, or `otherwise` if the part is stopped, or is stopped by this call."""
+        """Return the result of a call; return `otherwise` if the part is stopped, or this call stops it."""
         if not self._running:
             return otherwise
         try:

@@ -1,4 +1,4 @@
-"""The brain: the behaviour, among whoever else is there."""
+"""The brain: the part that runs the behaviour."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -14,12 +14,13 @@ from lumen.run.presence import BRAIN, Presence
 from lumen.run.resuming import FreshStart, Resumption
 
 RUN_BEFORE, ENGINE = "the run before", "the engine"
+"""Names of the ones who ask for rest when no person does."""
 
 
 class BrainPart(Part):
-    """Runs the behaviour on a robot of this process.
+    """The part that runs the behaviour on a robot of this process.
 
-    `recover` returns how the behaviour begins: where the run before ended, or anew. `hold` is that of the robot.
+    `recover` returns how the behaviour begins: where the previous run ended, or from the start. `hold` is the robot's.
     """
 
     name = BRAIN
@@ -81,7 +82,7 @@ class BrainPart(Part):
         self._narrator.line("robot", f"rests, because no person could stop it any more: {reason}")
 
     def rest(self, by: str) -> None:
-        """Let the robot rest, as somebody wants it, and tell the behaviour to stop."""
+        """Make the robot rest at the wish of `by`, and raise `stop` in the behaviour."""
         if self._hold:
             self._hold.stop(by)
         else:
@@ -92,7 +93,7 @@ class BrainPart(Part):
         yield self._narrator.counted()
 
     def _resume(self, found: Resumption) -> None:
-        """Go on where the run before ended."""
+        """Continue where the previous run ended."""
         states = ", ".join(sorted(innermost(self.project.machine, found.snapshot.configuration)))
         self._narrator.note(
             f"The last run {'was ended' if found.told else 'ended unexpectedly'} {found.away:.0f} s ago: "
@@ -102,5 +103,5 @@ class BrainPart(Part):
         self.behavior.loop.resume(self._regained(found))
 
     def _regained(self, found: Resumption) -> Resumption:
-        """What is left to go on with on this robot, which has forgotten what was under way."""
+        """Return what can be resumed on this robot, which no longer knows the unfinished commands."""
         return found

@@ -1,4 +1,4 @@
-"""Commands that come from outside of the behaviour: told, and kept in the journal."""
+"""Commands from outside the behaviour, reported in the transcript and the journal."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -14,9 +14,9 @@ WHO = "command"
 
 
 class ForeignCommands(CommandListener):
-    """Tells of the commands that a robot gets over the bus, and of those that it refuses.
+    """A listener that reports a robot's commands from the bus, and the refused ones.
 
-    `record` keeps an entry of the journal.
+    `record` writes an entry of the journal.
     """
 
     def __init__(self, narrator: Narrator, record: Callable[[Mapping[str, Any]], None] = lambda _: None) -> None:
@@ -39,7 +39,7 @@ class ForeignCommands(CommandListener):
 
 
 def words(command: RobotCommand) -> str:
-    """What a robot does by a command, as the transcript has it."""
+    """Return a command in the words of the transcript."""
     match command:
         case Say(text):
             return f"says “{text}”"

@@ -1,4 +1,4 @@
-"""Whom the memory has forgotten all others forget, also while they stand there."""
+"""The forgetting of a person in every process, after the memory module has forgotten them, also during their visit."""
 
 import logging
 from collections import deque
@@ -14,18 +14,18 @@ from lumen.upkeep.drops import DropLog
 
 ROUTE = "forgotten"
 MAX_PENDING_NAMES = 100
-"""Names that wait at a time; what comes then is dropped, and told."""
+"""Names that may wait; further ones are dropped, which is reported."""
 FORGETTING_SPACING = 2.0
-"""How long after one name the next is looked for in all files [s]: who sends a thousand names keeps nobody busy."""
+"""Time between two names [s]: each is searched for in all files, and a flood of names must not block the process."""
 
 _log = logging.getLogger(__name__)
 
 
 class ForgettingPart(Part):
-    """Has what this process remembers and has written down forget somebody: each of `forget` is called with the name.
+    """The part that makes this process forget a person: it calls each of `forget` with the name.
 
-    One name at a time, and one that waits already not twice. It stands before the brain, whose `needs` it has where
-    there is one.
+    Names are handled one at a time, and a name that already waits is not queued again. The part precedes the brain, and
+    has the brain's `needs` if there is one.
     """
 
     patient = True
@@ -48,7 +48,7 @@ class ForgettingPart(Part):
             self._forget_next()
 
     def close(self) -> None:
-        """Forget whoever still waits."""
+        """Forget the names that still wait."""
         self._unsubscribe()
         self._gather()
         while self._waiting:

@@ -1,4 +1,4 @@
-"""A robot whose brain is gone does not stand there as it was left: it rests."""
+"""The guard of a robot: if its brain is gone, the robot rests."""
 
 from collections.abc import Callable
 
@@ -9,14 +9,14 @@ from lumen.ports import Robot
 from lumen.run.presence import BRAIN, HERE, LEAVES, LOST_AFTER, ROBOT_PART, Peer, Presence, where_it_runs
 
 BRAIN_TIMEOUT = 5.0
-"""How long a brain may be silent before its robot rests [s]."""
+"""Silence of the brain after which its robot rests [s]."""
 
 
 class BrainGuard:
-    """Watches over the brain that the robot follows; `follows` is its session, empty where there is none.
+    """A watch over the brain that the robot follows.
 
-    A brain that comes back, or another one, is told by `notice` for how long nobody was there (`brain.lost`). A robot
-    that itself stood still for so long that its brain has lost it rests before it does anything else.
+    When a brain comes back or replaces it, `notice` gets `brain.lost` with the time without one. A robot whose own
+    process was paused for so long that its brain lost it rests first.
     """
 
     def __init__(
@@ -28,15 +28,16 @@ class BrainGuard:
         clock: Callable[[], float],
     ) -> None:
         self.follows = ""
+        """Session of the followed brain, empty if there is none."""
         self._robot, self._presence, self._notice, self._tell, self._clock = robot, presence, notice, tell, clock
         self._last: float | None = None
         self._resting = False
         self._ticked, self._woke = clock(), 0.0
 
     def tick(self, now: float) -> None:
-        """Look after the brain at `now` [s] on the robot's clock.
+        """Check the brain at `now` [s] on the robot's clock.
 
-        Raises BusError where the robot stood still, and another process has taken its place.
+        Raises BusRefusedError if this process was paused and another one has taken the robot's place.
         """
         at = self._clock()
         if at - self._ticked > LOST_AFTER:
@@ -61,7 +62,7 @@ class BrainGuard:
             self._robot.start("guard", Rest())
 
     def _wake(self, at: float) -> None:
-        """What it was doing is nobody's wish any more."""
+        """Make the robot rest after a pause of its process, because its commands are out of date."""
         self._woke = at
         if self.follows:
             self._tell(f"rests: its process was paused for {at - self._ticked:.1f} s")

@@ -28,7 +28,7 @@ from lumen.upkeep.threads import WatchedThread
 
 
 class HostedRobotPart(RobotPart):
-    """A robot whose brain is in another process; it rests if that one is gone for long.
+    """A robot whose brain is in another process; it rests if the brain is gone for long.
 
     `noticed` is called with each event that the robot notices or answers.
     """
@@ -59,22 +59,22 @@ class HostedRobotPart(RobotPart):
 
     @property
     def follows(self) -> str:
-        """The session of the brain that it obeys."""
+        """The session of the brain that it obeys, empty if there is none."""
         return self._guard.follows if self._guard else ""
 
     def stopped(self) -> bool:
-        """Whether a person stopped it."""
+        """Return whether a person stopped it."""
         return self.server.hold.stopped is not None
 
     @property
     def said(self) -> dict[str, str]:
-        """The fields of its presence: the brain that it obeys, the person who stopped it, and the time of that."""
+        """The fields of its presence: the brain that it obeys, the person who stopped it, and when."""
         stopped = self.server.hold.stopped
         held = {"stopped_by": stopped.by, "stopped_at": stopped.since.isoformat()} if stopped else {}
         return {"follows": self.follows, **held}
 
     def forget(self, person: PersonName) -> None:
-        """Have what names somebody taken out of the journal, by a thread that no tick waits for."""
+        """Remove a person from the journal on another thread, so that no tick waits for it."""
         WatchedThread("lumen-forgetting", lambda: self._journal.forget(person)).start()
 
     def begin(self, now: float) -> None:
@@ -121,7 +121,7 @@ class HostedRobotPart(RobotPart):
             self.robot.close()
 
     def _follow(self, now: float) -> None:
-        """Look after the brain; one that is new to a robot that a person stopped is told so."""
+        """Check the brain; send `stop` to a new one if a person has stopped the robot."""
         assert self._guard
         before = self.follows
         self._guard.tick(now)
@@ -129,7 +129,7 @@ class HostedRobotPart(RobotPart):
             self._host.notice(Event("stop", {"by": stopped.by}, now))
 
     def record(self, entry: Mapping[str, Any]) -> None:
-        """Keep an entry in the journal of the robot's process."""
+        """Write an entry of the journal of the robot's process."""
         self._journal.write(entry)
 
     def is_brains(self, id: str) -> bool:
@@ -151,7 +151,7 @@ class HostedRobotPart(RobotPart):
 
 
 class _CommandsOfOthers(ForeignCommands):
-    """Tells the commands of the brain that the robot obeys from those of others."""
+    """A listener that separates the commands of the followed brain from others."""
 
     def __init__(self, narrator: Narrator, part: HostedRobotPart) -> None:
         super().__init__(narrator, part.record)
@@ -166,7 +166,7 @@ class _CommandsOfOthers(ForeignCommands):
 
 
 def stopped_there(presence: Presence) -> StoppedBy | None:
-    """Who stopped a robot that is in this process or another one, by what that says of itself."""
+    """Return who stopped a robot in this process or another one, from its presence; None if no one did."""
     peer = presence.find(ROBOT_PART)
     said = peer.said if peer else {}
     try:

@@ -1,4 +1,4 @@
-"""That a person stopped the robot, kept for a run after a crash."""
+"""The person who stopped the robot, saved for a run after a crash."""
 
 from datetime import datetime
 from pathlib import Path
@@ -11,12 +11,13 @@ STOPPED_FILE = "stopped.json"
 
 
 class KeptHold(CommandListener):
-    """Keeps in a folder who stopped the robot, for the run after a crash."""
+    """A listener that saves in a folder who stopped the robot, for the run after a crash."""
 
     def __init__(self, folder: Path) -> None:
         self._home = Home(folder)
 
     def held(self, stopped: StoppedBy | None) -> None:
+        """Save who stopped the robot, or delete the file when it is released."""
         if stopped:
             self._home.write_json(STOPPED_FILE, {"by": stopped.by, "since": stopped.since.isoformat()})
         else:
@@ -29,12 +30,12 @@ class KeptHold(CommandListener):
 
 
 def forget_hold(folder: Path) -> None:
-    """Let the next run in this folder begin with a robot that may move."""
+    """Delete the saved hold, so that the next run begins with a robot that may move."""
     Home(folder).remove(STOPPED_FILE)
 
 
 def kept_hold(home: Home) -> StoppedBy | None:
-    """Return the person who had stopped the robot when the run before ended; None if it was not stopped."""
+    """Return the person who had stopped the robot when the previous run ended; None if it was not stopped."""
     found = home.read_json(STOPPED_FILE)
     try:
         return StoppedBy(str(found["by"]), datetime.fromisoformat(found["since"]))

@@ -1,4 +1,4 @@
-"""A module of an exhibition: memory, eyes, ears, voice, social or show, without knowing who else is there."""
+"""A module of an exhibition: memory, eyes, ears, voice, social or show, independent of the other parts."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -21,10 +21,10 @@ from lumen.run.presence import Presence
 
 
 def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Module:
-    """Return a module that has not begun; it keeps its files in `folder`, or none if that is None.
+    """Return a module that has not begun; its files are in `folder`, None for no files.
 
-    Raises UsageError if there is no such module, ModuleError if it lacks something that it needs,
-    LumenError with the name of the installed package if its code is faulty.
+    Raises UsageError if there is no such module, ModuleError if it lacks something that it needs, LumenError with the
+    name of the installed package if its code is faulty.
     """
     modules = table("modules")
     if name not in modules:
@@ -41,17 +41,17 @@ def make_module(name: str, project: Project, bus: Bus, tell: Callable[[str], Non
 
 
 EYES_TIMEOUT = 60.0
-"""How long a tick waits for the eyes at most [s], where the machine has much else to do."""
+"""Longest wait of a tick for the eyes on a busy machine [s]."""
 OWN_OPTIONS = ("camera", "window", "robots")
-"""Options of eyes that are about the robot of the project."""
+"""Options of the eyes that apply only to the project's own robot."""
 
 
 class ModulePart(Part):
-    """One of the modules, on a thread of its own; it needs nobody, and hears whoever comes.
+    """A module on a thread of its own; it needs no other part, and handles messages from any sender.
 
-    Where it is `awaited` each tick waits for the eyes: what they see does not depend on the machine. Eyes may serve
-    several robots (`Project.served`): then there is one module for each, and each robot's exhibition sees it. Faces
-    that it learns for another robot last as long as the process. Raises ModuleError where it can't work here.
+    With `awaited` each tick waits for the eyes, so that what they see does not depend on the machine's speed. Eyes may
+    serve several robots (`Project.served`): then there is one module for each, visible to that robot's exhibition.
+    Faces learned for another robot are lost with the process. Raises ModuleError if it can't work here.
     """
 
     def __init__(
@@ -90,7 +90,7 @@ class ModulePart(Part):
                 module.settle(EYES_TIMEOUT)
 
     def use(self, project: Project) -> None:
-        """Go on with this bundle; which robots are served is said at the start."""
+        """Switch to a bundle; the set of served robots is fixed at the start."""
         own = next(iter(self._modules), "")
         for robot, module in self._modules.items():
             self._done(partial(module.use, project if robot == own else _of_another(project, robot)))
@@ -124,7 +124,7 @@ def _add_count(lines: list[str], what: str, module: Module) -> None:
 
 
 def _of_another(project: Project, robot: str) -> Project:
-    """The project of another robot, whose own camera is looked through, and which no window here shows."""
+    """Return the project with another robot, whose eyes use that robot's own camera and show no window here."""
     settings = project.modules[EYES]
     options = {key: value for key, value in settings.options.items() if key not in OWN_OPTIONS}
     return replace(project, robot=robot, modules={**project.modules, EYES: replace(settings, options=options)})

@@ -1,4 +1,4 @@
-"""What modules say on the bus that they can't do."""
+"""Reports of troubles that modules publish on the bus."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -10,10 +10,11 @@ from lumen.ports import Bus, Message
 from lumen.run.parts.part import Part
 
 MAX_PENDING_TROUBLES = 100
+"""Troubles that may wait for a tick; one more drops the oldest."""
 
 
 class ModuleTroublesPart(Part):
-    """Tells line by line what modules can't do; those of this process, `own`, say so themselves."""
+    """The part that prints the troubles of modules in other processes; those of this process, `own`, print theirs."""
 
     patient = True
 

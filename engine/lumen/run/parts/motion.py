@@ -1,4 +1,4 @@
-"""The motion module's process, Lumen Motion: motions by name, and the head that follows what it sees."""
+"""The motion module's process, Lumen Motion: motions by name, and a head that follows what it sees."""
 
 import logging
 from collections import deque
@@ -19,14 +19,16 @@ from lumen.run.tracking import LocalTracking
 from lumen.upkeep.threads import MessageGuard
 
 WAITING = 1_000
+"""Requests that may wait for a tick; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
 
 class MotionPart(Part):
-    """Sends the keyframes of the motions that the brain names to the robot, and aims its head by the controllers.
+    """The part that sends the robot the keyframes of the requested motions, and aims its head by the controllers.
 
-    Controllers are off again when the brain is gone, or the robot is another: whoever comes back says what is wanted.
+    Controllers go off when the brain is gone, and a brain that returns requests them again. They restart with another
+    robot.
     """
 
     name = MOTION

@@ -1,4 +1,4 @@
-"""What operators ask of an exhibition that runs: how it is, and to enter a state."""
+"""Operators' requests to a running exhibition: its status, its past, decisions, and direct entry of a state."""
 
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
@@ -50,37 +50,40 @@ from lumen.statechart import Step
 from lumen.statechart.direct_entry import entered_directly
 
 DIRECT_ENTRY = "operator.goto"
-"""The event of a step that an operator wanted."""
+"""The event of a step that an operator requested by `goto`."""
 EARS_LOST = f"{EARS}.lost"
 MAX_PENDING_REQUESTS = 100
+"""Requests that may wait for a tick; one more drops the oldest."""
 NOTHING_RECORDED = "the bus is not recorded: `record: {ring: 10min}` in lumen.yaml keeps the last 10 minutes"
 MAX_NOTE = 300
-"""Characters of a mark, or a note."""
+"""Longest text of a mark or a note, in characters."""
 MAX_STATE = 200
-"""Characters of the name of a state."""
+"""Longest name of a state, in characters."""
 Responder = Callable[[Message, float], dict[str, Any]]
-"""Answers a valid request at a time [s]."""
+"""A function that answers a valid request at a time [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunState:
-    """The state of the run: who stopped the robot, the share of real time, the last reload, the own modules."""
+    """The state of the run, as functions that return it."""
 
     stopped: Callable[[], StoppedBy | None]
+    """Returns who stopped the robot, None if no one did."""
     realtime: Callable[[], float]
+    """Returns the share of real time."""
     reloaded: Callable[[], LastReload | None] = lambda: None
+    """Returns the last reload, None if there was none."""
     modules: Callable[[], Sequence[Mapping[str, Any]]] = tuple
+    """Returns the status of each of the project's own modules."""
 
 
 class OperatorPart(Part, Observer):
-    """Answers `lumen status` and `lumen goto` between two steps; it stands before the brain, whose `needs` it has.
+    """The part that answers operators between two steps; it precedes the brain, and has the brain's `needs`.
 
-    What is asked of the past, `lumen why`, is answered on another thread, from `steps` that it keeps, and from what
-    `journal` writes.
-
-    `records` keep an entry of the journal, and what people decided. The folder `kept` has what outlives the run:
-    whether the language model is silenced. `marking` returns the answer to a mark,
-    which the recorder hears by itself; empty where nothing is recorded.
+    Questions about the past (`lumen why`) are answered on another thread, from its `steps` and from the journal that
+    `journal` writes. `records` keeps journal entries and people's decisions. The folder `kept` has what outlasts the
+    run: whether the language model is silenced. `marking` returns the answer to a mark, which the recorder receives by
+    itself; it is empty if nothing is recorded.
     """
 
     patient = True
@@ -107,7 +110,7 @@ class OperatorPart(Part, Observer):
         self.steps = StepMemory(lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None)
         self._journal = journal
         self._answering = AnsweringThread(self._bus, self.steps.steps, journal)
-        self._pages = AnsweringThread(self._bus, list, journal)  # who watches waits for no `why`
+        self._pages = AnsweringThread(self._bus, list, journal)  # so that consoles do not wait for a `why`
         self._undo = self._bus.subscribe(operator_key(behavior.project.robot), self._came.append)
         self._view = NowView()
         self._doings = Doings(
@@ -142,7 +145,7 @@ class OperatorPart(Part, Observer):
             self._since = step.snapshot.at
 
     def _heed(self, message: Message) -> None:
-        """Whether the ears listen, and why; they say so as it changes."""
+        """Store whether the ears listen and why; they publish each change."""
         match message.body:
             case {"listening": bool(listening), "because": str(because)}:
                 self._ears = {"listening": listening, "because": because}
@@ -181,19 +184,19 @@ class OperatorPart(Part, Observer):
         self._pages.close()
 
     def recover(self, kept: Any, *, resumed: bool) -> None:
-        """Go on with what people had decided in the run before, where this one goes on from there."""
+        """Restore people's decisions of the previous run, if this run resumes it."""
         self._decisions.recover(kept, resumed=resumed)
 
     def status(self) -> dict[str, Any]:
-        """How the exhibition is, as JSON data."""
+        """Return the state of the exhibition as JSON data."""
         return self._status()()
 
     def now(self) -> dict[str, Any]:
-        """How the exhibition is, and what it can do next, as JSON data."""
+        """Return the state of the exhibition and the possible next events as JSON data."""
         return self._view.tell(self._moment())
 
     def _status(self) -> Callable[[], dict[str, Any]]:
-        """Makes the status as it is now, whenever and wherever it is called."""
+        """Return a function that computes the status of this moment, later and on any thread."""
         loop = self._behavior.loop
         return partial(
             status_of,
@@ -222,7 +225,7 @@ class OperatorPart(Part, Observer):
         )
 
     def _reply(self, message: Message, answer: Mapping[str, Any]) -> None:
-        with suppress(BusError):  # who asked is gone
+        with suppress(BusError):  # the bus is closed, so no reply can be sent
             self._bus.reply(message, answer)
 
     def _mark(self, message: Message, _: float) -> dict[str, Any]:
@@ -235,13 +238,13 @@ class OperatorPart(Part, Observer):
         return {"verdict": "done"}
 
     def _note(self, message: Message, what: str) -> None:
-        """Keep the words of a person or a program in the journal."""
+        """Write a text of a person or a program to the journal."""
         text = message.body.get("text")
         words = text[:MAX_NOTE] if isinstance(text, str) else ""
         self._behavior.loop.runtime.note(**{what: words, "by": person_in(message)})
 
     def _goto(self, message: Message, now: float) -> dict[str, Any]:
-        """Enter a state; with `only: check` say what that would leave and enter."""
+        """Enter a state; with `only: check` just return what that would leave and enter."""
         state, by, only = message.body["state"][:MAX_STATE], person_in(message), message.body.get("only") == "check"
         loop = self._behavior.loop
         event = Event(DIRECT_ENTRY, {"by": by, "state": state}, now, cause=Cause("person", sender=by))

@@ -20,21 +20,22 @@ from lumen.run.presence import HERE, LEAVES, PRESENCE_PERIOD, PRESENCE_ROUTE, PR
 from lumen.upkeep.supervised_process import END_TIMEOUT, SupervisedProcess
 
 DEFAULT_HEALTH = 5.0
-"""The longest time between two signs of life of a program that runs elsewhere, if lumen.yaml has none [s]."""
+"""Longest time between two signs of life of a program, if lumen.yaml has none [s]."""
 START_TIMEOUT = 30.0
-"""The time until the first sign of life of a program that is started here; longer if its `health` is longer [s]."""
+"""Longest time until the first sign of life of a program started here [s]; its `health` if that is longer."""
 STEADY = 2.0
-"""A program without signs of life is found again when it has run for so long after a loss [s]."""
+"""Time that a program without signs of life must run after a loss to count as found [s]."""
 MAX_PENDING_PRESENCES = 1_000
+"""Signs of life that may wait for a tick; one more drops the oldest."""
 BUS_VARIABLE, PROJECT_VARIABLE = "LUMEN_BUS", "LUMEN_PROJECT"
 ROBOT_VARIABLE, MODULE_VARIABLE = "LUMEN_ROBOT", "LUMEN_MODULE"
-"""The environment of a program that is started here: the bus, or without an address the project that has it."""
+"""The environment of a program that is started here: the bus, or without its address the project to find it by."""
 
 
 class OwnModulePart(Part):
-    """Watches one program; `happen` gets `NAME.lost` and `NAME.found`.
+    """The part that watches one program; `happen` gets `NAME.lost` and `NAME.found`.
 
-    `bus_url` is the address of the bus, empty if only this machine can reach it. `clock` counts real time [s].
+    `bus_url` is the address of the bus, empty if only this machine can reach it. `clock` returns real time [s].
     """
 
     def __init__(
@@ -66,7 +67,7 @@ class OwnModulePart(Part):
 
     @property
     def status(self) -> dict[str, Any]:
-        """How it is, as `lumen status` shows it: `here`, `lost` or `awaited`, since when, and why it was lost."""
+        """Its state for `lumen status`: `here`, `lost` or `awaited`, since when, and why it was lost."""
         state = "lost" if self._lost_at is not None else "here" if self._heard >= 0 or self._running else "awaited"
         return {"module": self.name, "state": state, "since": iso_time(self._since), "reason": self._reason or None}
 
@@ -103,7 +104,7 @@ class OwnModulePart(Part):
         return self._process is not None and self._process.running
 
     def _supervise(self) -> str:
-        """Start the program if it is time to, print its lines; return why it has ended, empty if it has not."""
+        """Start the program when due, and print its lines; return why it ended, empty if it did not."""
         if self._process is None:
             return ""
         began = self._process.began
@@ -121,7 +122,7 @@ class OwnModulePart(Part):
             self._tell(self.name, line)
 
     def _listen(self, clock: float) -> None:
-        """Note the signs of life that have come."""
+        """Read the signs of life that arrived."""
         while self._came:
             match self._came.popleft().body:
                 case {"robot": self._robot, "parts": list(parts), "state": str(state), "session": str(session)} if (
@@ -130,11 +131,11 @@ class OwnModulePart(Part):
                     self._heard, self._gone, self._known = clock, state == LEAVES, True
 
     def _alive(self, clock: float) -> bool:
-        """Whether nothing shows that the program is gone; one that was never heard of is only awaited."""
+        """Return whether nothing indicates that the program is gone; one that has never appeared is only awaited."""
         if self._process and not self._settings.health:
             return self._running or self._lost_at is None
         if self._gone and self._running:
-            return clock - self._heard <= END_TIMEOUT  # it ends in its own time
+            return clock - self._heard <= END_TIMEOUT  # it has announced its end, and gets time for it
         if not self._known or self._gone:
             return not self._known
         health = self._settings.health or DEFAULT_HEALTH
@@ -162,7 +163,7 @@ class OwnModulePart(Part):
         self._happen(Event(f"{self.name}.lost", {"seconds": seconds, "reason": reason}))
 
     def _find(self, clock: float) -> None:
-        """Note that the program is there; after a loss only if it sent a sign of life, or has run for a while."""
+        """Note that the program is there; after a loss only once it sends a sign of life, or has run for STEADY."""
         if self._lost_at is None:
             self._alive_at = clock
             return
@@ -195,7 +196,7 @@ class OwnModulePart(Part):
             return  # the bus reports that it is gone
 
     def _environment(self, folder: Path, bus_url: str) -> Mapping[str, str]:
-        """Return the environment of the program: `python3` is this Python, and its prints come at once."""
+        """Return the program's environment: `python3` is this Python, and its output is not buffered."""
         found = dict(os.environ)
         found.pop(BUS_VARIABLE, None)
         path = f"{os.path.dirname(sys.executable)}{os.pathsep}{found.get('PATH', os.defpath)}"
@@ -205,5 +206,5 @@ class OwnModulePart(Part):
 
 
 def statuses(parts: Sequence[Part]) -> list[dict[str, Any]]:
-    """Return how the project's own modules among these parts are."""
+    """Return the status of the project's own modules among these parts."""
     return [part.status for part in parts if isinstance(part, OwnModulePart)]

@@ -1,4 +1,4 @@
-"""What a node is made of."""
+"""The base class of a node's parts."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import inf
@@ -10,20 +10,23 @@ from lumen.run.resuming import FreshStart, Resumption
 
 
 class Part:
-    """Something that lives in a node's loop; it begins when the parts that it `needs` are there.
+    """Something in a node's loop; it begins when the parts that it `needs` are there.
 
-    What a part does not care about it leaves as it is here: nothing. A `patient` one does nothing by itself but look
-    whether something has come or is over: that may wait for NAP. One that `watches` is an `Observer` of the behaviour.
+    A method that a subclass does not override does nothing.
     """
 
     name = ""
+    """The role that it gives its process, empty for none."""
     needs: Sequence[str] = ()
+    """Parts that must be there before it begins."""
     patient = False
+    """Whether it only waits for inputs, which may be delayed by NAP."""
     watches = False
+    """Whether it is an `Observer` of the behaviour."""
 
     @property
     def over(self) -> bool:
-        """Whether the node has nothing more to do."""
+        """Whether the node can end."""
         return False
 
     @property
@@ -33,7 +36,7 @@ class Part:
 
     @property
     def trouble(self) -> str:
-        """Why what the part should keep can't be written; empty if nothing is lost."""
+        """Why its data can't be saved; empty if nothing is lost."""
         return ""
 
     @property
@@ -42,36 +45,36 @@ class Part:
         return {}
 
     def begin(self, now: float) -> None:
-        """What it needs is there, at `now` [s]."""
+        """Called at `now` [s], when what it needs is there."""
 
     def recovered(self, found: Resumption | FreshStart) -> None:
-        """Hear how the behaviour begins, and so how the last run ended."""
+        """Called with how the behaviour begins, and so how the previous run ended."""
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
-        """Live until `now` [s]; `changes` tell who of the other processes was lost or came back."""
+        """Run until `now` [s]; `changes` are the losses and returns of other processes."""
 
     def noticed(self, event: Event) -> None:
-        """Hear of an event of a robot in this process whose brain is in another one, or nowhere."""
+        """Called with an event of a robot in this process whose brain is in another one or missing."""
 
     def quiet_until(self, now: float) -> float:
-        """Until when nothing happens in it unless something happens elsewhere [s]; `now` where nobody knows."""
+        """Return until when nothing happens in it without an input [s]; `now` if that is unknown."""
         return inf if self.patient else now
 
     def leap(self, now: float) -> None:
-        """It is `now` [s] after a time in which nothing happened."""
+        """Set its time to `now` [s] after an interval in which nothing happened."""
 
     def use(self, project: Project) -> None:
-        """Go by another bundle from now on."""
+        """Switch to another bundle."""
 
     def interrupt(self) -> bool:
-        """What Ctrl-C asks for; true where another one has to end it."""
+        """Handle the first Ctrl-C; return True if the run must continue until a second one."""
         return False
 
     def helpless(self, reason: str) -> None:
-        """Nobody can reach this process any more: what moves has to rest."""
+        """Make the robot rest, because no person can reach this process any more."""
 
     def part_stopped(self, part: str) -> None:
-        """Another part, which a package added, could not be made, or failed and was stopped.
+        """Called when another part, added by a package, could not be made, or failed and was stopped.
 
         `part` is its name and its package.
         """
@@ -81,8 +84,8 @@ class Part:
         return ""
 
     def summary(self) -> Iterator[str]:
-        """What is said of it at the end, a line each."""
+        """Yield the lines that it prints at the end."""
         return iter(())
 
     def close(self) -> None:
-        """End what has threads, files or windows open."""
+        """Close its threads, files and windows."""

@@ -1,4 +1,4 @@
-"""A brain whose robot is in another process: the robot is on the bus."""
+"""A brain whose robot is in another process, reached over the bus."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -25,12 +25,12 @@ from lumen.run.setup import Setup
 from lumen.run.tracking import LocalTracking
 
 SESSION = "brain.json"
-"""Where a brain keeps under which sessions its commands travel, for the one that goes on after it."""
+"""File with the sessions of a brain's commands, for a brain that resumes the run."""
 GONE = "the connection to the robot is lost"
 
 
 class RemoteBody:
-    """A robot on the bus, with the tracking that the motion module does for it where there is one."""
+    """A robot on the bus, with tracking by the motion module if there is one."""
 
     def __init__(self, project: Project, bus: ValidatedBus, clock: Clock, presence: Presence) -> None:
         self._presence = presence
@@ -55,7 +55,7 @@ class RemoteBody:
         adopt: Callable[[Project], None],
         refuse: Callable[[RobotCommand], str] = lambda _: "",
     ) -> LiveBehavior:
-        """The behaviour on this robot; whether it was away is a matter of real time, as for the robot."""
+        """Return the behaviour on this robot; as for the robot, an absence is measured in real time."""
         setup = Setup(self.robot, self._clock, None, tracking=self.tracking)
         found = LiveBehavior(project, setup, bus, story, adopt=adopt, refuse=refuse)
         found.loop.patience *= speed
@@ -63,7 +63,7 @@ class RemoteBody:
         return found
 
     def motion_module(self) -> str:
-        """The session of the motion module that has the files that run here, empty where there is none."""
+        """Return the session of the motion module if it runs the same files, else an empty string."""
         if MOTION in self._presence.parts:
             return self._presence.session
         peer = self._presence.find(MOTION)
@@ -71,10 +71,10 @@ class RemoteBody:
 
 
 class RemoteHold(Observer):
-    """Predicts whether a robot in another process refuses to move because a person stopped it.
+    """A predictor of whether a robot in another process refuses to move because a person stopped it.
 
     `stopped` returns the state that the robot's process publishes, which may be a second old. In doubt a command is
-    sent, and the robot decides. A hand on the robot's head allows movement again.
+    sent, and the robot decides. A touch of the robot's head allows movement again.
     """
 
     def __init__(self, stopped: Callable[[], StoppedBy | None]) -> None:
@@ -85,13 +85,13 @@ class RemoteHold(Observer):
             self._let = event.name != "stop"
 
     def refuse(self, command: RobotCommand) -> str:
-        """Return the reason why the robot will refuse this command; empty if it may accept it."""
+        """Return why the robot will refuse this command; empty if it may accept it."""
         stopped = None if self._let or not row_of(command).moves else self._stopped()
         return stopped.reason if stopped else ""
 
 
 class RemoteBrainPart(BrainPart):
-    """Runs the behaviour on a robot that is somewhere else; it ends where that one follows another brain."""
+    """The part that runs the behaviour on a robot in another process."""
 
     needs = (ROBOT_PART,)
 
@@ -118,7 +118,7 @@ class RemoteBrainPart(BrainPart):
             self._home.write_json(SESSION, said)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
-        """Live through a tick. Raises BusRefusedError where the robot follows another brain."""
+        """Run one tick. Raises BusRefusedError if the robot follows another brain."""
         if self._lost:
             self.robot.lose(GONE)
             self._lost = False
@@ -127,7 +127,7 @@ class RemoteBrainPart(BrainPart):
         super().tick(now, changes)
 
     def rest(self, by: str) -> None:
-        """Let the robot rest, which tells the behaviour of it; where there is none, that is told here."""
+        """Make the robot rest, which reports that to the behaviour; without a robot, raise `stop` here."""
         if self._others.find(ROBOT_PART) is None:
             self.behavior.loop.happen(Event("stop", {"by": by}))
         self.robot.start("operator", Rest(by))
@@ -136,14 +136,14 @@ class RemoteBrainPart(BrainPart):
         self.robot.close()
 
     def _regained(self, found: Resumption) -> Resumption:
-        """What was under way is asked of the robot."""
+        """Request the robot's answers to unfinished commands, and keep only those as lost whose session is unknown."""
         self._earlier = self._sessions(found.lost)
         for id, session in self._earlier.items():
             self.robot.recover(session, [id])
         return found._replace(lost=tuple(id for id in found.lost if id not in self._earlier))
 
     def _sessions(self, ids: Sequence[str]) -> dict[str, str]:
-        """Under which sessions those commands travelled: the last brain's, or that of one before it."""
+        """Return the sessions under which these commands were sent: of the last brain, or of an earlier one."""
         data: Any = self._home.read_json(SESSION) if self._home else None
         match data:
             case {"session": str(last), **more}:
@@ -153,7 +153,7 @@ class RemoteBrainPart(BrainPart):
         return {}
 
     def _follow(self) -> None:
-        """See which robot there is, and whom it follows."""
+        """Check which robot is there and which brain it follows. Raises BusRefusedError if that is another one."""
         robot = self._others.find(ROBOT_PART)
         if robot is None:
             return

@@ -1,4 +1,4 @@
-"""The robot: its senses on the bus, and a face detector where the hall around it is simulated."""
+"""The robot: its senses on the bus, and a face detector if the hall around it is simulated."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -27,27 +27,24 @@ from lumen.run.setup import Setup
 
 @dataclass(frozen=True, slots=True)
 class RunBefore:
-    """The traces of the previous run.
-
-    `kept` holds the robot if a person had stopped it. `begun` is the file of the commands that are not performed again.
-    """
+    """Traces of the previous run."""
 
     kept: KeptHold | None = None
+    """Holds the robot if a person had stopped it."""
     begun: Path | None = None
+    """File of the commands that must not be performed again."""
 
 
 NO_RUN = RunBefore()
 
 
 class RobotPart(Part, Observer):
-    """A robot that the brain of this node commands directly; modules command it through `server`.
+    """A robot that this node's brain commands directly; modules command it through `server`.
 
-    `listeners` hear of the commands that come from elsewhere.
-
-    It watches the brain's loop: what the robot says and answers is on the bus, too. On a bus of its own a tick waits
-    until its readings are published, so that a run is the same each time, and publishes them itself if time goes as
-    fast as it can. A `silent` one publishes only those senses that the behaviour hears of,
-    as events or by controllers.
+    `listeners` are notified of commands from elsewhere. The part observes the brain's loop, and publishes the robot's
+    speech and answers. On a bus of its own a tick waits until the readings are published, so that runs are
+    reproducible, and publishes them itself at unlimited speed. A `silent` robot publishes only the senses that the
+    behaviour uses, as events or in controllers.
     """
 
     name = ROBOT_PART
@@ -90,7 +87,8 @@ class RobotPart(Part, Observer):
         self._look(now)
 
     def quiet_until(self, now: float) -> float:
-        server = self.server  # where nobody is told what it senses, only controllers ask, and the brain knows of these
+        """Return when a sense is next due; `now` while the robot, a face or a waiting command needs every tick."""
+        server = self.server  # if silent, only controllers read senses, and the brain ticks for them
         if server.waiting or (self.faces and self.faces.busy) or not is_idle(self.robot):
             return now
         return inf if self._silent else max(now, server.due)
@@ -114,7 +112,7 @@ class RobotPart(Part, Observer):
 
     @property
     def said(self) -> dict[str, str]:
-        """The fields of its presence."""
+        """The fields that it adds to its presence: none."""
         return {}
 
     def summary(self) -> Iterator[str]:
@@ -127,7 +125,7 @@ class RobotPart(Part, Observer):
             self.robot.close()
 
     def _sensed(self, project: Project) -> Project:
-        """The project with the routes of the senses that are published."""
+        """Return the project with only the routes of the senses that are published."""
         if not self._silent:
             return project
         read = {
@@ -143,7 +141,7 @@ class RobotPart(Part, Observer):
         return replace(project, routes=routes)
 
     def _look(self, now: float) -> None:
-        """Detect the visitor's face, unless somebody with eyes does."""
+        """Detect the visitor's face, unless a process with eyes does."""
         if self.faces is None:
             return
         if self._presence and EYES not in self._presence.parts:
@@ -152,7 +150,7 @@ class RobotPart(Part, Observer):
 
 
 class Urgency(CommandListener):
-    """Ends the wait of a robot's clock if a message came that stops the robot."""
+    """A listener that ends the wait of a robot's clock when a stop arrives."""
 
     def __init__(self, setup: Setup) -> None:
         self._setup = setup
@@ -162,6 +160,6 @@ class Urgency(CommandListener):
 
 
 def _counted(item: tuple[str, PublishCounts]) -> str:
-    """`1204 joint (3 dropped)`."""
+    """Return a count of published readings, as `1204 joint (3 dropped)`."""
     sense, count = item
     return f"{count.published} {sense}" + (f" ({count.dropped} dropped)" if count.dropped else "")

@@ -1,4 +1,4 @@
-"""The visitor: walks, speaks and touches in a simulated hall, as a story says or as somebody makes them do."""
+"""The visitor: walks, speaks and touches in a simulated hall, by a story or by commands."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import inf
@@ -22,9 +22,9 @@ from lumen.run.visitor import VisitorActor
 
 
 class VisitorPart(Part):
-    """A visitor in a hall of this process; `player` plays the story that there may be, which `environment` is about.
+    """A visitor in a hall of this process; `player` plays the story, if there is one, in `environment`.
 
-    `tell` hears what the visitor does because the story says so.
+    `tell` is called with what the visitor does in the story.
     """
 
     name = VISITOR
@@ -64,9 +64,9 @@ class VisitorPart(Part):
 
 
 class RemoteVisitorPart(VisitorPart):
-    """A visitor in a hall that is simulated in another process, and what they see of the robot there.
+    """A visitor in a hall that is simulated in another process.
 
-    `telling` is whether what they see is told here, where no brain in this process does.
+    With `telling` the transcript here shows what the visitor sees of the robot, because no brain in this process does.
     """
 
     needs = (ROBOT_PART, BRAIN)
@@ -102,6 +102,7 @@ class RemoteVisitorPart(VisitorPart):
         super().use(project)
 
     def see(self, states: frozenset[str], entered: Sequence[str], context: Mapping[str, Any], place: str = "") -> None:
+        """Print the states that were entered."""
         if inner := list(innermost(self._project.machine, frozenset(entered))):
             self._narrator.states.update(inner)
             self._narrator.line("state", ", ".join(inner))

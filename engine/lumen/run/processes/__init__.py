@@ -1,1 +1,1 @@
-"""An exhibition in processes of its own: robot, brain, motion and visitor, which know each other by the bus alone."""
+"""An exhibition in separate processes: robot, brain, motion and visitor, which communicate only over the bus."""

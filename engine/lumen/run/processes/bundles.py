@@ -1,4 +1,4 @@
-"""The files of the other processes follow the brain's: what it has made active is loaded here too."""
+"""Files of the other processes, which follow the brain's: a bundle that it activates is loaded here too."""
 
 import queue
 import sys
@@ -19,13 +19,14 @@ from lumen.run.watcher import SWITCH_INTERVAL
 from lumen.upkeep.threads import WatchedThread
 
 MOVED = ("applied", "rolled back")
+"""Verdicts after which the brain runs another bundle."""
 
 
 class BundleFollower(Part):
-    """Hears what becomes of the saved files of the brain of that project's robot, and loads them on its own thread.
+    """The part that loads the bundles which the brain of the project's robot activates, on its own thread.
 
-    `use` is called with each bundle that was loaded, `tell` with a line if the files here differ from those of the
-    brain: another machine may have others.
+    `use` is called with each loaded bundle, `tell` with a line if the files here differ from the brain's: another
+    machine may have others.
     """
 
     patient = True
@@ -67,7 +68,7 @@ class BundleFollower(Part):
             usual = sys.getswitchinterval()
             sys.setswitchinterval(SWITCH_INTERVAL)
             try:
-                files = self._files(wanted)  # what the brain has not judged is not read here
+                files = self._files(wanted)  # only files that the brain has accepted are read
                 project = check_files(self._root, files)[0] if files else None
                 if project is not None:
                     analyse(project.motions.values(), project.body)
@@ -81,7 +82,7 @@ class BundleFollower(Part):
                 self._loaded.put(missed)
 
     def _files(self, wanted: str) -> Mapping[str, bytes] | None:
-        """The files of that hash: in the project's folder, or among those that a brain on this machine keeps."""
+        """Return the files with a hash: from the project's folder, or from those that a brain on this machine keeps."""
         files = read_files(self._root, self._robot)
         if fingerprint(files) == wanted:
             return files
@@ -89,7 +90,7 @@ class BundleFollower(Part):
         return as_robot(kept, self._robot) if kept else None
 
     def _latest(self) -> str | None:
-        """The newest hash that is wanted, None at the end; waits for one."""
+        """Wait for a wanted hash; return the newest, None at the end."""
         wanted = self._wanted.get()
         while wanted is not None and not self._wanted.empty():
             wanted = self._wanted.get()

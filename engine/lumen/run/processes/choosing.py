@@ -1,4 +1,4 @@
-"""Which parts of an exhibition a process is to be."""
+"""The choice of the parts of an exhibition that a process runs."""
 
 from lumen.errors import UsageError
 from lumen.language.diagnostics import did_you_mean
@@ -6,7 +6,7 @@ from lumen.run.presence import ROBOT_PART, all_parts, roles
 
 
 def parts_of(only: str | None, robot: str) -> tuple[str, ...]:
-    """The parts that this process is to be; none where it is to be a whole exhibition. Raises UsageError."""
+    """Return the parts that this process runs, none for a whole exhibition. Raises UsageError for an invalid choice."""
     if only is None:
         return tuple(part for part in roles() if part != ROBOT_PART) if robot == "remote" else ()
     parts = tuple(dict.fromkeys(word.strip() for word in only.split(",") if word.strip()))

@@ -1,4 +1,4 @@
-"""What is known here of a robot that does not answer: how its last run ended, and who had stopped it."""
+"""What this machine knows about a robot that does not answer: how its last run ended, and who had stopped it."""
 
 from pathlib import Path
 from typing import Any
@@ -10,10 +10,10 @@ from lumen.run.snapshot_store import SnapshotStore
 
 
 def last_run(root: Path, robot: str) -> dict[str, Any]:
-    """How a robot of the project in `root` is that does not answer, as JSON data.
+    """Return the state of a robot that does not answer, as JSON data; `root` is the project's folder.
 
-    `held` is whether a process of this machine has its home all the same. `ended` is when its last run was last known
-    to live (ISO 8601), `told` whether the system had told it to end; None and false where nothing is left of it.
+    `held` is whether a process of this machine still has its home. `ended` is the last known moment of its last run
+    (ISO 8601), None if unknown. `told` is whether the system had ordered that end.
     """
     home = Home(home_of(root, robot))
     kept, stopped = SnapshotStore(home).kept(), kept_hold(home)

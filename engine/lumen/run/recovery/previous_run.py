@@ -1,4 +1,4 @@
-"""How a start goes on with the run before, which nobody meant to end; on newer files that is a reload."""
+"""The continuation of a previous run that ended unexpectedly; with newer files it is a reload."""
 
 import time
 from dataclasses import replace
@@ -19,7 +19,7 @@ from lumen.run.snapshot_store import SNAPSHOT_VERSION, SnapshotStore, StoredSnap
 from lumen.statechart import deserialize
 
 LATELY = 600.0
-"""How old a snapshot may be to be gone on with [s]: after that, whoever spoke with the robot has left."""
+"""Age of a snapshot up to which it is resumed [s]; after that the visitor has left."""
 
 AT_REST = "The robot was at rest, and stays at rest until you hold its head or run `lumen resume`."
 
@@ -27,14 +27,14 @@ _UNKNOWN = Refusal("its files were not kept")
 
 
 class Recovery(NamedTuple):
-    """How it is gone on with, or begun; and what is news of it."""
+    """How a run continues or begins, with the reports of a reload that this was."""
 
     how: Resumption | FreshStart
     news: tuple[ReloadReport, ...] = ()
 
 
 def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
-    """How the run that these records of the project in `root` tell of is gone on with under `project`."""
+    """Return how the run in these records of the project in `root` continues under `project`, or why it begins anew."""
     keeper = records.keeper
     kept = keeper.kept() if keeper else None
     if keeper is None or kept is None:
@@ -59,19 +59,19 @@ def recover(root: Path, records: RunRecords, project: Project) -> Recovery:
 
 
 def how_ended(kept: StoredSnapshot) -> str:
-    """`ended unexpectedly`, for a line to a person."""
+    """Return how a run ended, as `ended unexpectedly`, for a line to a person."""
     return "was ended" if kept.told else "ended unexpectedly"
 
 
 def rested(records: RunRecords) -> FreshStart:
-    """A beginning that asks for nothing of the run before, but whether the robot was at rest."""
+    """Return a beginning that ignores the previous run, except that the robot stays at rest if it was."""
     kept = records.keeper.kept() if records.keeper else None
     rests = kept.rests if kept else bool(records.keeper and records.keeper.of_another_version()[1])
     return FreshStart(AT_REST if rests else "", rests)
 
 
 def _after_another(keeper: SnapshotStore) -> FreshStart:
-    """How to begin where another Lumen may have written down where the behaviour stood."""
+    """Return how to begin if another version of Lumen may have written the snapshot."""
     version, rests = keeper.of_another_version()
     why = (
         f"The last run ended unexpectedly, under another version of Lumen (its snapshot has version {version}, "
@@ -92,7 +92,7 @@ def _resumed(old: Project, new: Project, kept: StoredSnapshot, away: float) -> R
 
 
 def _before(root: Path, keeper: SnapshotStore, kept: StoredSnapshot, project: Project) -> Project | None:
-    """The bundle that ran, None where it was not kept. Raises ProjectError where this Lumen can't read it."""
+    """Return the bundle that ran, None if it was not kept. Raises ProjectError if this version can't read it."""
     old: Project | None = project
     if kept.bundle != project.hash:
         files = keeper.files(kept.bundle)
@@ -111,7 +111,7 @@ def _news(old: Project, new: Project, how: Resumption | Refusal, took: float) ->
 
 
 def _ago(seconds: float) -> str:
-    """`12 s ago`, `5 min ago`, `3 h ago`."""
+    """Return an age in words: `12 s ago`, `5 min ago`, `3 h ago`."""
     if seconds < 0:
         return "in the future, by this machine's clock"
     for unit, name in ((3600.0, "h"), (60.0, "min")):

@@ -1,4 +1,4 @@
-"""The journal of inputs of an exhibition that begins: where it is written, and which files it needs kept."""
+"""The journal of inputs of an exhibition that begins: where it is written, and which files it needs."""
 
 from pathlib import Path
 
@@ -16,17 +16,17 @@ from lumen.run.snapshot_store import SnapshotStore
 from lumen.upkeep.private_folder import private_folder
 
 REHEARSED = JournalRetention(keep=7.0, size=50.0)
-"""How much is kept of what stories and programs played."""
+"""How much is kept of runs by stories and programs."""
 
 
 def record_inputs(
     behavior: LiveBehavior, records: RunRecords, *, story: Story | None, rehearsed: bool
 ) -> JournalWriter:
-    """Have it kept from now on what happens to a behaviour, by the writer that is returned.
+    """Record a behaviour's inputs from now on; return the writer of the journal.
 
-    What visitors did is in the home of the run that has it. What a story or a program plays is `rehearsed`, and beside
-    it: nobody's visit is pushed out by it. Where the project wants no journal, the last of it is in memory alone, and
-    what there was is deleted.
+    Visits are kept in the home of the run that holds it. Runs by a story or a program are `rehearsed` and kept in a
+    separate folder, so that they do not replace visits. If the project wants no journal, only the last part is kept, in
+    memory, and the existing files are deleted.
     """
     files = _files(behavior.project, rehearsed=rehearsed) if rehearsed or records.keeper else None
     writer = JournalWriter(files, story=story.name if story else "", rehearsed=rehearsed)
@@ -36,7 +36,7 @@ def record_inputs(
 
 
 def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
-    """Where it is written, None where nothing is to be kept."""
+    """Return where the journal is written, None if it is not kept."""
     retention = wanted = project.section(JournalRetention)
     folder = home_of(Path(project.root), project.one_of_several) / JOURNAL_FOLDER
     if rehearsed:
@@ -51,13 +51,13 @@ def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
 
 
 def _keep_files(project: Project) -> None:
-    """Keep the files that run, where those that are there now are still the same."""
+    """Store the files of the bundle for replays, if those on disk are still the same."""
     root = Path(project.root)
     home = Home(home_of(root, project.one_of_several))
     try:
         files = read_files(root, project.one_of_several)
         private_folder(home.folder)
     except (OSError, LumenError):
-        return  # then it can't be replayed; the run itself goes on
+        return  # without them the run can't be replayed, but it continues
     if fingerprint(files) == project.hash:
         SnapshotStore(home).store(files)

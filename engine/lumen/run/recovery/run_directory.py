@@ -1,4 +1,4 @@
-"""What a run has in the home of its project: the door to its bus, its records, and what the run before left there."""
+"""A run's files in the home of its project: the address of its bus, its records, and those of the previous run."""
 
 import logging
 import os
@@ -28,15 +28,15 @@ _log = logging.getLogger(__name__)
 
 
 class RunDirectory:
-    """Takes the home of the project in `root`, or of its `robot`, for this run.
+    """The home of the project in `root`, or of its `robot`, while this run holds it.
 
-    `home` is None where another run has it, or none can be. A process without a brain is a guest: it leaves the home to
-    the one that has it. `news` are the reloads that this start was, to be told as soon as somebody can hear it.
+    A process without a brain is a `guest`, and leaves the home to the process that has one.
     """
 
     def __init__(self, root: Path, robot: str = "", *, guest: bool = False) -> None:
         self.root, self.robot, self.taken = root, robot, False
         self.home: Home | None = None
+        """The held home, None if another run holds it or it can't be used."""
         home = Home(home_of(root, robot))
         try:
             if guest:
@@ -50,11 +50,12 @@ class RunDirectory:
         self.records = RunRecords(self.home)
         self._ended = False
         self.news: list[ReloadReport] = []
+        """Reports of the reloads that this start was, published once the bus is open."""
         self._door: LocalBusServer | None = None
         self._bus = ""
 
     def begin(self, project: Project, files: Mapping[str, bytes]) -> None:
-        """The exhibition starts on these files; where none have proved themselves yet, they are the last good ones."""
+        """Store the files that the exhibition starts with; without good ones so far they become the last good ones."""
         if keeper := self.records.keeper:
             kept, good = keeper.kept(), keeper.good()
             keeper.store(files)
@@ -63,7 +64,7 @@ class RunDirectory:
             keeper.prune(project.hash, good, kept.bundle if kept else "")
 
     def ended(self, project: Project) -> None:
-        """The exhibition has ended as it should, on these files."""
+        """Note that the exhibition ended normally with these files."""
         self._ended = True
         self.records.annul()
         if not self.records.died(project.hash):
@@ -71,7 +72,7 @@ class RunDirectory:
 
     @property
     def refused(self) -> str:
-        """The hash of the files that are there, where this start has taken others."""
+        """The hash of the files on disk if this start used others instead, else empty."""
         return next((report.after for report in self.news if report.verdict == "refused"), "")
 
     def reloader(
@@ -82,16 +83,16 @@ class RunDirectory:
         *,
         wake: Callable[[], None] = lambda: None,
     ) -> Reloader:
-        """Return the reloader of this run, which judges saved files in another process; `wake` as it says there."""
+        """Return the reloader of this run, which checks saved files in another process; `wake` is passed on to it."""
         options = replace(options, seen=self.refused)
         return Reloader(behavior, narrator, options, records=self.records, applied=self.announce, wake=wake)
 
     def begin_run(
         self, behavior: LiveBehavior, url: str, reloader: Reloader | None, *, fresh: bool
     ) -> Resumption | FreshStart:
-        """Let others find this run, and tell what was reloaded; how it goes on with the run before, or begins.
+        """Publish the address of this run and its reloads; return how it resumes the previous run, or begins.
 
-        One that begins `fresh` asks for nothing but whether the robot was at rest.
+        With `fresh` the previous run is ignored, except that a robot at rest stays at rest.
         """
         self.open(behavior.loop.bus, url, behavior.project)
         found = rested(self.records) if fresh else self.resumption(behavior.project)
@@ -100,7 +101,7 @@ class RunDirectory:
         return found
 
     def open(self, bus: Bus, url: str, project: Project) -> None:
-        """Let others find this run: by its broker, or through a door to the embedded bus."""
+        """Make this run reachable: by its broker, or through a local server of the embedded bus."""
         self._bus = url
         if self.home and within_process(url):
             try:
@@ -111,7 +112,7 @@ class RunDirectory:
         self.announce(project)
 
     def announce(self, project: Project) -> None:
-        """Say where this run is found, and under which key its robot takes commands."""
+        """Write down the address of this run, and the keys on which its robot receives commands."""
         if self.home is None:
             return
         address = self._door.address if self._door else None
@@ -130,7 +131,7 @@ class RunDirectory:
         self.home.write_json(ADDRESS_FILE, data)
 
     def close(self, *, forget: bool) -> None:
-        """Give it back; `forget` where the run has ended as it should, and there is nothing to go on with."""
+        """Release the home; `forget` deletes the snapshot of a run that ended normally and has nothing to resume."""
         if self.home is None:
             return
         self.records.close()
@@ -146,16 +147,16 @@ class RunDirectory:
         home.release()
 
     def last_good(self) -> Project | None:
-        """The bundle that ran last and was good, None where none was kept.
+        """Return the last good bundle that ran, None if none was kept.
 
-        It was judged, and so were the files that are there now: none of that is read in this process.
+        It is loaded in another process, because files may crash the process that reads them.
         """
         keeper = self.records.keeper
         files = keeper.files(keeper.good()) if keeper else None
         return load_apart(self.root, as_robot(files, self.robot))[0] if files else None
 
     def resumption(self, project: Project) -> Resumption | FreshStart:
-        """How the run before is gone on with under this project, or why it is not."""
+        """Return how the previous run continues under this project, or why it does not."""
         found = recover(self.root, self.records, project)
         self.news += found.news
         return found.how

@@ -1,4 +1,4 @@
-"""Which files a start begins with: those that are there, or the last good ones where those can't be."""
+"""The files that a start uses: the present ones, or the last good ones if those can't be used."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -19,10 +19,11 @@ from lumen.run.watcher import SavedFiles
 def startup_project(
     root: Path, run_directory: RunDirectory, *, last_good: bool, warn: Callable[[str], None] = lambda _: None
 ) -> Project:
-    """The project in that folder; the last good one where it has errors and that is wanted, or ends every start.
+    """Return the project in a folder, or the last good one.
 
-    `warn` hears of what a person has to know. Files are read in another process, which they may end. Raises
-    ProjectError or FatalFilesError where there is none to begin with.
+    The last good one is used if the project has errors and `last_good` is set, or if it crashed at several starts.
+    `warn` is called with lines for the operator. Files are first read in another process, because they may crash it.
+    Raises ProjectError or FatalFilesError if there is none to start with.
     """
     files = read_files(root, run_directory.robot)
     try:
@@ -53,7 +54,7 @@ def _last_good(
     error: ProjectError | FatalFilesError,
     warn: Callable[[str], None],
 ) -> Project:
-    """The last good project in place of files that can't be used."""
+    """Return the last good project, used in place of files that can't be, and warn about it."""
     if isinstance(error, ProjectError):
         warn(_instead_of_yours("THE FILES HAVE ERRORS"))
         return _instead(run_directory, good, hash, "", error.diagnostics)
@@ -64,7 +65,7 @@ def _last_good(
 def _instead(
     run_directory: RunDirectory, good: Project, hash: str, why: str, diagnostics: Sequence[Diagnostic] = ()
 ) -> Project:
-    """The last good project; that it is another is news."""
+    """Return the last good project, and record the refusal of the present files."""
     validation = Validation(SavedFiles({}, (), 0.0, 0.0), hash, None, tuple(diagnostics))
     run_directory.news.append(ReloadReport("refused", START, good.hash, hash, validation=validation, reason=why))
     return good
