@@ -1,4 +1,4 @@
-"""A story played on the recording robot in simulated time, as fast as this machine can, and what came of it."""
+"""A story played on the recording robot in simulated time, as fast as this machine can, and its result."""
 
 import logging
 import threading
@@ -23,27 +23,28 @@ from lumen.run.story import StoryFailure, StoryPlayer
 from lumen.run.story_observations import UnmetExpectation
 
 REMEMBERED = 12
-"""How many lines of what happened last are told with a failure."""
+"""Last lines of the transcript that are kept for a failure."""
 
 
 @dataclass(frozen=True)
 class Rehearsal:
-    """How a story went: `time` is simulated, `took` this machine's time [s].
-
-    Where it failed, `place` is that of the step in the story's file. `trace` tells what happened (where it failed, or
-    where it was asked for): each time [s], who, and what.
-    """
+    """The result of playing a story."""
 
     story: Story
     time: float
+    """Simulated duration [s]."""
     took: float
+    """Duration on this machine [s]."""
     failed: StoryFailure | None = None
+    """How it failed, None if it did not."""
     place: Place | None = None
+    """Place of the failed step in the story's file."""
     trace: tuple[tuple[float, str, str], ...] = ()
+    """The transcript, after a failure or on request: time [s], who, and what."""
 
 
 class RehearsalTrace(Narrator):
-    """Keeps the last lines of what happens, None for all of them: each time [s], who, and what."""
+    """A narrator that keeps the last `remembered` lines, None for all: time [s], who, and what."""
 
     explains = True
 
@@ -67,13 +68,12 @@ def rehearse(
     whole: bool = False,
     real_skills: bool = False,
 ) -> Rehearsal:
-    """Play the story to its end, or to its failure; `chosen` is another robot than the recording one.
+    """Play a story to its end or its failure; `chosen` replaces the recording robot.
 
-    The recording robot keeps its head still: joints and pictures, which no behaviour hears of, are not on its bus.
-    `observers` watch, `hooks` are called at each tick with its time [s]; ticks in which nothing happens are passed
-    over. A behaviour that never comes to rest fails the story, as does whatever else the engine logs as an error; its
-    warnings stand in the trace, which begins where the story does with `whole`.
-    With `real_skills` the recording robot performs skills by their code.
+    The recording robot does not publish joints and pictures, which no behaviour uses, and skips ticks in which nothing
+    happens. `observers` watch the run; `hooks` are called at each tick with its time [s]. The story fails if the
+    behaviour does not come to rest, or if the engine logs an error; warnings are added to the trace, which is complete
+    with `whole`. With `real_skills` the recording robot runs the code of skills.
     """
     setup = chosen or set_up("recording", project, "max", story, real_skills=real_skills)
     trace = RehearsalTrace(setup.clock.now, lambda: services.project.machine, None if whole else REMEMBERED)
@@ -110,9 +110,9 @@ def rehearse(
 
 
 class _Log(logging.Handler):
-    """Takes what the engine logs into the trace; an error fails the story.
+    """A log handler that copies the engine's log to the trace; an error fails the story.
 
-    Beside a running exhibition only this thread's log is the story's, and only the others' is the exhibition's.
+    During a running exhibition, only this thread's records belong to the story, and all others to the exhibition.
     """
 
     def __init__(self, player: StoryPlayer, trace: RehearsalTrace) -> None:
@@ -121,7 +121,7 @@ class _Log(logging.Handler):
         self.thread = 0 if threading.current_thread() is threading.main_thread() else threading.get_ident()
 
     def spares(self, record: logging.LogRecord) -> bool:
-        """Whether a record is none of the story's."""
+        """Return whether a record does not belong to the story."""
         return record.thread != self.thread or not record.name.startswith("lumen")
 
     def emit(self, record: logging.LogRecord) -> None:
@@ -135,7 +135,7 @@ class _Log(logging.Handler):
 
 @contextmanager
 def _logged(player: StoryPlayer, trace: RehearsalTrace) -> Iterator[None]:
-    """While it lasts, the engine's log is the story's and nobody else's."""
+    """Send the engine's log to the story only, until the context ends."""
     log, handler = logging.getLogger("lumen"), _Log(player, trace)
     others = [*logging.getLogger().handlers, logging.lastResort] if handler.thread else []
     before, log.propagate = log.propagate, bool(handler.thread) and log.propagate

@@ -1,4 +1,4 @@
-"""What was reloaded, when, by whom, and what came of it: a line of JSON for each, bounded."""
+"""The journal of reloads: what, when, by whom and with what result, a line of JSON each, of bounded size."""
 
 import json
 import logging
@@ -19,13 +19,13 @@ _log = logging.getLogger(__name__)
 
 JOURNAL_FILE = "journal.jsonl"
 MAX_JOURNAL_BYTES = 1_000_000
-"""After which a new file is begun; the one before is kept, and none older."""
+"""Size after which a new file is begun [bytes]; only the one before is kept."""
 
 
 class Journal:
-    """Appends entries to `journal.jsonl` of a folder; without a folder they are forgotten.
+    """A writer of entries to `journal.jsonl` in a folder; without a folder they are dropped.
 
-    A line is written as a whole. A disk that is full costs the entry, and nothing else.
+    A line is written as a whole. If the disk is full, the entry is lost without an error.
     """
 
     def __init__(self, folder: Path | None) -> None:
@@ -33,7 +33,7 @@ class Journal:
         self._writing = threading.Lock()
 
     def write(self, entry: Mapping[str, Any]) -> None:
-        """Append an entry, with the date and time (UTC) before it."""
+        """Append an entry, preceded by the date and time (UTC)."""
         if self._file is None:
             return
         line = json.dumps({"time": iso_time(time.time(), offset=True), **entry}, ensure_ascii=False)
@@ -44,7 +44,7 @@ class Journal:
                 file.write(line.encode("utf-8", "replace") + b"\n")
 
     def forget(self, person: PersonName) -> None:
-        """Delete the entries that name somebody; any thread may. A disk that can't is logged."""
+        """Delete the entries that name a person, on any thread; a failed write is logged."""
         if self._file is None:
             return
         try:
@@ -55,7 +55,7 @@ class Journal:
             _log.warning("the journal still contains data of a visitor that should be deleted: %s", error)
 
     def entries(self) -> Iterator[dict[str, Any]]:
-        """All that is kept, the oldest first; a line that a crash cut off is left out."""
+        """Yield all kept entries, the oldest first, without lines that a crash cut off."""
         if self._file is None:
             return
         for file in (self._file.with_suffix(".jsonl.1"), self._file):

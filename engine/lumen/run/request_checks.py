@@ -1,4 +1,4 @@
-"""Whether a message is a request of an operator, by the table of requests; if not, what would be right."""
+"""The check of operators' requests against the table of requests, with advice on invalid ones."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from lumen.language.operator_requests import REQUESTS, UNLISTED, OperatorRequest
 
 
 class RequestChecks:
-    """Checks bodies against the schemas of all requests; a schema is compiled when its first request comes."""
+    """A checker of bodies by the schemas of all requests; a schema is compiled for its first request."""
 
     def __init__(self) -> None:
         self._rows = {row.ask: (row, SchemaCheck(row.schema)) for row in REQUESTS}

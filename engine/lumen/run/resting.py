@@ -1,4 +1,4 @@
-"""What lets a robot rest at once: on a way of its own to the robot, and to the behaviour where the robot is gone."""
+"""Commands that make a robot rest at once: to the robot directly, and to the behaviour if the robot is gone."""
 
 from contextlib import suppress
 from typing import Any
@@ -8,28 +8,28 @@ from lumen.ports import Bus
 from lumen.run.reload.requests import COMMAND, command_key
 
 STOP_TIMEOUT = 10.0
-"""How long the robot may take to rest, foot in the air and all [s]."""
+"""How long the robot may take to rest, even with a foot in the air [s]."""
 TAKEN = "command finished"
-"""What a robot answers that has done what it was told."""
+"""A robot's answer after it has executed a command."""
 
 
 def rest_body(by: str) -> dict[str, Any]:
-    """The command, in the name of somebody, for the robot's key `stop`; the robot tells the behaviour."""
+    """Return the command to rest, in the name of `by`, for the robot's key `stop`; the robot notifies the behaviour."""
     return {"type": "motion", "method": "rest", "parameter": {"by": by}}
 
 
 def resume_body(by: str) -> dict[str, Any]:
-    """What lets a robot that was stopped move again; on the same key."""
+    """Return the command that lets a stopped robot move again, for the same key."""
     return {"type": "motion", "method": "resume", "parameter": {"by": by}}
 
 
 def stop_behavior(bus: Bus, robot: str) -> None:
-    """Have the behaviour stop, where nobody of the robot answers; a bus that is away loses it."""
+    """Stop the behaviour if its robot does not answer; without a bus the message is lost."""
     for key in (command_key(robot), COMMAND):
         with suppress(BusError):
             bus.publish(key, {"command": "stop"})
 
 
 def no_robot(key: str) -> str:
-    """What a person is told then."""
+    """Return the line for a person if no robot answers."""
     return f"the robot does not answer on `{key}` and may still move: press the button on its chest"

@@ -1,4 +1,4 @@
-"""A behaviour that goes on after its engine was away: time on another clock, and what became of commands."""
+"""A behaviour that resumes after its engine was away, with a new clock and lost commands."""
 
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
@@ -16,44 +16,45 @@ LOST_COMMAND_REASON = "the engine was restarted while the command was running"
 
 
 class FreshStart(NamedTuple):
-    """A run that does not go on with the one before, and why, where there is something to say.
-
-    `rests` is whether the robot was at rest then: nobody but a person lets it move. `crashed` is whether the one before
-    ended without notice.
-    """
+    """A run that does not continue the previous one."""
 
     why: str = ""
+    """The reason, empty if there is nothing to report."""
     rests: bool = False
+    """Whether the robot was at rest, and stays so until a person lets it move."""
     crashed: bool = False
+    """Whether the previous run ended unexpectedly."""
 
 
 class Resumption(NamedTuple):
-    """How a behaviour goes on: from `snapshot`, with what has to be performed first.
-
-    `lost` are the commands that were under way, `tracking` the controllers that were on, `away` [s] how long the engine
-    was, and `told` whether it had been told to end. `notes` say what somebody could miss.
-    """
+    """How a behaviour resumes."""
 
     snapshot: Snapshot
     away: float
+    """How long the engine was away [s]."""
     commands: tuple[Command, ...] = ()
+    """Commands to perform first."""
     lost: tuple[str, ...] = ()
+    """Ids of the unfinished commands."""
     tracking: tuple[str, ...] = ()
+    """Controllers that were on."""
     notes: tuple[str, ...] = ()
+    """Sentences about what may be missed."""
     told: bool = False
+    """Whether the system had ordered the end."""
 
     def answers(self, now: float) -> list[Event]:
-        """An answer for each command that was under way: the robot has forgotten it."""
+        """Return an answer for each unfinished command, which the robot no longer knows."""
         return [Event(f"lost.command.{id}", {"reason": LOST_COMMAND_REASON}, now) for id in self.lost]
 
 
 def resume(
     old: Project, new: Project, snapshot: Snapshot, away: float, tracking: Iterable[str], unchanged: float = 0.0
 ) -> Resumption | Refusal:
-    """How `new` goes on at time 0 of a new clock from a snapshot of `old`, whose timers went on while it was away [s].
+    """Return how `new` continues from a snapshot of `old` at time 0 of a new clock, or why it can't.
 
-    Before it ended it had stood `unchanged` [s] where the snapshot says.
-    Newer files are a reload that waits for nothing: what was under way has ended anyway.
+    The engine was `away` [s], during which timers ran on; before that the snapshot was `unchanged` for some time [s].
+    Newer files are a reload that waits for nothing, because what was under way has ended anyway.
     """
     later = retimed(paused(snapshot, away)._replace(at=snapshot.at + unchanged + away), 0.0, "remaining")
     verdict = MigrationPlan(later) if old is new else plan(old, new, later, now=True)
@@ -64,7 +65,7 @@ def resume(
 
 
 def anew(project: Project, snapshot: Snapshot, now: float) -> MigrationPlan:
-    """How a project that can't go on from a snapshot begins anew at `now` [s]: with all that fits of its context."""
+    """Return how a project begins anew at `now` [s], keeping the values of the snapshot's context that still fit."""
     checks = type_checks(project.machine)
     kept = {key: value for key, value in snapshot.context.items() if key in checks and fits(value, checks[key])}
     language = snapshot.language if snapshot.language in project.languages else project.languages[0]
@@ -77,7 +78,7 @@ def anew(project: Project, snapshot: Snapshot, now: float) -> MigrationPlan:
 
 
 def _awaited(snapshot: Snapshot) -> Iterator[str]:
-    """The ids of commands, not of waits, as they are called outside."""
+    """Yield the external ids of unfinished commands, without waits."""
     for position in snapshot.doing.values():
         yield from (id for id in awaited(position) if id.startswith("d"))
     for owner, child in snapshot.invoked.items():

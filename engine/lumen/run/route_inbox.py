@@ -1,4 +1,4 @@
-"""What comes on some routes of the bus, in order, until somebody looks: which routes these are may change."""
+"""Messages on some routes of the bus, kept in order until they are read; the routes may change."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -7,10 +7,11 @@ from lumen.language.projects import Project
 from lumen.ports import Bus, Message
 
 MAX_WAITING_MESSAGES = 1000
+"""Messages that may wait; one more drops the oldest."""
 
 
 class RouteInbox:
-    """Messages with the name of their route; of more than `MAX_WAITING_MESSAGES` the newest."""
+    """A queue of the newest `MAX_WAITING_MESSAGES` messages, with the names of their routes."""
 
     def __init__(self, bus: Bus) -> None:
         self._bus = bus
@@ -18,7 +19,7 @@ class RouteInbox:
         self._undo: dict[tuple[str, str], Callable[[], None]] = {}
 
     def listen(self, project: Project, names: Iterable[str]) -> None:
-        """Subscribe to the routes of these names that the project has, and to no others."""
+        """Subscribe to those of the named routes that the project has, and to no others."""
         routes = {name: route for name in names if (route := project.routes.get(name))}
         wanted = {(route.key_for(project.robot), name) for name, route in routes.items()}
         for key, name in sorted(wanted - self._undo.keys()):
@@ -27,7 +28,7 @@ class RouteInbox:
             self._undo.pop(gone)()
 
     def taken(self) -> Iterator[tuple[str, Message]]:
-        """What has come, the oldest first; it is gone then."""
+        """Remove and yield the messages, the oldest first."""
         while self._waiting:
             yield self._waiting.popleft()
 

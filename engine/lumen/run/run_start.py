@@ -1,4 +1,4 @@
-"""The beginning and the end of a run, of one robot or of several: homes, files, and whom an error is reported to."""
+"""The start and the end of a run, of one robot or several: homes, files, and reports of errors to people."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -17,36 +17,36 @@ from lumen.run.recovery.run_directory import RunDirectory
 from lumen.run.recovery.startup import startup_project
 
 WHOLE = (ROBOT_PART, BRAIN)
-"""The parts that an exhibition in one process has in any case."""
+"""The parts that every exhibition in one process has."""
 OUTSIDE = (BusError, RobotError, ModuleError)
-"""Errors of the world: the files are not to blame, so the next start does not count them as a crash."""
+"""Errors of the environment: the files are not to blame, so the next start does not count them as a crash."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunFailure:
-    """An error that ended a run, or one robot of it, before or while it ran.
-
-    `kind` is `start` for a fault of files or of the world, `crashed` for one of code. `text` says no more of the files
-    than a place and a code. `settings` are those that could be read, None if there are none, and `last_good` returns
-    the project that was used last. `tell` prints alerts that could not be sent, and why.
-    """
+    """An error that ended a run, or one robot of it, at its start or later."""
 
     kind: str
+    """`start` for a fault of files or of the environment, `crashed` for one of code."""
     text: str
+    """A description, with only a place and a code from the files."""
     root: Path
     name: str
     robot: str
     parts: tuple[str, ...]
     settings: Settings | None
+    """The settings that could be read, None if none could."""
     last_good: Callable[[], Project | None]
+    """Returns the last good project."""
     tell: Callable[[str], None]
+    """Prints alerts that could not be sent, and why."""
 
 
 class Failures:
-    """Reports errors that end a run, or one robot of it, to people; `close` waits until they have it.
+    """Reports to people of errors that end a run, or one robot of it; `close` waits until they are sent.
 
-    A UsageError is for the person who typed it. `tell` is called with what could not be sent, and why. Without
-    `wanted` nobody is told: what a story plays is no trouble.
+    A UsageError is only for the person at the terminal. `tell` is called with what could not be sent, and why. Without
+    `wanted` nothing is sent, as for stories.
     """
 
     def __init__(
@@ -63,8 +63,8 @@ class Failures:
         self._waiting: list[Callable[[], None]] = []
 
     def report(self, error: Exception, robots: Sequence[str]) -> None:
-        """Report an error that ended these robots, and let their next start go on after an error of the world."""
-        if self._wanted and not isinstance(error, UsageError | BrokenPipeError):  # the latter: nobody reads the output
+        """Report an error that ended these robots; one of the environment does not count as a crash."""
+        if self._wanted and not isinstance(error, UsageError | BrokenPipeError):  # the latter: the reader has gone
             for feature, where in rows("failures"):
                 try:
                     if wait := called(feature, where, self._failure(error, robots)):
@@ -76,6 +76,7 @@ class Failures:
                 self._directories[robot].records.annul()
 
     def close(self) -> None:
+        """Wait until all reports are sent."""
         for wait in self._waiting:
             wait()
 
@@ -85,7 +86,7 @@ class Failures:
         name = (settings and settings.name) or self._root.name
         robot = ", ".join(filter(None, robots)) or (settings.robot if settings else "NAO")
         kind, text = "start", f"it could not start or continue: {_why(error)}" if isinstance(error, LumenError) else ""
-        if not isinstance(error, LumenError):  # the message of a fault of ours may contain anything
+        if not isinstance(error, LumenError):  # the message of an internal error may contain private data
             where = f"the package {package}" if (package := package_at_fault(error)) else "Lumen"
             kind, text = "crashed", f"it ended because of a fault in {where} ({type(error).__name__})"
         parts, last_good = tuple(self._parts), directory.last_good
@@ -94,7 +95,7 @@ class Failures:
 
 @dataclass(frozen=True, slots=True)
 class BegunRun:
-    """The homes and the projects of the robots of a run, by name; the name is empty if the project has one robot."""
+    """The homes and projects of a run's robots, by name; the name is empty if the project has one robot."""
 
     root: Path
     directories: Mapping[str, RunDirectory]
@@ -112,10 +113,10 @@ def started(
     alerted: bool,
     tell: Callable[[str], None],
 ) -> Iterator[BegunRun]:
-    """Take the homes of these robots, finish an interrupted installation, and read the files.
+    """Hold the homes of these robots, finish an interrupted installation, and read the files.
 
-    The homes are given back at the end. An error on the way, or while the run lasts, is reported to the people in
-    `alerts` if `alerted`, and raised again.
+    The homes are released at the end. An error before or during the run is raised again, and reported to the people in
+    `alerts` if `alerted`.
     """
     guest = bool(parts) and BRAIN not in parts
     names = tuple(robots) or ("",)
@@ -140,7 +141,7 @@ def started(
 
 
 def _why(error: LumenError) -> str:
-    """Return the place and the code of the first error in files, and nothing that the files contain."""
+    """Return the place and the code of the first error in files, without any of their content."""
     if not isinstance(error, ProjectError):
         return str(error)
     found = [diagnostic for diagnostic in error.diagnostics if diagnostic.severity is Severity.ERROR]

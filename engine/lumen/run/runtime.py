@@ -1,4 +1,4 @@
-"""The one thread's core: events in, commands out, and never a wait."""
+"""The core of a running behaviour, on one thread: events in, commands out, without waiting."""
 
 import logging
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -21,38 +21,35 @@ _log = logging.getLogger(__name__)
 
 
 class Emission(NamedTuple):
-    """Commands, and the number of the step that asked for them."""
+    """Commands, and the number of the step that emitted them."""
 
     step: int
     commands: Sequence[Command]
 
 
 Rescue = Callable[[Exception], Sequence[Command] | None]
-"""Called after a failure: goes on with another bundle, and returns the commands for that; None where it can't."""
+"""Called after a failure: switches to another bundle and returns the commands for that; None if it can't."""
 
 
 class InputRecorder(Protocol):
-    """Who keeps what happened to a behaviour: called before the commands of a step go out, and never waited for."""
+    """A recorder of a behaviour's inputs: called before the commands of a step are performed, and never waited for."""
 
     def stepped(self, step: Step, how: How) -> None:
-        """It took a step."""
+        """Record a step."""
 
     def jumped(
         self, kind: JumpKind, project: Project, snapshot: Snapshot, commands: Sequence[Command] = (), **said: Any
     ) -> None:
-        """It goes on from this snapshot of this project, and no step led there."""
+        """Record that the behaviour continues from this snapshot of this project, which no step led to."""
 
 
 class Runtime:
-    """A running behaviour: its bundle, its snapshot, and what happens to them at a tick.
+    """A running behaviour: its bundle, its snapshot, and their changes at a tick.
 
-    If a step fails, `rescue` may continue with another bundle, under which the event happens again. Without one, the
-    event or timer is dropped and logged, and `dropped` is called with it and the reason: a message that makes a step
-    fail must not end the exhibition.
-
-    `observe` is shown every step in the order taken, and `steps` counts them: the first of a run is 1. `epoch` is when
-    time 0 was [s since 1970], `timezone` where the clock on the wall hangs. A `recorder` keeps what is needed to take
-    the steps again. `approvals` holds back what a person has to approve.
+    If a step fails, `rescue` may switch to another bundle, under which the event is processed again. Otherwise the
+    event or timer is dropped and logged, and `dropped` is called with a sentence about it: a message that makes a step
+    fail must not end the exhibition. `observe` is called with every step, in order. `epoch` is the date of time 0 [s
+    since 1970], `timezone` that of times of day.
     """
 
     def __init__(
@@ -66,8 +63,11 @@ class Runtime:
         self._observe, self._rescue, self._dropped = observe, rescue, dropped
         self._snapshot: Snapshot | None = None
         self.recorder: InputRecorder | None = None
+        """Records what is needed to take the steps again, None for no journal."""
         self.approvals = Approvals()
+        """Holds back events that a person must approve."""
         self.steps = 0
+        """Number of steps so far; the first of a run is 1."""
 
     @property
     def begun(self) -> bool:
@@ -76,7 +76,7 @@ class Runtime:
 
     @property
     def snapshot(self) -> Snapshot:
-        """Where the behaviour stands."""
+        """The current snapshot. Raises RuntimeError before `start`."""
         if self._snapshot is None:
             raise RuntimeError("the runtime is not started: call `start` first")
         return self._snapshot
@@ -90,18 +90,18 @@ class Runtime:
         timezone: str = "",
         context: Mapping[str, Any] | None = None,
     ) -> list[Command]:
-        """Enter the initial states; the commands to perform. `context` gives keys other first values."""
+        """Enter the initial states; return the commands to perform. `context` overrides initial values."""
         language = language or self.project.languages[0]
         arguments: dict[str, Any] = {"at": now, "input": context, "language": language, "epoch": epoch}
         arguments["timezone"] = timezone
         return self._begin(initial(self.project.machine, **arguments), arguments)
 
     def tick(self, now: float, events: Iterable[Event] = ()) -> list[Command]:
-        """Let everything happen that is due until `now` [s], timers and events in the order of their times."""
+        """Process timers and events up to `now` [s], in the order of their times; return the commands."""
         return [command for emission in self.advance(now, events) for command in emission.commands]
 
     def advance(self, now: float, events: Iterable[Event] = ()) -> list[Emission]:
-        """As `tick`, with the step that each command is from; steps that ask for nothing are left out."""
+        """Do what `tick` does, but return the commands by step; steps without commands are left out."""
         emitted: list[Emission] = []
         for event in sorted(events, key=lambda e: e.at):
             self._timers(min(event.at, now), emitted)
@@ -110,18 +110,18 @@ class Runtime:
         return emitted
 
     def plan(self, project: Project, at: float, *, now: bool = False, back: bool = False) -> MigrationVerdict:
-        """How the behaviour would go on under another bundle at `at` [s], or why it can't; nothing changes.
+        """Return how the behaviour would continue under another bundle at `at` [s], or why it can't; nothing changes.
 
-        `now` cancels what it would have to wait for; `back` says that the bundle ran before.
+        `now` cancels what it would otherwise wait for; `back` means that the bundle ran before.
         """
         return plan(self.project, project, self.snapshot, at=at, now=now, back=back)
 
     def apply(
         self, project: Project, planned: Snapshot, kind: JumpKind = "reload", commands: Sequence[Command] = ()
     ) -> None:
-        """Go on with another bundle as planned, between two macrosteps; `commands` are those that it asks for.
+        """Switch to another bundle as planned, between two macrosteps; `commands` are those of the plan.
 
-        Where that raises, for a fault of ours, it goes on as before.
+        After an internal error the old bundle continues, and the error is raised.
         """
         old, stood = self.project, self._snapshot
         self.project, self._snapshot = project, planned
@@ -134,15 +134,15 @@ class Runtime:
             raise
 
     def note(self, **said: Any) -> None:
-        """Have words kept beside what happened, at this moment: the behaviour hears nothing of them."""
+        """Record a text at this moment; the behaviour does not get it."""
         self._record("keyframe", **said)
 
     def take(self, taken: Step) -> list[Command]:
-        """Go on with the step by which somebody enters a state; its commands."""
+        """Continue with a step that enters a state directly; return its commands."""
         return self._take(taken, "goto")
 
     def forget(self, person: PersonName) -> bool:
-        """Take somebody's name out of what is remembered; whether it was there."""
+        """Remove a person's name from the snapshot; return False if it was not there."""
         before = self.snapshot
         self._snapshot = forgetful(self.project.machine, before, person)
         if self._snapshot is before:
@@ -214,11 +214,11 @@ class Runtime:
 
 
 def _timed(taken: Step) -> Step:
-    """A step that a timer caused, which says so; the core need not."""
+    """Return a timer's step with the timer as its cause, which the core does not set."""
     event = taken.event
     return taken._replace(event=event._replace(cause=Cause("timer", event.sendid))) if event else taken
 
 
 def _ours(error: Exception) -> Exception | None:
-    """The fault, where it is one of ours, whose place is worth knowing."""
+    """Return an internal error, whose traceback is worth logging; None for a LumenError."""
     return None if isinstance(error, LumenError) else error

@@ -1,4 +1,4 @@
-"""Messages on a project's routes, from inside the loop: what can't be sent is a reason, not an exception."""
+"""Messages on a project's routes, sent from the loop: a failure is returned as a reason, not raised."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from lumen.ports import Bus
 
 
 def send(bus: Bus, project: Project, route: str, body: Any, origin: MessageOrigin = UNKNOWN_ORIGIN) -> str:
-    """Publish a body on the route of that name; empty, or why it could not be."""
+    """Publish a body on a route; return why that failed, empty if it did not."""
     if route not in project.routes:
         return f"there is no route `{route}`"
     try:

@@ -1,4 +1,4 @@
-"""Everything that an exhibition in this process is made of, found by its type."""
+"""Everything that an exhibition in this process consists of, found by its type."""
 
 from collections.abc import Callable
 from functools import partial
@@ -29,10 +29,10 @@ T = TypeVar("T")
 
 
 class Services:
-    """The bus, the clock, the node and the narrator of an exhibition, its parts, and whatever they provide.
+    """The bus, clock, node and narrator of an exhibition, its parts, and what they provide.
 
     A part's maker finds what was made before it: `services[LiveBehavior]`, or `services.get(RobotPart)` if that may be
-    missing. What `provide` takes is found in the same way. Raises BusError if the bus can't be reached.
+    missing. Objects given to `provide` are found in the same way. Raises BusError if the bus can't be reached.
     """
 
     def __init__(self, plan: Plan) -> None:
@@ -52,7 +52,7 @@ class Services:
             time_passes=NodeTime(plan.speed if plan.roles else None, plan.leaps, self._pace),
         )
         self.left_out: list[str] = []
-        """The parts of packages that could not be made, each with its package; the others are told when they begin."""
+        """Parts of packages that could not be made, each with its package; the others are notified when they begin."""
         self._provided: list[object] = []
         self._places: dict[Part, int] = {}
 
@@ -68,13 +68,13 @@ class Services:
         return next((one for one in (*self._provided, *parts) if isinstance(one, kind)), None)
 
     def provide(self, *services: object) -> None:
-        """Let others find these by their types."""
+        """Make these objects available by their types."""
         self._provided += services
 
     def add(self, place: int, *parts: Part) -> None:
-        """Let parts take part, after those of lower places and after those that are at this place already.
+        """Add parts after those of lower places and those already at this place.
 
-        A part that `watches` hears of the behaviour's steps, if that is in this process. Raises TypeError if such a
+        A part that `watches` observes the behaviour's steps, if that is in this process. Raises TypeError if such a
         part is not an `Observer`.
         """
         watching = [_observer(part) for part in parts if part.watches and self.plan.brain]
@@ -116,12 +116,12 @@ class Services:
         return partial(self.narrator.line, who)
 
     def noticed(self, event: Event) -> None:
-        """Tell all parts of an event of a robot here whose brain is somewhere else."""
+        """Pass an event of a robot here, whose brain is elsewhere, to all parts."""
         for part in self.node.parts:
             part.noticed(event)
 
     def part_stopped(self, part: str, fault: str) -> None:
-        """Print why a part of a package was stopped, keep that for the end, and tell all other parts of it."""
+        """Print why a part of a package was stopped, keep that for the end, and notify all other parts."""
         self.narrator.line("trouble", fault)
         self.node.faults.append(fault)
         for other in self.node.parts:
@@ -139,7 +139,7 @@ class Services:
         return presence_of(plan.project, self.bus, roles, self._said)
 
     def _said(self) -> dict[str, Any]:
-        """The fields of the presence that others get from this process."""
+        """Return the fields of the presence that others get from this process."""
         robot = self.get(RobotPart)
         body: dict[str, Any] = {"bundle": self.project.hash}
         if self.plan.roles:

@@ -26,38 +26,37 @@ NO_OPTIONS: Mapping[str, str] = {}
 
 @dataclass(frozen=True)
 class Setup:
-    """A robot with its clock; `hall` is the simulated world around it, None for a robot in no world of ours.
-
-    `blind` says why its camera has no images and what to do about it; empty where it has. `remote`: its server is
-    somewhere else; `tracking` is who lets controllers follow what is seen, where that is not the exhibition itself.
-    """
+    """A robot with its clock and its hall."""
 
     robot: Robot
     clock: Clock
     hall: Hall | None
+    """The simulated world around it, None if there is none."""
     blind: str = ""
+    """Why its camera has no images, and what to do about it; empty if it has."""
     remote: bool = False
+    """Whether its server is in another process."""
     tracking: TrackingService | None = None
+    """Lets controllers follow sightings, None if the exhibition does that itself."""
 
     def hurry(self) -> None:
-        """Let the clock's wait that is going on return, where it can: something can't wait."""
+        """End the clock's current wait, if it can, for something urgent."""
         if isinstance(self.clock, Dozes):
             self.clock.hurry()
 
 
 @dataclass(frozen=True)
 class RobotRequest:
-    """A request for a robot.
-
-    `speed` is one of `SPEEDS`. `options` are those of the robot's row that were given, by their names. With
-    `real_skills` a recording robot performs added verbs by their code.
-    """
+    """A request for a robot."""
 
     project: Project
     speed: str
+    """One of `SPEEDS`."""
     story: Story | None = None
     options: Mapping[str, str] = field(default_factory=dict)
+    """The given options of the robot's row, by name."""
     real_skills: bool = False
+    """Whether a recording robot runs the code of added verbs."""
 
     @property
     def pace(self) -> float | None:
@@ -74,12 +73,11 @@ def set_up(
     *,
     real_skills: bool = False,
 ) -> Setup:
-    """Return the robot of that name, on its feet; `options` are those of its row that were given.
+    """Return the robot of a name, on its feet; `options` are the given ones of its row.
 
-    With `real_skills` the recording robot performs added verbs by their code.
-
-    Raises UsageError if there is no such robot here, or if it does not go with what was asked; LumenError with the name
-    of the installed package if the robot's own code is faulty.
+    With `real_skills` the recording robot runs the code of added verbs. Raises UsageError if there is no such robot
+    here, or the options do not apply to it; LumenError with the name of the installed package if the robot's code is
+    faulty.
     """
     request = RobotRequest(project, speed, story, options, real_skills)
     if _is_own(kind, project):
@@ -94,7 +92,7 @@ def set_up_house(
     stories: Mapping[str, Story | None],
     options: Mapping[str, str] = NO_OPTIONS,
 ) -> dict[str, Setup]:
-    """Return several robots of that kind, on their feet, by the names of their projects.
+    """Return several robots of a kind, on their feet, by the names of their projects.
 
     Raises UsageError as `set_up` does, or if there can't be several.
     """
@@ -130,7 +128,7 @@ def robot_kind(wanted: str, root: Path) -> str:
 
 
 def _is_own(kind: str, project: Project) -> bool:
-    """Whether this is the driver of a robot of the project's own."""
+    """Return whether a name is a driver of the project's own."""
     return kind not in table("robots") and is_driver(kind, Path(project.root))
 
 
@@ -158,7 +156,7 @@ def _check(feature: Feature, where: str, setup: Setup) -> None:
 
 
 def _bounded(kind: str, row: RobotRow, setup: Setup, project: Project) -> Setup:
-    """Return a setup whose robot keeps within the limits of its body; robot and clock of a package are checked, too."""
+    """Return a setup whose robot keeps within its body's limits; a package's robot and clock are checked, too."""
     feature = owner("robots", kind)
 
     def fault(what: str) -> LumenError:
@@ -178,13 +176,13 @@ def robot_names() -> tuple[str, ...]:
 
 
 def runs_in_real_time(kind: str) -> bool:
-    """Return whether the time of the robot of that name can't be hurried."""
+    """Return whether a robot's time can't run faster than real time."""
     robots: Mapping[str, RobotRow] = table("robots")
     return kind in robots and robots[kind].real_time
 
 
 def robot_options() -> tuple[RobotOption, ...]:
-    """Return the options that some robots take, one of each name; its help is that of all robots with the option."""
+    """Return the options of all robots, one of each name; its help combines those of all robots with it."""
     found: dict[str, RobotOption] = {}
     for row in table("robots").values():
         for option in row.options:
@@ -206,10 +204,10 @@ def _row(kind: str, options: Mapping[str, str] = NO_OPTIONS) -> RobotRow:
 
 
 def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = None) -> Setup:
-    """A robot that somebody made, on their clock; without one on its own time, `pace` times real time at most.
+    """Return a setup of a given robot, on `clock` or by default on its own time, at `pace` times real time at most.
 
-    A robot that can `advance` lives through the time that passes, any other one has the time of the world outside. A
-    robot with the methods of a `Hall` is its own hall.
+    A robot that can `advance` is moved on by the time that passes; any other runs in real time. A robot with the
+    methods of a `Hall` is its own hall.
     """
     hall = ability(robot, Hall)
     living = ability(robot, Advances)
@@ -220,20 +218,22 @@ def set_up_with(robot: Robot, clock: Clock | None = None, pace: float | None = N
 
 
 class _DrivenClock:
-    """Somebody's clock, through whose time a world lives."""
+    """A given clock that also moves a simulated world on."""
 
     def __init__(self, clock: Clock, live: Callable[[float], None]) -> None:
         self._clock, self._live, self._lived = clock, live, clock.now()
 
     @property
     def realtime(self) -> float:
+        """The share of its speed that the clock keeps, 1 if unknown."""
         return self._clock.realtime if isinstance(self._clock, MeasuresPace) else 1.0
 
     def now(self) -> float:
+        """Return the clock's time [s]."""
         return self._clock.now()
 
     def wait(self, until: float) -> None:
-        """All that passes is lived through, also what passes while the world lives and nobody waits."""
+        """Wait until a time [s], and advance the world by all time since the last wait."""
         self._clock.wait(until)
         lived, self._lived = self._lived, self._clock.now()
         self._live(self._lived - lived)

@@ -1,4 +1,4 @@
-"""What the robots of a house have in common, at the edge: own values told, those of others heard."""
+"""The shared values of a house's robots: a robot's own are published, those of the others received."""
 
 import logging
 from collections import deque
@@ -18,16 +18,17 @@ from lumen.ports import Bus, Message
 from lumen.statechart import Snapshot
 
 RETELL_PERIOD = 10.0
-"""How often a robot tells its values though they are as they were [s]: a broker keeps none of them."""
+"""Time after which unchanged values are published again [s], because a broker keeps none."""
 MAX_WAITING_TOLD = 1_000
+"""Messages that may wait for a tick; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
 
 class SharedBoard:
-    """A robot's view of what its house has in common: it tells what it owns, and hears what others do.
+    """A robot's connection to the shared values of its house.
 
-    What is heard waits for `drain`, which makes one event of what differs from what the behaviour knows.
+    Received values wait for `drain`, which makes an event of those that the behaviour does not have yet.
     """
 
     def __init__(self, bus: Bus) -> None:
@@ -40,7 +41,7 @@ class SharedBoard:
         self._next, self._asked = -inf, False
 
     def listen(self, project: Project) -> None:
-        """Listen for this project, whose robot tells its values at the next tick, and asks for those of the others."""
+        """Subscribe for this project; its robot publishes its values and requests the others' at the next tick."""
         self._project, self._told = project, None
         key = key_of_house(SHARED_KEY, project.house) if project.section(SharedKeys).by_name else ""
         if key != self._key:
@@ -50,16 +51,16 @@ class SharedBoard:
 
     @property
     def empty(self) -> bool:
-        """Whether nothing has arrived, and nobody asks."""
+        """Whether no message or request waits."""
         return not self._waiting and not self._asked
 
     @property
     def due(self) -> float:
-        """When the values are told again [s]."""
+        """When the values are published again [s], infinite if there are none."""
         return self._next if self._key else inf
 
     def drain(self, snapshot: Snapshot, now: float) -> list[Event]:
-        """What others have told and the behaviour does not know yet, as events at `now` [s]."""
+        """Return the received values that the behaviour does not have yet, as events at `now` [s]."""
         events, known = list[Event](), dict(snapshot.context.get(SHARED, {}))
         while self._waiting:
             values, cause = self._waiting.popleft()
@@ -69,7 +70,7 @@ class SharedBoard:
         return events
 
     def tell(self, snapshot: Snapshot, now: float) -> None:
-        """Tell the robot's own values where they have changed, somebody asks, or it is time to."""
+        """Publish the robot's own values if they have changed, another robot requests them, or it is time."""
         project = self._project
         if project is None or not self._key:
             return
@@ -88,7 +89,7 @@ class SharedBoard:
             _log.warning("the shared values of the house can't be sent: %s", error)
 
     def _hear(self, message: Message) -> None:
-        """Only values of the type that they are to have, from the robot whose they are."""
+        """Queue the values of a message if the sender owns them and their types are right; else log it."""
         project = self._project
         match message.body:
             case {"from": str(robot), "values": dict(values), "asks": bool(asks)} if project:

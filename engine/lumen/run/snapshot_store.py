@@ -1,4 +1,4 @@
-"""What an exhibition needs to go on after a crash: where its behaviour stood, and the very files it ran on."""
+"""What an exhibition needs to resume after a crash: the behaviour's snapshot, and the exact files that ran."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -16,30 +16,34 @@ SNAPSHOT_FILE, ALIVE_FILE = "snapshot.json", "alive.json"
 LAST_GOOD_FILE = "good.json"
 SNAPSHOT_VERSION = 1
 SNAPSHOT_SPACING = 0.02
-"""How long after a snapshot the next is written at the earliest [s]: a simulation may take a hundred steps in that."""
+"""Least time between two snapshots [s]: a simulation may take a hundred steps in it."""
 
 
 class StoredSnapshot(NamedTuple):
-    """A snapshot as it was written: of which bundle and behaviour, at which time (Unix), frozen.
-
-    `tracking` are the controllers that were on, `rests` is whether the robot was at rest. The run lived until `ended`,
-    and was `told` to end by the system, or nobody knows why it did.
-    """
+    """A snapshot as it was written."""
 
     bundle: str
+    """Hash of the bundle."""
     behavior: str
+    """Name of the behaviour."""
     time: float
+    """When it was written [s since 1970]."""
     frozen: Mapping[str, Any]
+    """The serialised snapshot."""
     tracking: tuple[str, ...] = ()
+    """Controllers that were on."""
     rests: bool = False
+    """Whether the robot was at rest."""
     ended: float = 0.0
+    """When the run was last known to be alive [s since 1970]."""
     told: bool = False
+    """Whether the system ordered the run to end."""
 
 
 class SnapshotStore:
-    """Writes snapshots (`count` of them) and bundles into a home; `trouble` says why it could not, once.
+    """A store of snapshots and bundles in a home.
 
-    Where only the time of a snapshot differs from the one before, nothing is written: its timers have deadlines.
+    A snapshot that differs from the last only in its time is not written, because timers have deadlines.
     """
 
     def __init__(self, home: Home) -> None:
@@ -47,17 +51,19 @@ class SnapshotStore:
         self._last: Snapshot | None = None
         self._written = 0.0
         self.trouble = ""
+        """Why the first failed write failed, empty if none did."""
         self.count = 0
+        """Number of snapshots written."""
 
     def due(self, snapshot: Snapshot) -> bool:
-        """Whether it is news, and the last was not written just now."""
+        """Return whether a snapshot is new, and the last was written at least SNAPSHOT_SPACING ago."""
         last = self._last
         if last is snapshot or (last is not None and _same(last, snapshot)):
             return False
         return time.perf_counter() - self._written >= SNAPSHOT_SPACING
 
     def keep(self, project: Project, snapshot: Snapshot, tracking: Sequence[str], *, rests: bool = False) -> None:
-        """Write where the project's behaviour stands, if that is due."""
+        """Write the behaviour's snapshot, if it is due."""
         if not self.due(snapshot):
             return
         self._written = time.perf_counter()
@@ -80,15 +86,15 @@ class SnapshotStore:
         self.count += 1
 
     def beat(self) -> None:
-        """The run lives: where its behaviour stands is as true as when it was written."""
+        """Note that the run is alive and its snapshot still valid."""
         self._wrote(self._home.write_json(ALIVE_FILE, {"time": time.time()}))
 
     def leave(self) -> None:
-        """The run was told to end: the next one goes on where its behaviour stands."""
+        """Note that the run was ordered to end, so that the next one resumes it."""
         self._wrote(self._home.write_json(ALIVE_FILE, {"time": time.time(), "told": True}))
 
     def kept(self) -> StoredSnapshot | None:
-        """The snapshot of a run that did not end by itself, None where there is none that can be read."""
+        """Return the snapshot of a run that did not end by itself, None if there is none that can be read."""
         try:
             data = self._home.read_json(SNAPSHOT_FILE)
             if data["version"] != SNAPSHOT_VERSION:
@@ -110,26 +116,26 @@ class SnapshotStore:
             return None
 
     def of_another_version(self) -> tuple[str, bool]:
-        """The version of a snapshot that another Lumen has left, or nothing; and whether the robot rests."""
+        """Return the version of another Lumen's snapshot, empty without one, and whether the robot rests."""
         data = self._home.read_json(SNAPSHOT_FILE)
         said = data.get("version", SNAPSHOT_VERSION) if isinstance(data, Mapping) else SNAPSHOT_VERSION
         return ("", False) if said == SNAPSHOT_VERSION else (str(said)[:20], data.get("rests") is True)
 
     def forget(self) -> None:
-        """The run has ended as it should: there is nothing to go on with."""
+        """Delete the snapshot of a run that ended normally."""
         self._home.remove(SNAPSHOT_FILE)
         self._home.remove(ALIVE_FILE)
         self._last = None
 
     def store(self, files: Mapping[str, bytes]) -> str:
-        """Keep the files of a bundle; return its hash. A file of that name that is damaged is replaced."""
+        """Store the files of a bundle; return its hash. A damaged file of that name is replaced."""
         hash = fingerprint(files)
         if self.files(hash) is None:
             self._wrote(self._home.write(_name(hash), packed(files)))
         return hash
 
     def files(self, hash: str) -> dict[str, bytes] | None:
-        """The files of a bundle that was kept, None where they are not there as they were."""
+        """Return the files of a stored bundle, None if they are missing or damaged."""
         try:
             found = unpacked(self._home.read(_name(hash)) or b"", 2 * MAX_PROJECT_BYTES)
         except DamagedBundleError:
@@ -137,11 +143,11 @@ class SnapshotStore:
         return found if fingerprint(found) == hash else None
 
     def approve(self, hash: str) -> None:
-        """This bundle has proved itself: it is the last good one."""
+        """Note that this bundle is the last good one."""
         self._wrote(self._home.write_json(LAST_GOOD_FILE, {"version": SNAPSHOT_VERSION, "bundle": hash}))
 
     def good(self) -> str:
-        """The hash of the last good bundle, empty where there is none."""
+        """Return the hash of the last good bundle, empty if there is none."""
         try:
             data = self._home.read_json(LAST_GOOD_FILE)
             return str(data["bundle"]) if data["version"] == SNAPSHOT_VERSION else ""
@@ -149,14 +155,14 @@ class SnapshotStore:
             return ""
 
     def prune(self, *hashes: str) -> None:
-        """Delete the files of all bundles but these, and those that the journal needs."""
+        """Delete the files of all bundles except these and those that the journal needs."""
         names = {_name(hash) for hash in {*hashes, *named_bundles(self._home.folder)}}
         for path in self._home.folder.glob("bundle-*.zip"):
             if path.name not in names:
                 self._home.remove(path.name)
 
     def _alive(self) -> tuple[float, bool]:
-        """When the run was last known to live (Unix), 0 where that is not known; whether it was told to end then."""
+        """Return when the run was last alive [s since 1970], 0 if unknown, and whether it was ordered to end then."""
         try:
             said = self._home.read_json(ALIVE_FILE)
             return float(said["time"]), said.get("told") is True

@@ -1,4 +1,4 @@
-"""Sound as the bodies of 2015 carry it: WAV in base64, one channel of 16 bits."""
+"""Sound as the modules of 2015 send it: WAV in base64, one channel of 16 bits."""
 
 import base64
 import binascii
@@ -13,30 +13,30 @@ from typing import IO, NamedTuple
 from lumen.errors import ModuleError
 
 MAX_DURATION = 120.0
-"""How long a sound in a message may be [s]."""
+"""Longest sound in a message [s]."""
 
 
 class Sound(NamedTuple):
-    """Samples of 16 bits, little-endian, one channel, `rate` of them a second."""
+    """Samples of 16 bits, little-endian, one channel, at `rate` [1/s]."""
 
     rate: int
     samples: bytes
 
     @property
     def duration(self) -> float:
-        """How long it takes [s]."""
+        """Its duration [s]."""
         return len(self.samples) / (2 * self.rate)
 
     def until(self, length: float) -> "Sound":
-        """Its beginning, of this length [s] at most."""
+        """Return its beginning, at most `length` [s] long."""
         return self.between(0.0, length)
 
     def between(self, begin: float, end: float) -> "Sound":
-        """What is between two times [s], as far as there is any."""
+        """Return the part between two times [s]; it is shorter if the sound ends before."""
         return Sound(self.rate, self.samples[self._at(begin) : self._at(end)])
 
     def without(self, spans: Iterable[tuple[float, float]]) -> "Sound":
-        """The same sound, silent from each `begin` to its `end` [s]."""
+        """Return a copy that is silent in each span from `begin` to `end` [s]."""
         data = bytearray(self.samples)
         for begin, end in spans:
             first, last = self._at(begin), min(self._at(end), len(data))
@@ -47,7 +47,7 @@ class Sound(NamedTuple):
         return 2 * round(max(moment, 0.0) * self.rate)
 
     def at_volume(self, volume: float) -> "Sound":
-        """The same sound, each sample times `volume`, from 0 to 1."""
+        """Return a copy with each sample times `volume`, from 0 to 1."""
         if volume == 1.0:
             return self
         louder = array("h", self.samples)
@@ -59,14 +59,14 @@ class Sound(NamedTuple):
         return Sound(self.rate, quieter.tobytes())
 
     def text(self) -> str:
-        """A WAV in base64."""
+        """Return it as a WAV in base64."""
         data = io.BytesIO()
         _write(data, self)
         return base64.b64encode(data.getvalue()).decode("ascii")
 
 
 def sound_of(text: object) -> Sound:
-    """The sound in a WAV in base64. Raises ModuleError for what is none, or not of the kind that is understood."""
+    """Return the sound of a WAV in base64. Raises ModuleError for anything else, or an unsupported kind of WAV."""
     if not isinstance(text, str):
         raise ModuleError("a sound must be a string: a WAV file encoded in base64")
     try:
@@ -77,7 +77,11 @@ def sound_of(text: object) -> Sound:
 
 
 def wav(data: bytes) -> Sound:
-    """The sound in a WAV file's bytes. Raises ModuleError for what is none, or not of the kind that is understood."""
+    """Return the sound of a WAV file's bytes.
+
+    Raises ModuleError for anything else, and unless it has one channel, 16 bits, 8 to 48 kHz and 1 sample to
+    MAX_DURATION.
+    """
     try:
         with wave.open(io.BytesIO(data)) as file:
             channels, width, rate = file.getnchannels(), file.getsampwidth(), file.getframerate()
@@ -98,7 +102,7 @@ def wav(data: bytes) -> Sound:
 
 
 def save(file: Path, sound: Sound) -> None:
-    """Write a WAV file. Raises ModuleError where it can't be."""
+    """Write a WAV file. Raises ModuleError if that fails."""
     try:
         with file.open("wb") as opened:
             _write(opened, sound)

@@ -1,4 +1,4 @@
-"""A project of one's own, begun as a copy of one that comes with Lumen."""
+"""A new project, begun as a copy of one that comes with Lumen."""
 
 import re
 import shutil
@@ -13,6 +13,7 @@ STARTERS = {
     "museum": "a guide for five exhibits",
     "minimal": "a greeting, a gesture and a story, in 40 lines",
 }
+"""The projects that can be copied, with descriptions."""
 EXAMPLES = "examples"
 CHECKOUT = "actions/checkout@11bd71901bbe5b1630ceea73d27597364c9af683  # v4.2.2"
 _SCHEMA = re.compile(r"(?m)^(# yaml-language-server: \$schema=)\S*?([\w.]+\.schema\.json)$")
@@ -76,10 +77,10 @@ jobs:
 
 
 def start_project(folder: Path, like: str, action: str, robot: str = "") -> None:
-    """Put a copy of a starter there, with a README, what git ignores, and a workflow that uses `action`.
+    """Copy a starter into a folder, with a README, a .gitignore, and a workflow that uses `action`.
 
-    `robot` is the body that performs it, one of `shipped_models`; the starter's own where it is empty. Raises OSError
-    where that can't be written.
+    `robot` is the body that performs it, one of `shipped_models`; empty for the starter's own. Raises OSError if a file
+    can't be written.
     """
     folder.mkdir(parents=True, exist_ok=True)
     shipped = shipped_root()
@@ -105,7 +106,7 @@ def start_project(folder: Path, like: str, action: str, robot: str = "") -> None
 
 
 def _perform_with(folder: Path, robot: str) -> None:
-    """Let that body perform, with the motions of its own that come with Lumen."""
+    """Set the body that performs, and add the motions for it that come with Lumen."""
     main = folder / MAIN_FILE
     main.write_text(_ROBOT.sub(rf"\g<1>{robot.capitalize()}\g<2>{robot}\g<3>", main.read_text("utf-8")), "utf-8")
     own = shipped_root() / "motions" / robot
@@ -114,7 +115,7 @@ def _perform_with(folder: Path, robot: str) -> None:
 
 
 def _lead_to_schemas(file: Path, folder: Path) -> None:
-    """Let an editor find the schemas of this folder, however deep the file lies."""
+    """Make a file's schema comment refer to this folder's schemas, at any depth."""
     up = PurePosixPath(*[".."] * len(file.parent.relative_to(folder).parts), "schemas")
     text = file.read_text("utf-8")
     if (led := _SCHEMA.sub(rf"\g<1>{up}/\g<2>", text)) != text:

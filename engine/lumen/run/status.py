@@ -1,4 +1,4 @@
-"""How an exhibition is, in one object: for `lumen status`, and for whoever else shows it."""
+"""The status of an exhibition in one object, for `lumen status` and other displays."""
 
 from collections.abc import Iterator, Mapping
 from datetime import datetime
@@ -15,12 +15,15 @@ from lumen.statechart.nesting import ID_SEPARATOR, active_names
 
 
 class LastReload(NamedTuple):
-    """What came of saved files last, in which bundle, told how, and when (UTC)."""
+    """The last result of a reload."""
 
     at: datetime
+    """When it was reported (UTC)."""
     verdict: str
     bundle: str
+    """Hash of the bundle."""
     text: str
+    """Its first line for people."""
 
 
 NOTHING_SAID: Mapping[str, Any] = {}
@@ -37,12 +40,11 @@ def status_of(
     reloaded: LastReload | None = None,
     said: Mapping[str, Any] = NOTHING_SAID,
 ) -> dict[str, Any]:
-    """The status of an exhibition whose states were last changed at `since` [s]; JSON data.
+    """Return the status of an exhibition whose states last changed at `since` [s], as JSON data.
 
-    Times are ISO 8601 in UTC, on the exhibition's clock, but those of stops and reloads, which people make. What is not
-    known is None: the `visitor` who has not said a name, the `battery` of a robot that has none, the `ears` if there
-    are none. `said` has the state of the `ears`, and a list of the project's own `modules`, which is absent if
-    it is empty.
+    Times are ISO 8601 in UTC on the exhibition's clock; those of stops and reloads, which people make, are real.
+    Unknown values are None: the `visitor` before they give a name, the `battery` and the `ears` of a robot that has
+    none. `said` has the state of the `ears`, and the project's own `modules`, which the status lacks if there are none.
     """
     return {
         "robot": project.robot,
@@ -69,7 +71,7 @@ def _time(snapshot: Snapshot, at: float) -> str:
 
 
 def _visitor(project: Project, snapshot: Snapshot) -> str | None:
-    """The name in the key of the context that the memory looks at, too."""
+    """Return the visitor's name, from the key of the context that the memory module uses, too."""
     memory = project.modules.get(MEMORY)
     name = snapshot.context.get(str(memory.options.get("visitor", VISITOR_KEY)) if memory else VISITOR_KEY)
     return name if isinstance(name, str) and name else None
@@ -84,7 +86,7 @@ def _timers(machine: MachineDefinition, snapshot: Snapshot, prefix: str = "") ->
 
 
 def _event(machine: MachineDefinition, timer: Timer) -> str:
-    """`after 30 s in greet`, `wait in sing`; of a `send` the event's name."""
+    """Return a timer in words: `after 30 s in greet`, `wait in sing`; for a `send` the event's name."""
     if timer.kind == "send":
         return timer.event
     state = machine.states[timer.state]

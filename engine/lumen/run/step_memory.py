@@ -1,4 +1,4 @@
-"""The steps of the last minutes, as they were taken: what a question about a running exhibition is answered from."""
+"""The steps of the last minutes, from which questions about a running exhibition are answered."""
 
 from collections import deque
 from collections.abc import Callable
@@ -11,17 +11,18 @@ from lumen.run.loop import Observer
 from lumen.statechart import Snapshot, Step
 
 MAX_STEPS = 4_000
-"""Steps that changed something: some hours of visits."""
+"""Steps with changes that are kept: some hours of visits."""
 MAX_IDLE = 2_000
-"""Steps that changed nothing but the time, such as those of faces in a conversation: a few minutes."""
+"""Kept steps that changed only the time, as for faces in a conversation: a few minutes."""
 
 NumberedStep = tuple[int, RecordedStep]
 
 
 class StepMemory(Observer):
-    """Keeps steps, each with where it was taken from; `project` and `standing` are asked for what is so now.
+    """An observer that keeps steps with the snapshots before them.
 
-    Nothing is computed here, and nothing copied: snapshots never change.
+    `project` and `standing` return the present bundle and snapshot. Nothing is computed or copied, because snapshots
+    never change.
     """
 
     def __init__(self, project: Callable[[], Project], standing: Callable[[], Snapshot | None]) -> None:
@@ -32,7 +33,7 @@ class StepMemory(Observer):
         self._idle: deque[NumberedStep] = deque(maxlen=MAX_IDLE)
 
     def look(self) -> None:
-        """Note where the behaviour stands before a tick: elsewhere than after its last step, it was reloaded."""
+        """Record a jump if the snapshot before a tick is not that of the last step, as after a reload."""
         now = self._standing()
         if now is not None and now is not self._last:
             before, self._last = self._last, now
@@ -47,12 +48,12 @@ class StepMemory(Observer):
         self._last = step.snapshot
 
     def forget(self, person: PersonName) -> None:
-        """Forget everything: a name may stand anywhere. The journal, of which it is taken out, still answers."""
+        """Forget all steps, because any may contain the name. The redacted journal can still answer."""
         self._changes.clear()
         self._idle.clear()
 
     def steps(self) -> list[RecordedStep]:
-        """All that are kept, the oldest first."""
+        """Return all kept steps, the oldest first."""
         return [step for _, step in merge(list(self._changes), list(self._idle), key=lambda row: row[0])]
 
     def _keep(self, one: RecordedStep) -> None:

@@ -1,1 +1,1 @@
-"""Saved files on a running exhibition: judged beside it, staged, and active between two of its steps."""
+"""Reload of saved files by a running exhibition: checked beside it, staged, and activated between two steps."""

@@ -13,10 +13,14 @@ from lumen.run.reload.migration_preview import MigrationPreview, preview
 from lumen.statechart.type_checks import type_checks, type_name
 
 BOUND = 10_000
+"""Configurations of the old behaviour that are explored at most."""
 
 
 def against(old: Project, new: Project, tell: Callable[[int, int], None] = lambda *_: None) -> list[Diagnostic]:
-    """The findings, each once, by place; every configuration of the old behaviour that can be reached is looked at."""
+    """Return the findings, each once, by place, for every reachable configuration of the old behaviour.
+
+    `tell` is called with how many configurations were explored, and how many are known.
+    """
     if old.machine == new.machine:
         return []
     everywhere = preview(old, live(old, new), BOUND, tell)
@@ -33,7 +37,7 @@ def _refused(new: Project, everywhere: MigrationPreview) -> Iterator[Diagnostic]
 
 
 def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator[Diagnostic]:
-    """What is gone and led elsewhere, at the `onReload` that says so."""
+    """Yield the moves away from states that no longer exist, at the `onReload` that orders them."""
     identity = Identity(old.machine, new.machine)
     for fate in everywhere.rows:
         if fate.outcome != "moved":
@@ -49,7 +53,7 @@ def _moved(old: Project, new: Project, everywhere: MigrationPreview) -> Iterator
 
 
 def _says(old: MachineDefinition, new: MachineDefinition, identity: Identity, path: str) -> NodePath | None:
-    """Where stands what is to be done about a state that is gone; None for one that is not, or goes without."""
+    """Return the place of the `onReload` for a state that no longer exists; None if it exists, or has none."""
     if identity.state(path) is not None:
         return None
     around: str | None = path
@@ -62,7 +66,7 @@ def _says(old: MachineDefinition, new: MachineDefinition, identity: Identity, pa
 
 
 def _forgotten(old: Project, new: Project) -> Iterator[Diagnostic]:
-    """Keys whose values a reload would lose."""
+    """Yield the keys whose values a reload would lose."""
     before, after = old.machine, new.machine
     was, checks, hint = (
         Identity(before, after).keys(),

@@ -1,7 +1,6 @@
-"""A project sent from one process to another, piece by piece: only what is not there already travels and is unpacked.
+"""A project sent between two processes in pieces, of which only new ones are sent and unpacked.
 
-The pieces of a field that is a mapping are its entries, so that none takes long to unpack: that keeps all threads
-waiting.
+The pieces of a mapping field are its entries, so that none takes long to unpack: unpacking blocks all threads.
 """
 
 import pickle
@@ -13,29 +12,31 @@ from lumen.language.diagnostics import Places
 from lumen.language.projects import Project
 
 PieceKey = tuple[str, str | None]
-"""A field of a project, or an entry of one that is a mapping; None in place of its name is the mapping itself."""
+"""A field of a project, and an entry of it if it is a mapping; None as the entry is the mapping itself."""
 Delta = dict[PieceKey, bytes | None]
-"""The pieces of a project, packed; None for one that was sent the last time."""
+"""The pieces of a project, packed; None for one that was sent with the previous project."""
 
 LATE = "documents"
-"""What stands where in the files: large, and unpacked only when somebody asks."""
+"""The field with the places of nodes in the files: it is large, and unpacked only on demand."""
 MAPPINGS = frozenset(field.name for field in fields(Project) if get_origin(field.type) is Mapping)
+"""The fields that are mappings."""
 
 
 class DeltaEncoder:
-    """Packs projects; one whose pieces are the very objects of the last one is soon packed."""
+    """A packer of projects; pieces that are the same objects as in the last project cost nothing."""
 
     def __init__(self) -> None:
         self._sent: dict[PieceKey, Any] = {}
 
     def pack(self, project: Project) -> Delta:
+        """Return a project's pieces, with None for those sent before."""
         before, self._sent = self._sent, dict(_pieces(project))
         known = {piece for piece, value in self._sent.items() if piece in before and before[piece] is value}
         return {p: None if p in known else pickle.dumps(v, pickle.HIGHEST_PROTOCOL) for p, v in self._sent.items()}
 
 
 class DeltaDecoder:
-    """Unpacks what one sender sends, all of it and in that order."""
+    """An unpacker for all parcels of one sender, in their order."""
 
     def __init__(self) -> None:
         self._packed: dict[PieceKey, bytes] = {}
@@ -47,7 +48,7 @@ class DeltaDecoder:
         return dict(self._packed)
 
     def unpack(self, parcel: Delta) -> Project:
-        """The project; its pieces are those of the one before wherever they say the same."""
+        """Return the project; pieces that did not change are the objects of the previous one."""
         packed = {piece: data or self._packed[piece] for piece, data in parcel.items()}
         pieces = {
             piece: self._pieces[piece] if self._packed.get(piece) == data else _unpacked(piece, data)
@@ -64,7 +65,7 @@ class DeltaDecoder:
 
 
 class _Documents(Mapping[str, Places]):
-    """What stands where in the files, by file; a file's is kept once it was asked for, as it is at each step."""
+    """The places of nodes by file; those of a file are unpacked on first use and cached for later steps."""
 
     def __init__(self, packed: Mapping[str, bytes]) -> None:
         self._packed = packed

@@ -1,7 +1,7 @@
-"""A judging process that nobody needs just now, kept a little while for who needs one next.
+"""An idle process for checking files, kept a while for the next user.
 
-A start has its files read in a process of its own, and what takes saved files needs one as well: it takes over that
-one, which has everything imported and knows the files. So does the next start in the same program.
+A start checks its files in a separate process, and the reloader needs one as well: it takes over the same process,
+which has imported everything and knows the files. So does the next start in the same program.
 """
 
 import atexit
@@ -12,11 +12,11 @@ from lumen.run.reload.delta import DeltaDecoder
 from lumen.upkeep.judge_process import JudgeProcess
 
 LINGER = 10.0
-"""How long it is kept [s]."""
+"""How long the process is kept [s]."""
 
 
 class IdleProcess(NamedTuple):
-    """A process, and what unpacks the projects that it sends."""
+    """A process, and the decoder of the projects that it sends."""
 
     process: JudgeProcess
     receiver: DeltaDecoder
@@ -24,11 +24,11 @@ class IdleProcess(NamedTuple):
 
 _turn = threading.Lock()
 _idle: list[tuple[IdleProcess, threading.Timer]] = []
-"""The one that is kept, and what will end it; empty where there is none."""
+"""The kept process and the timer that will end it; empty if there is none."""
 
 
 def keep(idle: IdleProcess) -> None:
-    """Keep a process that waits for questions, in place of the one that was kept."""
+    """Keep a process that waits for questions, and end the one that was kept."""
     end_idle()
     timer = threading.Timer(LINGER, _end, [idle])
     timer.daemon = True
@@ -38,7 +38,7 @@ def keep(idle: IdleProcess) -> None:
 
 
 def take(command: tuple[str, ...]) -> IdleProcess | None:
-    """Return the process that was kept, if it runs this command; its new owner ends it or has it kept again."""
+    """Return the kept process if it is alive and runs this command, else None; the new owner must end or keep it."""
     with _turn:
         if not _idle or _idle[0][0].process.command != command:
             return None
@@ -52,7 +52,7 @@ def take(command: tuple[str, ...]) -> IdleProcess | None:
 
 @atexit.register
 def end_idle() -> None:
-    """End the process that was kept."""
+    """End the kept process."""
     with _turn:
         found = [*_idle]
         _idle.clear()

@@ -1,7 +1,7 @@
-"""Projects whose files were judged before, byte for byte and by this very engine: they are not judged again.
+"""Projects whose files were checked before, byte for byte and by this very engine, so that they are not checked again.
 
-What is kept is what the process that judged them sent (run/reload/delta.py), in the user's own cache: a start of the
-files of yesterday needs no process to read them. Only projects without errors are kept, and not what was warned of.
+The user's cache has what the checking process sent (run/reload/delta.py), so a start with yesterday's files needs no
+process to read them. Only projects without errors are kept, without their warnings.
 """
 
 import hashlib
@@ -25,24 +25,24 @@ _LEVEL = 1
 
 
 def recall(root: Path, files: Mapping[str, bytes]) -> Project | None:
-    """The project that these files make, None where nobody has kept it."""
+    """Return the project of these files, None if it was not kept."""
     packed = CacheFolder("projects").read(_name(root, files))
     if packed is None:
         return None
     try:
         return replace(DeltaDecoder().unpack(pickle.loads(zlib.decompress(packed))), root=str(root.absolute()))
-    except Exception:  # whatever is in the file: it is made anew
+    except Exception:  # the file may contain anything: the project is made again
         return None
 
 
 def keep(root: Path, files: Mapping[str, bytes], packed: Delta) -> None:
-    """Keep what these files make, all of it."""
+    """Keep the packed project of these files."""
     content = zlib.compress(pickle.dumps(packed, pickle.HIGHEST_PROTOCOL), _LEVEL)
     CacheFolder("projects").write(_name(root, files), content)
 
 
 def _name(root: Path, files: Mapping[str, bytes]) -> str:
-    """A name for all that the project depends on; of a file that is not read it counts which one is there."""
+    """Return the cache's name for all that the project depends on; of unread models only their listing counts."""
     digest = hashlib.sha256(f"{fingerprint(files)} {chosen_robot(files)} {engine()} {sys.version}".encode())
     for path, what, _ in sorted(listed(root / MODELS)):
         if f"{MODELS}/{path}" not in files:

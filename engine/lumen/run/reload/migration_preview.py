@@ -1,4 +1,4 @@
-"""Where a reload would lead from every configuration that a behaviour can be in."""
+"""A preview of a reload from every configuration that a behaviour can reach."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,22 +13,24 @@ from lumen.statechart import Snapshot
 
 @dataclass(frozen=True)
 class MigrationOutcome:
-    """What happens to those who are in these innermost states: `kept`, `moved`, `waits` or `refused`, and how.
-
-    `after` are the innermost states that it leads to, `count` how many configurations it is said of.
-    """
+    """The outcome of a reload in some innermost states."""
 
     states: tuple[str, ...]
+    """The innermost active states before the reload."""
     outcome: str
+    """`kept`, `moved`, `waits` or `refused`."""
     told: str
+    """Notes, or the reason why it waits or is refused."""
     after: tuple[str, ...]
+    """The innermost active states afterwards."""
     verdict: MigrationVerdict
     count: int = 1
+    """How many configurations have this outcome."""
 
 
 @dataclass(frozen=True)
 class MigrationPreview:
-    """The fates of all configurations explored; `waiting` are those that the bound left out."""
+    """The outcomes in all explored configurations; `waiting` counts those beyond the bound."""
 
     rows: tuple[MigrationOutcome, ...]
     configurations: int
@@ -36,7 +38,10 @@ class MigrationPreview:
 
 
 def preview(old: Project, new: Project, bound: int, tell: Callable[[int, int], None]) -> MigrationPreview:
-    """The fate of every configuration of the old behaviour, those of the same states and fate counted together."""
+    """Return the outcome in every reachable configuration of the old behaviour, with equal outcomes counted together.
+
+    `bound` limits the exploration; `tell` is called with how many configurations were explored, and how many wait.
+    """
     machine = old.machine
     language, epoch = old.languages[0], story_epoch(None, old.timezone)
     search = StateSpaceSearch(machine, outside(old, machine), language=language, epoch=epoch, timezone=old.timezone)
@@ -53,7 +58,7 @@ def preview(old: Project, new: Project, bound: int, tell: Callable[[int, int], N
 
 
 def outcome_of(old: Project, new: Project, snapshot: Snapshot) -> MigrationOutcome:
-    """What a reload at that moment would do."""
+    """Return what a reload at this moment would do."""
     verdict = plan(old, new, snapshot, at=snapshot.at)
     before = _inner(old, snapshot)
     if isinstance(verdict, MigrationPlan):

@@ -1,4 +1,4 @@
-"""Good files on their way: active at the first tick at which the running state allows it."""
+"""Accepted files before their activation, at the first tick at which the running state allows it."""
 
 import logging
 import time
@@ -21,16 +21,16 @@ from lumen.statechart import Snapshot
 
 
 class Trial:
-    """A bundle that runs until a visit is over: the one that is under way, or else the next.
+    """A bundle that runs until the end of the present visit, or of the next one.
 
-    Its visits end where the behaviour is back in the state in which it waits for a visitor.
+    A visit ends when the behaviour is back in the state in which it waits for a visitor.
     """
 
     def __init__(self, project: Project) -> None:
         self._home, self._away = home_of(project.machine), False
 
     def over(self, snapshot: Snapshot) -> bool:
-        """Whether the visit has come to its end, as the behaviour stands now."""
+        """Return whether the visit has ended; called at each tick with the current snapshot."""
         home = self._home in snapshot.configuration
         self._away |= not home
         return home and self._away
@@ -48,35 +48,42 @@ _log = logging.getLogger(__name__)
 
 @dataclass
 class StagedBundle:
-    """A good bundle on its way: `going` is whether it is to be made active, `since` when that was asked [s].
-
-    `asked` is the snapshot from which it could not go on; `told` what it was said to wait for; `objected` whether
-    it was refused for what it would change in recorded visits. With `trial` it is made active for one visitor;
-    `kept` is what waits again once this one is active. One that comes `between` two visits waits for the end of one.
-    """
+    """An accepted bundle before its activation."""
 
     project: Project
     changes: tuple[Change, ...]
     validation: Validation | None = None
     who: str = "files"
+    """Who asked for it: `files`, `command` or `trial`."""
     going: bool = False
+    """Whether it will be activated as soon as possible."""
     now: bool = False
+    """Whether to activate it without waiting for what is under way."""
     back: bool = False
+    """Whether it ran before."""
     since: float = field(default_factory=time.monotonic)
+    """When its activation was requested [s]."""
     asked: object = None
+    """The last snapshot from which it could not continue."""
     told: str = ""
+    """What it was last reported to wait for."""
     objected: bool = False
+    """Whether it was refused because recorded visits would change."""
     trial: bool = False
+    """Whether to activate it for one visitor."""
     between: bool = False
+    """Whether to wait for the end of a visit, for any time."""
     kept: "StagedBundle | None" = None
+    """The bundle that waits again after this one's activation."""
     orders: list[ReloadRequest] = field(default_factory=list)
+    """Requests that get its verdicts."""
 
 
 class MigrationQueue:
-    """Holds at most one bundle, `staged`; `tick` makes it active, waits for what it has to wait for, or refuses it.
+    """A queue of at most one bundle, `staged`, which `tick` activates, delays or refuses.
 
-    `revision` counts how often another bundle became active, `applied` is told of it. What has just come is on
-    `probation`. `restore` brings the files of a roll back into the project's folder, then reports it.
+    `applied` is called with each newly active bundle, `restore` writes the files of a rollback to the project's folder
+    and then reports it.
     """
 
     def __init__(
@@ -90,17 +97,20 @@ class MigrationQueue:
         self._restore = restore
         self._behavior, self._notifier, self._records, self._applied = behavior, notifier, records, applied
         self.revision = 0
+        """How often another bundle became active."""
         self.staged: StagedBundle | None = None
         self._trial: Trial | None = None
         self._tried: StagedBundle | None = None
         self.rollback_guard = RollbackGuard(behavior, self._rolled_back)
+        """Watches a newly active bundle."""
 
     @property
     def running(self) -> Project:
+        """The bundle that runs."""
         return self._behavior.loop.project
 
     def stage(self, staged: StagedBundle, order: ReloadRequest | None = None) -> None:
-        """Have a bundle made active as soon as may be."""
+        """Activate a bundle as soon as possible."""
         if self.staged and self.staged is not staged:
             staged.orders += self.staged.orders
         if order:
@@ -111,22 +121,22 @@ class MigrationQueue:
         self.staged = staged
 
     def hold(self, staged: StagedBundle) -> None:
-        """Keep a bundle until somebody has it made active."""
+        """Keep a bundle until a person activates it."""
         self.staged = staged
         self._notifier.tell(self._about(staged, "staged"))
 
     def attempt(self, staged: StagedBundle, order: ReloadRequest) -> None:
-        """Have a bundle made active until a visit is over; then it waits as before."""
+        """Activate a bundle until a visit ends; then it waits as before."""
         staged.trial = True
         self.stage(staged, order)
 
     def refuse(self, staged: StagedBundle, order: ReloadRequest) -> None:
-        """A person does not want a bundle."""
+        """Refuse a bundle for a person."""
         staged.orders.append(order)
         self._refuse(staged, BY_A_PERSON)
 
     def object(self, staged: StagedBundle, order: ReloadRequest | None) -> None:
-        """Keep a bundle under which recorded visits would be others: a person may have it made active all the same."""
+        """Refuse a bundle that would change recorded visits, but keep it: a person may still activate it."""
         if self.staged:
             staged.orders += self.staged.orders
         staged.orders += [order] if order else []
@@ -134,11 +144,11 @@ class MigrationQueue:
         staged.objected = True
 
     def drop(self) -> None:
-        """Newer files have come, and they are bad, or those that run."""
+        """Drop the staged bundle, because newer files are bad or the same as the running ones."""
         self.staged = None
 
     def dry_run(self, staged: StagedBundle, order: ReloadRequest) -> None:
-        """Answer what would become of a bundle."""
+        """Answer what a reload of a bundle would do."""
         verdict = self._behavior.plan(staged.project, now=order.now)
         report = self._about(staged, "dry run")
         match verdict:
@@ -154,6 +164,7 @@ class MigrationQueue:
         order.answer({**report.to_json(), "lines": list(report.lines())})
 
     def tick(self, now: float) -> None:
+        """End probation and trial if their time has come, and try to activate the staged bundle."""
         if self.rollback_guard.over(now):
             self._records.approve(self.running.hash)
         if self._trial and self._trial.over(self._behavior.loop.runtime.snapshot):
@@ -162,7 +173,7 @@ class MigrationQueue:
             self._go(self.staged, now)
 
     def _end_trial(self) -> None:
-        """The visitor for whom a bundle was tried is gone: what ran before comes back, and the bundle waits again."""
+        """Stage the previous bundle after a trial's visit; the tried bundle waits again."""
         tried, before = self._tried, self.rollback_guard.before
         self._trial = None
         if before and not (self.staged and self.staged.going):
@@ -171,7 +182,7 @@ class MigrationQueue:
             self.stage(StagedBundle(back, found, who="trial", now=True, back=True, kept=tried))
 
     def _go(self, staged: StagedBundle, now: float) -> None:
-        """Apply it, wait for what it has to wait for, or refuse it."""
+        """Apply a bundle, let it wait, or refuse it."""
         before, snapshot = self.running, self._behavior.loop.runtime.snapshot
         if staged.between and (home := home_of(before.machine)) and home not in snapshot.configuration:
             staged.since = time.monotonic()
@@ -188,7 +199,7 @@ class MigrationQueue:
             if isinstance(verdict, MigrationPlan):
                 self._apply(staged, verdict, now)
                 return
-        except Exception as error:  # a fault of ours costs the reload, and nothing else
+        except Exception as error:  # an internal error fails only the reload
             why = f"the bus refuses its routes: {error}" if isinstance(error, BusError) else fault_of(error)
             if self.running is before:
                 self._refuse(staged, why)
@@ -224,7 +235,7 @@ class MigrationQueue:
         self._behavior.apply(staged.project, plan, begun)
 
     def _tell_all(self, report: ReloadReport, orders: list[ReloadRequest]) -> None:
-        """Let everybody know of another bundle that is active; a fault of ours in that changes nothing about it."""
+        """Report a newly active bundle; an internal error in that is logged and changes nothing."""
         try:
             if report.back and report.who == "command":
                 self._restore(report, orders)
@@ -240,7 +251,7 @@ class MigrationQueue:
             _log.exception("the active files have changed, but not every process could be informed")
 
     def _give_up(self, staged: StagedBundle, verdict: MigrationDelay | Refusal) -> None:
-        """It has waited long enough, or can't go on from here at all."""
+        """Refuse a bundle that has waited too long, or can't continue from here."""
         staged.going = False
         if isinstance(verdict, MigrationDelay):
             waited = f"`{verdict.what}` is still under way after {self.running.patience:g} s ({verdict.reason})"
@@ -257,7 +268,7 @@ class MigrationQueue:
         staged.orders = []
 
     def _rolled_back(self, reason: str, bad: Project, took: float) -> None:
-        """The probation has brought back the bundle before, in so much time [s]."""
+        """Report that the rollback guard restored the previous bundle, in `took` [s]."""
         self.staged = self._trial = self._tried = None
         self.revision += 1
         found = changes(bad, self.running)

@@ -1,4 +1,4 @@
-"""What came of files, told to everybody whom it concerns."""
+"""Notification of a reload's result to everyone who needs it."""
 
 import logging
 from collections.abc import Iterable
@@ -15,17 +15,17 @@ _log = logging.getLogger(__name__)
 
 
 class ReloadNotifier:
-    """Tells the terminal, the bus (`lumen.config.status`), who asked, and the journal.
-
-    `last` is what was told last, `last_at` when that was (UTC).
-    """
+    """A reporter of results to the terminal, the bus (`lumen.config.status`), the requesters, and the journal."""
 
     def __init__(self, behavior: LiveBehavior, narrator: Narrator, records: RunRecords) -> None:
         self._behavior, self._narrator, self._records = behavior, narrator, records
         self.last: ReloadReport | None = None
+        """The last result, None before the first."""
         self.last_at = datetime.now(UTC)
+        """When it was reported (UTC)."""
 
     def tell(self, report: ReloadReport, orders: Iterable[ReloadRequest] = ()) -> None:
+        """Report a result, and answer the requests that led to it."""
         lines, body = list(report.lines()), report.to_json()
         self.last, self.last_at = report.kept(), datetime.now(UTC)
         for line in lines:
@@ -41,5 +41,5 @@ class ReloadNotifier:
             _log.warning("the result of the reload was not published: %s", error)
 
     def line(self, text: str) -> None:
-        """To the terminal only."""
+        """Print a line on the terminal only."""
         self._narrator.line("reload", text)

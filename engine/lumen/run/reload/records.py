@@ -1,4 +1,4 @@
-"""What a running exhibition writes into its home: journal, bundles, and where its behaviour stands."""
+"""The files that a running exhibition writes in its home: journal, bundles, and the behaviour's snapshot."""
 
 import json
 import logging
@@ -18,7 +18,7 @@ from lumen.run.reload_journal import Journal
 from lumen.run.snapshot_store import SnapshotStore
 
 HEARTBEAT_PERIOD = 1.0
-"""How often it is noted that the run lives, where nothing else is [s]."""
+"""Time between two marks that the run is alive, if nothing else is written [s]."""
 
 DECISIONS_FILE = "decisions.json"
 
@@ -26,10 +26,10 @@ _log = logging.getLogger(__name__)
 
 
 class RunRecords:
-    """The records in a home; without one (another run of the same project has it) nothing is written.
+    """The records in a home; nothing is written without one, because another run of the project has it.
 
-    Where the behaviour stands is written many times a second, and a disk may take half a second to take it: that has a
-    thread of its own, until `close`.
+    Snapshots are written many times a second, and a disk may block for half a second, so a thread does that until
+    `close`.
     """
 
     def __init__(self, home: Home | None) -> None:
@@ -51,61 +51,62 @@ class RunRecords:
         return self.inputs.trouble if self.inputs else ""
 
     def write(self, entry: Mapping[str, Any]) -> None:
+        """Write an entry of the reload journal."""
         self.journal.write(entry)
 
     def keep_decisions(self, decisions: Mapping[str, Any]) -> None:
-        """Have it written what people decided, and what waits for them: for the run that goes on after a crash."""
+        """Save people's decisions and the waiting events on the thread, for a run that resumes after a crash."""
         if self._home:
             self._desk.submit(self._home.write, DECISIONS_FILE, json.dumps(decisions, default=str).encode())
 
     def decisions(self) -> Any:
-        """What people had decided when the run before ended; None where nothing is known."""
+        """Return people's decisions at the end of the previous run; None if there are none."""
         return self._home.read_json(DECISIONS_FILE) if self._home else None
 
     def store(self, files: Mapping[str, bytes]) -> None:
-        """Keep the files of a good bundle."""
+        """Store the files of an accepted bundle."""
         if self.keeper:
             self.keeper.store(files)
 
     def files(self, hash: str) -> Mapping[str, bytes] | None:
-        """The files of a bundle that was kept; None if they are not kept."""
+        """Return the files of a stored bundle; None if they are not kept."""
         return self.keeper.files(hash) if self.keeper else None
 
     def begin(self, hash: str) -> None:
-        """This bundle is active now, and on trial; the one before has ended nothing."""
+        """Start the trial of a newly active bundle; the one before counts as no crash."""
         self.annul()
         self._trial = hash
         if self.trials:
             self.trials.begin(hash)
 
     def approve(self, hash: str) -> None:
-        """A bundle has stood its probation."""
+        """Note that a bundle has passed its probation."""
         if self.keeper and self.trials:
             self.keeper.approve(hash)
             self.trials.acquit(hash)
             self._trial = ""
 
     def condemn(self) -> None:
-        """The bundle on trial has failed, and the exhibition lives."""
+        """Note that the bundle on trial failed while the exhibition survived."""
         self._trial = ""
 
     def died(self, hash: str) -> int:
-        """How often the exhibition ended before this bundle had stood its probation."""
+        """Return how often the exhibition ended before this bundle passed its probation."""
         return self.trials.count(hash) if self.trials else 0
 
     def annul(self) -> None:
-        """The exhibition ends, for nothing that its files could help."""
+        """Note that the exhibition ends for reasons other than its files."""
         if self.trials and self._trial:
             self.trials.annul(self._trial)
         self._trial = ""
 
     def prune(self, *projects: Project | None) -> None:
-        """Forget all bundles but these, and those that the journal needs."""
+        """Delete all bundles except these and those that the journal needs."""
         if self.keeper:
             self._desk.submit(self.keeper.prune, *(project.hash for project in projects if project))
 
     def keep(self, exhibition: BehaviorLoop) -> None:
-        """Have it written where the behaviour stands, where that is news and what was to be written before is."""
+        """Write the behaviour's snapshot if it is new, else a sign of life when due; skip both during a write."""
         snapshot = exhibition.runtime.snapshot
         if self.keeper is None or not self._settled():
             return
@@ -117,24 +118,24 @@ class RunRecords:
             self._keeping = self._desk.submit(self.keeper.beat)
 
     def forget(self, person: PersonName) -> None:
-        """Have what names somebody taken out of the journals; where they stand is written anew by `keep`."""
+        """Remove a person's entries from the journals; `keep` writes the snapshot anew."""
         self._desk.submit(self.journal.forget, person)
         if self.inputs:
             self.inputs.forget(person)
 
     def close_inputs(self) -> None:
-        """Write what is left of what happened."""
+        """Write the rest of the journal of inputs."""
         if self.inputs:
             self.inputs.close()
 
     def close(self) -> None:
-        """Wait for what is being written; nothing is written any more."""
+        """Wait for the current writes; nothing is written afterwards."""
         self.close_inputs()
         self._desk.shutdown()
         self._settled()
 
     def _settled(self) -> bool:
-        """Whether nothing is being written; says once that it could not be."""
+        """Return whether nothing is being written; log a failed write once."""
         if self._keeping and not self._keeping.done():
             return False
         if self._keeping and (fault := self._keeping.exception()):

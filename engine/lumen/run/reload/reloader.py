@@ -1,4 +1,4 @@
-"""Saved files on a running exhibition: taken where they are good, reported where they are not."""
+"""The reloader of a running exhibition: it activates good saved files and reports bad ones."""
 
 import logging
 import time
@@ -39,25 +39,28 @@ NEWER_ON_DISK = "the project's folder still has the newer files"
 UNTIL_APPLIED = "nothing saved there is activated until a person applies it"
 
 MODES = ("auto", "manual", "off")
-"""Take saved files at once; only judge them, and wait for `lumen reload --apply`; leave them alone."""
+"""Activate saved files at once; only check them, and wait for `lumen reload --apply`; ignore them."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReloadOptions:
-    """The way in which saved files are used: one of `MODES`, and the times of the watcher and of stories [s]."""
+    """How saved files are used."""
 
     mode: str = "auto"
+    """One of `MODES`."""
     quiet: float = QUIET_PERIOD
+    """Time without a change after which files are read [s]."""
     budget: float = BUDGET
+    """Time for playing the saved stories [s]."""
     seen: str = ""
-    """The hash of the files that the start refused; they are not judged until they change."""
+    """The hash of the files that the start refused; they are not checked until they change."""
 
 
 AUTO = ReloadOptions()
 
 
 class _RolledBack(NamedTuple):
-    """A roll back that is over but for being told: what came of the folder, and of the files in it now."""
+    """A rollback before its report: what was restored in the folder, and the check of the files there now."""
 
     report: ReloadReport
     orders: list[ReloadRequest]
@@ -66,10 +69,10 @@ class _RolledBack(NamedTuple):
 
 
 class Reloader:
-    """Has saved files judged, and stages every good bundle; hears what operators ask for.
+    """A reloader that has saved files checked, stages every good bundle, and answers operators.
 
-    `worker` judges them; else another process does. `applied` is called with each bundle that becomes active, and
-    `wake`, on any thread, when files have been judged.
+    `worker` checks them, by default in another process. `applied` is called with each bundle that becomes active, and
+    `wake`, on any thread, when files have been checked.
     """
 
     def __init__(
@@ -112,12 +115,12 @@ class Reloader:
 
     @property
     def last(self) -> ReloadReport | None:
-        """What was told last."""
+        """The last report, None before the first."""
         return self._notifier.last
 
     @property
     def last_reload(self) -> LastReload | None:
-        """The same for who asks how the exhibition is."""
+        """The last report in short, for the status; None before the first."""
         if (last := self.last) is None:
             return None
         return LastReload(self._notifier.last_at, last.verdict, last.after, next(iter(last.lines()), ""))
@@ -127,18 +130,19 @@ class Reloader:
         return self._behavior.loop.project
 
     def begin(self, news: Iterable[ReloadReport]) -> None:
-        """The exhibition starts; `news` are the reloads that this is."""
+        """Start the probation of the running bundle, and report the reloads that this start was (`news`)."""
         self._records.begin(self._running.hash)
         for report in news:
             self._notifier.tell(report)
 
     def close(self) -> None:
+        """End the watcher and the worker."""
         self._undo()
         self._watcher.close()
         self._worker.close()
 
     def reload(self, now: float) -> ReloadReport:
-        """Take the files as they are on the disk, between two ticks, while everything waits for it; what came of it."""
+        """Reload the files from disk while the caller waits, between two ticks; return the report."""
         files = read_files(Path(self._running.root), self._running.one_of_several)
         request = ReloadRequest("reload", now=False, answer=lambda _: None)
         began = time.monotonic()
@@ -149,18 +153,18 @@ class Reloader:
 
     @property
     def mode(self) -> str:
-        """How saved files are taken: one of `MODES`."""
+        """How saved files are used: one of `MODES`."""
         return self._mode
 
     @property
     def on_probation(self) -> bool:
-        """Whether the files that run have not stood their probation yet."""
+        """Whether the running files have not passed their probation yet."""
         return self._queue.rollback_guard.left(self._behavior.loop.clock.now()) is not None
 
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None], *, dry: bool = False) -> None:
-        """Have files taken that do not lie in the project's folder, between two visits; `answer` hears each verdict.
+        """Reload files from elsewhere than the project's folder, between two visits; `answer` gets each verdict.
 
-        `dry` ones are only judged: nothing of what runs or waits changes.
+        With `dry` they are only checked, and nothing that runs or waits changes.
         """
         verb = "dry-run" if dry else "reload"
         self._watcher.give(
@@ -169,13 +173,13 @@ class Reloader:
         )
 
     def write(self, change: Callable[[], Mapping[str, bytes]]) -> None:
-        """Let `change` bring the files that run into the project's folder; it gives back what lies there then."""
+        """Let `change` write the running files to the project's folder; it returns what is there afterwards."""
         self._watcher.write(change)
 
     def tick(self, now: float) -> None:
-        """Take what was asked, see what the watcher found, and apply what is staged.
+        """Handle requests and the watcher's results, and apply what is staged.
 
-        A fault of ours in any of that costs the reload, and nothing else.
+        An internal error in this fails only the reload.
         """
         try:
             self._tick(now)
@@ -197,7 +201,7 @@ class Reloader:
         self._queue.tick(now)
 
     def _judge(self, saved: SavedFiles) -> Validation:
-        """Judge saved files, and prepare their routes and motions, on the watcher's thread: the robot does not wait."""
+        """Check saved files and prepare their routes and motions, on the watcher's thread so that no tick waits."""
         validation = Validation(saved, "")
         try:
             validation = self._validator(saved)
@@ -212,7 +216,7 @@ class Reloader:
         return validation
 
     def _restore(self, report: ReloadReport, orders: list[ReloadRequest]) -> None:
-        """Have the folder hold the files that run again, on the thread that reads it; then the roll back is told."""
+        """Write the running files back to the folder on the watcher's thread, which then has the rollback reported."""
         root, robot = Path(self._running.root), self._running.one_of_several
 
         def change() -> Mapping[str, bytes]:
@@ -226,7 +230,7 @@ class Reloader:
         self._watcher.write(change)
 
     def _tell_back(self, back: _RolledBack) -> None:
-        """Tell a roll back, and where the newer versions are; those still on the disk wait for a person from now on."""
+        """Report a rollback, and where the newer files are; those still on disk wait for a person from now on."""
         report, restored = back.report, back.restored
         if restored.trouble:
             self._newer_on_disk = f"{NEWER_ON_DISK} ({restored.trouble})"
@@ -237,7 +241,7 @@ class Reloader:
         self._notifier.tell(report, back.orders)
 
     def _advise(self, validation: Validation | list[Rehearsal] | _RolledBack, urgent: Callable[[], bool]) -> None:
-        """On the watcher's thread, when there is nothing more urgent."""
+        """Play further stories on the watcher's thread while nothing is more urgent."""
         if isinstance(validation, Validation) and (failed := self._validator.advise(validation, urgent)):
             self._watcher.results.put(failed)
 
@@ -279,7 +283,7 @@ class Reloader:
             self._notifier.tell(self._answer("refused", f"there is nothing {nothing}"), [order])
 
     def _take(self, validation: Validation) -> None:
-        """Decide on what was judged."""
+        """Refuse, hold or stage files that were checked."""
         order = validation.saved.asked if isinstance(validation.saved.asked, ReloadRequest) else None
         who, orders, queue = "command" if order else "files", [order] if order else [], self._queue
         if not validation.good or validation.project is None:

@@ -1,4 +1,4 @@
-"""What is told of a reload: as JSON on the bus and in the journal, and as lines for people."""
+"""The report on a reload: JSON for the bus and the journal, and lines for people."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -11,60 +11,65 @@ from lumen.language.projects import Project
 from lumen.run.reload.validator import Validation, told
 
 MAX_LISTED = 100
-"""Changes and diagnostics that a bulletin lists."""
+"""Changes and diagnostics that a report lists."""
 OPEN = ("waiting", "judging")
-"""Verdicts after which another one follows."""
+"""Verdicts that another one follows."""
 START = "start"
+"""`who` of a reload at the start of a run."""
 
 
 @dataclass
 class ReloadReport:
-    """One verdict on files: `unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run`, `status`.
-
-    `who` asked for it: `files`, `command`, `trial`, `probation`, or the `start` of a run on other files than those
-    before. `before` and `after` are hashes of bundles, `restart` sentences about what becomes active only then, `took`
-    times [s] by what took them. `back`: the files ran before. `told_visits`: what came of recorded visits was told
-    already. `details` has the data of each listed change (`change_data`).
-    """
+    """One verdict on files."""
 
     verdict: str
+    """`unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run` or `status`."""
     who: str
+    """Who asked: `files`, `command`, `trial`, `probation`, or the `start` of a run with other files than the last."""
     before: str = ""
+    """Hash of the bundle before."""
     after: str = ""
+    """Hash of the bundle that it is about."""
     revision: int = 0
     changes: tuple[Change, ...] = ()
     validation: Validation | None = None
     waiting_for: str = ""
+    """The state that must be left first."""
     reason: str = ""
     hint: str = ""
     notes: tuple[str, ...] = ()
     back: bool = False
+    """Whether the files ran before."""
     took: dict[str, float] = field(default_factory=dict)
+    """Durations [s] by activity."""
     more: dict[str, Any] = field(default_factory=dict)
+    """Further fields of the JSON data."""
     told_visits: bool = False
+    """Whether the result for recorded visits was reported before."""
     details: list[dict[str, Any]] = field(default_factory=list)
+    """Data of each listed change (`change_data`)."""
 
     def compared(self, project: Project) -> "ReloadReport":
-        """Return the same with the details of its changes, which led to `project`."""
+        """Return a copy with the details of its changes, which led to `project`."""
         return replace(self, details=[change_data(change, project) for change in self.changes[:MAX_LISTED]])
 
     def kept(self) -> "ReloadReport":
-        """The same without the files and the project that it is about."""
+        """Return a copy without the files and the project, to be kept."""
         validation = self.validation and self.validation.kept()
         return replace(self, validation=validation)
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Everything wrong with the files; where one is an error, they were refused."""
+        """Everything wrong with the files; an error among it means that they were refused."""
         return self.validation.diagnostics if self.validation else ()
 
     @property
     def restart(self) -> list[str]:
-        """What becomes active only when the exhibition is started anew."""
+        """The changes that become active only at the next start."""
         return [str(change) for change in self.changes if change.risk is Risk.RESTART and self.who != START]
 
     def lines(self) -> Iterator[str]:
-        """What a person is told, the reasons before the verdict."""
+        """Yield the lines for people, the reasons before the verdict."""
         if self.validation:
             errors = (d for d in self.validation.diagnostics if d.severity is Severity.ERROR)
             yield from map(str, list(errors)[:MAX_LISTED])
@@ -123,7 +128,7 @@ class ReloadReport:
         return {**validation, **self.took}
 
     def to_json(self) -> dict[str, Any]:
-        """The body on `lumen.config.status`, and the entry in the journal."""
+        """Return the body on `lumen.config.status`, which is also the entry in the journal."""
         found: dict[str, Any] = {
             "verdict": self.verdict,
             "final": self.verdict not in OPEN,
@@ -150,11 +155,11 @@ class ReloadReport:
 
 
 def reason_of(refusal: Refusal, project: Project) -> str:
-    """Why it can't be, with the place in the new files where it could be said."""
+    """Return why a reload is refused, after the place in the new files if there is one."""
     place = project.place(f"behaviors/{refusal.behavior}.yaml", refusal.where) if refusal.behavior else None
     return f"{place}: {refusal.reason}" if place else refusal.reason
 
 
 def what_for(verdict: MigrationDelay | Refusal) -> str:
-    """The state that has to be left first."""
+    """Return the state that must be left first."""
     return verdict.what if isinstance(verdict, MigrationDelay) else verdict.state

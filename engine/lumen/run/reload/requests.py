@@ -1,4 +1,4 @@
-"""What an operator may ask of a running exhibition: messages on `lumen.config.command`."""
+"""Operators' requests about saved files: messages on `lumen.config.command`."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,36 +10,39 @@ from lumen.language.routing_keys import CONFIG_COMMAND, CONFIG_STATUS, INTERNAL_
 from lumen.ports import Bus, Message
 
 COMMAND, STATUS = INTERNAL_ALIASES[CONFIG_COMMAND], INTERNAL_ALIASES[CONFIG_STATUS]
-"""Where orders come, and what becomes of them is told, while one robot is on the bus."""
+"""The keys of requests and of their results on a bus with one robot."""
 REQUESTS = ("reload", "apply", "try", "refuse", "rollback", "dry-run", "status", "stop")
+"""The verbs of requests."""
 WAITING = 100
+"""Requests that may wait for a tick; one more drops the oldest."""
 
 
 def command_key(robot: str) -> str:
-    """Where orders to that robot's exhibition come."""
+    """Return the key of requests to a robot's exhibition."""
     return key_of_robot(CONFIG_COMMAND, robot)
 
 
 def status_key(robot: str) -> str:
-    """Where that robot's exhibition tells what becomes of saved files."""
+    """Return the key on which a robot's exhibition publishes the results."""
     return key_of_robot(CONFIG_STATUS, robot)
 
 
 @dataclass(frozen=True)
 class ReloadRequest:
-    """`verb` is one of `REQUESTS`; `now` does not wait for what is under way. `answer` sends a body to who asked.
-
-    With `between` it waits for the end of a visit, however long that is.
-    """
+    """A request about saved files."""
 
     verb: str
+    """One of `REQUESTS`."""
     now: bool
+    """Whether not to wait for what is under way."""
     answer: Callable[[Any], None]
+    """Sends a body to the sender."""
     between: bool = False
+    """Whether to wait for the end of a visit, for any time."""
 
 
 def request_from(message: Message, bus: Bus) -> ReloadRequest:
-    """The order that a message is; raises UsageError that says what would be right."""
+    """Return the request in a message. Raises UsageError, with advice, if there is none."""
     body = message.body
     if not isinstance(body, dict) or not isinstance(verb := body.get("command"), str):
         raise UsageError(f'send a body such as {{"command": "reload"}}, with one of the commands {", ".join(REQUESTS)}')
@@ -51,7 +54,7 @@ def request_from(message: Message, bus: Bus) -> ReloadRequest:
 
 
 def answering(message: Message, bus: Bus) -> Callable[[Any], None]:
-    """Sends a body to who wants an answer; to nobody where the bus is gone."""
+    """Return a function that replies to a message with a body; it does nothing if the bus is gone."""
 
     def answer(body: Any) -> None:
         try:

@@ -1,4 +1,4 @@
-"""A rolled-back project's folder: it holds the files that run again, and the newer versions are kept beside it."""
+"""The project's folder after a rollback: it gets the running files again, and the newer versions are kept elsewhere."""
 
 import os
 import shutil
@@ -15,15 +15,15 @@ from lumen.project.project_folders import FLEET_FILE
 from lumen.upkeep.private_folder import private_folder
 
 KEPT_FOLDER = "rolled-back"
-"""The folder of a home with the newer versions, a folder for each time."""
+"""The folder of a home with the newer versions, in one folder per rollback."""
 NOT_KEPT = "the previous files are not kept"
 _NEW = ".restored"
 
 
 class Restored(NamedTuple):
-    """The result of a restoration: the paths that changed, and the folder `kept` with their newer versions.
+    """The result of a restoration: the changed paths, and the folder `kept` with their newer versions.
 
-    `trouble` is why nothing was done, empty otherwise.
+    `trouble` is why nothing was done, else empty.
     """
 
     paths: tuple[str, ...] = ()
@@ -31,15 +31,15 @@ class Restored(NamedTuple):
     trouble: str = ""
 
     def lines(self) -> list[str]:
-        """Return what a person needs to know, a sentence for each file."""
+        """Return a sentence for each file, for a person."""
         return [f"{path} is as it was before; the newer version is in {self.kept}/{path}" for path in self.paths]
 
 
 def restore(root: Path, wanted: Mapping[str, bytes] | None) -> Restored:
-    """Make the project's files `wanted`, all of them or none; what differed is kept in the home first.
+    """Make the project's files `wanted`, all of them or none; the newer versions are kept in the home first.
 
-    fleet.yaml and files that Lumen does not read stay as they are. A newer file that `wanted` does not have is moved
-    away. A link is never replaced.
+    fleet.yaml and files that Lumen does not read stay the same. A newer file that `wanted` lacks is moved away. A link
+    is never replaced. With `wanted` None, or after an error, nothing is done and the result has the `trouble`.
     """
     if wanted is None:
         return Restored(trouble=NOT_KEPT)
@@ -64,7 +64,7 @@ def restore(root: Path, wanted: Mapping[str, bytes] | None) -> Restored:
 
 
 def _check(root: Path, paths: tuple[str, ...], there: Mapping[str, bytes]) -> None:
-    """Raise OSError for the first file that is a link, or can't be read and so not be kept."""
+    """Raise OSError for the first file that is a link, or can't be read and therefore not be kept."""
     for path in paths:
         file = on_disk(root, path)
         if file.is_symlink():
@@ -74,7 +74,7 @@ def _check(root: Path, paths: tuple[str, ...], there: Mapping[str, bytes]) -> No
 
 
 def _keep(root: Path, newer: Mapping[str, bytes]) -> Path:
-    """Write the newer versions into a new folder of the home; return that folder. Raises OSError."""
+    """Write the newer versions to a new folder of the home; return that folder. Raises OSError."""
     folder = _new_folder(home_of(root) / KEPT_FOLDER)
     for path, content in newer.items():
         _write(folder / path, content)
@@ -93,9 +93,9 @@ def _new_folder(kept: Path) -> Path:
 
 
 def _replace(root: Path, wanted: Mapping[str, bytes | None], there: Mapping[str, bytes]) -> None:
-    """Bring the files into the folder; if one can't be, all are as they were. Raises OSError.
+    """Write the files to the folder; if one fails, restore all. Raises OSError.
 
-    Each is written under another name first: a full disk is noticed before anything is replaced.
+    Each is first written under another name, so that a full disk is noticed before anything is replaced.
     """
     files = {path: on_disk(root, path) for path in wanted}
     drafts, done = dict[str, Path](), list[str]()

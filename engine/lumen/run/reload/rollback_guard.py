@@ -1,4 +1,4 @@
-"""The first seconds of a bundle: where it fails in them, the one before comes back."""
+"""The probation of a newly active bundle: if it fails in its first seconds, the good one comes back."""
 
 import logging
 import time
@@ -13,44 +13,46 @@ from lumen.run.live_behavior import LiveBehavior
 from lumen.run.resuming import anew
 
 PERIOD = 10.0
-"""Of the exhibition's clock [s]."""
+"""Length of the probation on the exhibition's clock [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class RollbackGuard:
-    """Watches over the bundle that was applied last.
+    """A watch over the bundle that was applied last.
 
-    A failure is an exception out of the interpreter or of what performs its commands, or a behaviour that does not come
-    to rest. It brings back `good`, the bundle that has stood its probation, by the plan from the new to the old one;
-    the event that failed happens again under it. `before` is what ran before the last reload. `back` is told. The
-    bundle of the start is on probation, too; there is none to go back to in this run.
+    A failure is an exception from the interpreter or from performing a command, or a behaviour that does not come to
+    rest. It restores `good`, the last bundle that passed its probation, by a migration plan; the failed event is then
+    processed again. `back` is called afterwards. The bundle of the start is on probation too, but this run has none to
+    restore.
     """
 
     def __init__(self, behavior: LiveBehavior, back: Callable[[str, Project, float], None]) -> None:
         self._behavior, self._back = behavior, back
         self.good = _lean(behavior.loop.project)
+        """The last bundle that passed its probation."""
         self.before: Project | None = None
+        """The bundle before the last reload, None before the first."""
         self._until: float | None = behavior.loop.clock.now() + PERIOD
         behavior.loop.rescuers.append(self)
 
     def begin(self, before: Project, now: float) -> None:
-        """Another bundle runs since `now` [s]."""
+        """Start the probation of another bundle at `now` [s]."""
         self.before, self._until = _lean(before), now + PERIOD
 
     def over(self, now: float) -> bool:
-        """Whether the bundle has stood it just now."""
+        """Return whether the bundle passes its probation at this call."""
         if self._until is None or now < self._until:
             return False
         self._until, self.good = None, _lean(self._behavior.loop.project)
         return True
 
     def left(self, now: float) -> float | None:
-        """How long it still lasts [s], None where none is under way."""
+        """Return how long the probation still lasts [s], None if there is none."""
         return None if self._until is None else max(0.0, round(self._until - now, 3))
 
     def rescue(self, error: Exception) -> Sequence[Command] | None:
-        """Go back to the good bundle, if the one that failed is on probation."""
+        """Restore the good bundle if the failed one is on probation, and return the commands for that; else None."""
         bad = self._behavior.loop.project
         if self._until is None or self.good.hash == bad.hash:
             return None
@@ -72,5 +74,5 @@ class RollbackGuard:
 
 
 def _lean(project: Project) -> Project:
-    """A bundle to go back to: without what stands where in its files, which is most of it."""
+    """Return a bundle to go back to, without the places of nodes in its files, which are most of it."""
     return replace(project, documents={})

@@ -1,4 +1,4 @@
-"""Saved files, taken while the behaviour runs; and where it stands, kept for a run after this one."""
+"""The parts for saved files and for the behaviour's snapshot."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from lumen.run.reload.reloader import Reloader
 
 
 class ReloadPart(Part):
-    """Takes saved files; it stands before the brain, whose `needs` it has, so that a bundle comes between two steps."""
+    """The part that reloads saved files; it precedes the brain, so that bundles change between two steps."""
 
     patient = True
 
@@ -25,9 +25,9 @@ class ReloadPart(Part):
 
 
 class RecordsPart(Part):
-    """Keeps where the behaviour stands if that `lasts`, and at the end the last of its journal.
+    """The part that saves the behaviour's snapshot if the run `lasts`, and completes the journal at the end.
 
-    It comes after the brain, whose `needs` it has.
+    It follows the brain, and has the brain's `needs`.
     """
 
     patient = True

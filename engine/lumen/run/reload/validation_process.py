@@ -1,6 +1,6 @@
-"""The process in which files are judged: `python -m lumen.run.reload.validation_process`, run by a `JudgeProcess`.
+"""The process that checks files: `python -m lumen.run.reload.validation_process`, run by a `JudgeProcess`.
 
-Its memory and its time for each question are limited; the system ends it if it needs more.
+Its memory and its time for each question are limited; the system ends it if it exceeds them.
 """
 
 import time
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 
 class EnoughError(Exception):
-    """There is no time left for this story."""
+    """The time for a story has passed."""
 
 
 def failure(project: Project, story: str, seconds: float) -> "Rehearsal | None":
-    """How a story fails with a project; None where it does not, or not within `seconds` of this machine's time."""
+    """Return how a story fails with a project; None if it does not, or not within `seconds` of real time."""
     from lumen.run.rehearsal import rehearse  # half of what this process imports, for stories only
 
     until = time.perf_counter() + seconds
@@ -42,13 +42,14 @@ def failure(project: Project, story: str, seconds: float) -> "Rehearsal | None":
 
 
 class FileJudgement:
-    """Answers questions about files; `play` and `visits` are about the project that was loaded last."""
+    """Answers to questions about files; `play` and `visits` use the project that was loaded last."""
 
     def __init__(self) -> None:
         self._project: Project | None = None
         self._sender = DeltaEncoder()
 
     def answer(self, question: Sequence[Any]) -> Any:
+        """Return the answer to a question: a verb with its arguments. None for an unknown question."""
         match question:
             case ["load", str(root), dict(files)]:
                 with gc_paused():
@@ -64,7 +65,7 @@ class FileJudgement:
 
 
 def main() -> None:
-    """Answer until the pipe ends."""
+    """Answer questions until the pipe ends."""
     with answering(MAX_MEMORY) as pipe:
         give_back()
         judgement = FileJudgement()

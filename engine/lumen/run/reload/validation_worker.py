@@ -1,9 +1,9 @@
-"""Saved files judged in a process of its own, so that they never hold up a tick, and never end the exhibition.
+"""Saved files checked in a separate process, so that they never delay a tick and never end the exhibition.
 
-Python runs one thread at a time. A thread that loads files would keep the exhibition waiting for as long as the system
-lets it wait itself, some ticks on a busy machine. Of what comes back only that travels which differs from what is here
-already: some milliseconds. The child is our own program, and the pipe to it nobody else's. What ends it would have
-ended us: it is never tried here (docs/decisions/023).
+Python runs one thread at a time. A thread that loads files would delay the exhibition for as long as the system makes
+the thread itself wait: some ticks on a busy machine. Of the result only what differs from the known project is sent:
+some milliseconds. The child is Lumen's own program, with a private pipe. What ends the child would have ended this
+process, so it is never tried here (docs/decisions/023).
 """
 
 import sys
@@ -27,40 +27,41 @@ if TYPE_CHECKING:
 
 COMMAND = [sys.executable, "-m", "lumen.run.reload.validation_process"]
 Loaded = tuple[Project | None, tuple[Diagnostic, ...]]
+"""A project, None if it has errors, and its diagnostics."""
 
 
 class FileJudge(Protocol):
-    """Loads files, and plays stories."""
+    """Something that loads files, and plays stories and visits."""
 
     def begin(self) -> None:
-        """Files will have to be loaded soon."""
+        """Prepare to load files soon."""
 
     def warm(self, files: Mapping[str, bytes]) -> None:
-        """Files that differ little from these may have to be loaded."""
+        """Prepare to load files that differ little from these."""
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
-        """The project that the files make, None where they have errors, and everything wrong with them.
+        """Return the project that the files make, None if they have errors, and everything wrong with them.
 
-        Raises FatalFilesError where reading them ends whoever reads them.
+        Raises FatalFilesError if reading them ends the process that does.
         """
 
     def play(self, project: Project, story: str, seconds: float) -> "Rehearsal | None":
-        """How a story fails with the project loaded last; None where it does not, or not within this time."""
+        """Return how a story fails with the last loaded project; None if it does not within `seconds` [s]."""
 
     def visits(self, project: Project, running: str, budget: float) -> VisitsCheck:
-        """What comes of playing recorded visits, for so long [s], with the project loaded last.
+        """Play recorded visits for at most `budget` [s] with the last loaded project; return the result.
 
-        `running` is the hash of the bundle that runs. Raises FatalFilesError where that ends whoever plays them.
+        `running` is the hash of the running bundle. Raises FatalFilesError if that ends the process that plays them.
         """
 
     def close(self) -> None:
-        """Let go of what it needs."""
+        """Release its resources."""
 
 
 class ValidationWorker:
-    """A `FileJudge` in another process: the one that was kept, else one begun when it is first needed.
+    """A `FileJudge` in another process: the idle one that was kept, else a new one on first use.
 
-    It is begun anew where it has died.
+    A process that died is started again.
     """
 
     def __init__(self, root: Path, timeout: float = ANSWER_TIMEOUT) -> None:
@@ -70,17 +71,17 @@ class ValidationWorker:
 
     @property
     def packed(self) -> Delta:
-        """The project that was loaded last, all of it, packed."""
+        """All pieces of the last loaded project, packed."""
         return self._receiver.packed
 
     def warm(self, files: Mapping[str, bytes]) -> None:
-        """Have a process that was not begun yet read what runs: of files that are saved later one will differ."""
+        """Let a process that has not started read the running files, of which later saved files will differ in one."""
         if not self._process.started:
             with suppress(FatalFilesError):
                 self._load(files)
 
     def begin(self) -> None:
-        """Begin the process: it takes about as long as files do to settle."""
+        """Start the process, which takes about as long as files take to settle."""
         with suppress(OSError):
             self._process.start()
 
@@ -91,7 +92,7 @@ class ValidationWorker:
         except FatalFilesError as error:
             if not started or error.overdue:
                 raise
-            return self._load(files)  # what it had judged before may have been too much, and not these
+            return self._load(files)  # earlier files may have used up its memory, so a new process tries again
 
     def play(self, project: Project, story: str, seconds: float) -> "Rehearsal | None":
         try:
@@ -105,7 +106,7 @@ class ValidationWorker:
         return found or VisitsCheck(trouble="the process that plays them was restarted")
 
     def close(self) -> None:
-        """Have the process kept for who needs one soon."""
+        """Keep the process for the next user."""
         if self._process.started:
             keep(IdleProcess(self._process, self._receiver))
             self._process = JudgeProcess(COMMAND)
@@ -115,7 +116,7 @@ class ValidationWorker:
         return (None if parcel is None else self._receiver.unpack(parcel)), diagnostics
 
     def _ask(self, *question: Any) -> Any:
-        """Its answer; raises what it raised, and FatalFilesError where it did not live to answer."""
+        """Return its answer, or raise its error. Raises FatalFilesError if the process ended without one."""
         try:
             self._process.start()
         except OSError as error:
@@ -128,9 +129,10 @@ class ValidationWorker:
 
 
 def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:
-    """What these files make, read in a process of its own; raises FatalFilesError where they end it.
+    """Return the project of these files, and their diagnostics, read in a separate process.
 
-    A project that was read before is not read again (run/reload/known_projects.py), nor warned of.
+    A project that was read before is taken from the cache (run/reload/known_projects.py), without its warnings. Raises
+    FatalFilesError if the files end the process.
     """
     if project := recall(root, files):
         return project, ()
@@ -142,7 +144,7 @@ def load_apart(root: Path, files: Mapping[str, bytes]) -> Loaded:
 
 
 def _how(error: NoAnswerError, timeout: float) -> str:
-    """How the process ended, as a sentence."""
+    """Return in words how the process ended."""
     if error.fault is Fault.LATE:
         return f"it took more than {timeout:.0f} s"
     if error.fault is Fault.MEMORY:

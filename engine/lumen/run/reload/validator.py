@@ -1,4 +1,4 @@
-"""Saved files on trial: loaded, linted, compared with what runs, and played on the recording robot."""
+"""The check of saved files: loaded, linted, compared with the running bundle, and played on the recording robot."""
 
 import logging
 import threading
@@ -25,54 +25,59 @@ from lumen.statechart.compiled_machine import prepare
 _log = logging.getLogger(__name__)
 
 BUDGET = 2.0
-"""How long the stories that were saved may take, all together [s]."""
+"""Time for playing the saved stories, all together [s]."""
 
 
 @dataclass(frozen=True)
 class Validation:
-    """What came of saved files: a bundle, or what is wrong with them.
-
-    `failed` are stories that were saved with them and do not hold; `fault` is a failure of ours. `changes` are against
-    `running`, the bundle that ran when they were judged; `visits` is what came of recorded visits, None where none were
-    to be played; `loading`, `playing` and `replaying` are how long each took [s].
-    """
+    """The result of checking saved files: a bundle, or what is wrong with them."""
 
     saved: SavedFiles
     hash: str
     project: Project | None = None
     diagnostics: tuple[Diagnostic, ...] = ()
+    """Findings of lint."""
     running: Project | None = None
+    """The bundle that ran when they were checked."""
     changes: tuple[Change, ...] = ()
+    """Changes from `running`."""
     failed: tuple[Rehearsal, ...] = ()
+    """Stories that were saved with them and fail."""
     fault: str = ""
+    """An internal error, empty if there was none."""
     loading: float = 0.0
+    """Time for loading [s]."""
     playing: float = 0.0
+    """Time for playing stories [s]."""
     visits: VisitsCheck | None = None
+    """The result for recorded visits, None if they were not played."""
     replaying: float = 0.0
+    """Time for playing visits [s]."""
 
     @property
     def objects(self) -> bool:
-        """Whether a person has to say that they are to be taken: a recorded visit would be another one."""
+        """Whether a person must confirm the files, because a recorded visit would change."""
         return self.visits is not None and self.visits.objects
 
     @property
     def good(self) -> bool:
+        """Whether there is a bundle, and no story or check failed."""
         return self.project is not None and not self.failed and not self.fault
 
     @property
     def took(self) -> float:
-        """How long our own work took [s], without the quiet period."""
+        """Time for the whole check [s], without the quiet period."""
         return self.loading + self.playing + self.replaying
 
     def kept(self) -> "Validation":
-        """The same without the files and the projects that it is about."""
+        """Return a copy without the files and the projects, to be kept."""
         return replace(self, saved=self.saved._replace(files={}), project=None, running=None)
 
 
 class BundleValidator:
-    """Judges files against the bundle that runs, which `running` tells; called on threads that may take their time.
+    """A checker of files against the bundle that `running` returns; it is called on threads that may take long.
 
-    `worker` loads files and plays stories, in another process: for one thread at a time, since it plays what it loaded
+    `worker` loads files and plays stories in another process: for one thread at a time, because it plays what it loaded
     last.
     """
 
@@ -81,12 +86,12 @@ class BundleValidator:
         self._turn, self._loaded = threading.Lock(), ""
 
     def __call__(self, saved: SavedFiles) -> Validation:
-        """What came of them; nothing here raises for what they say."""
+        """Return the result of checking saved files; errors in them do not raise."""
         with self._turn:
             return self._validate(saved)
 
     def warm(self, files: Mapping[str, bytes]) -> None:
-        """Be ready for files that differ little from these, which run."""
+        """Prepare to check files that differ little from these, the running ones."""
         with self._turn:
             self._worker.warm(files)
 
@@ -110,13 +115,13 @@ class BundleValidator:
             return Validation(saved, hash, project, diagnostics, running, found, failed, "", *took)
         except FatalFilesError as error:
             return Validation(saved, hash, fault=str(error))
-        except Exception as error:  # a fault of ours costs the reload, and nothing else
+        except Exception as error:  # an internal error fails only the reload
             return Validation(saved, hash, fault=fault_of(error))
 
     def _replayed(
         self, running: Project, project: Project, found: Iterable[Change], *, always: bool = False
     ) -> VisitsCheck | None:
-        """What the files that run want to be known of visits; a fault of ours costs that, and not the reload."""
+        """Return the result for recorded visits, None if not wanted; an internal error does not fail the reload."""
         check = running.section(ReplayCheck)
         if always and not check.mode:
             check = ReplayCheck("warn")
@@ -131,7 +136,7 @@ class BundleValidator:
         return replace(visits, mode=check.mode, budget=check.budget)
 
     def advise(self, validation: Validation, urgent: Callable[[], bool]) -> list[Rehearsal]:
-        """The stories of what was changed that would not hold any more, as far as there is leisure to play them."""
+        """Return the failures of other stories of the changed behaviours, as long as nothing is `urgent`."""
         if not validation.good or validation.project is None:
             return []
         others = _touched_stories(validation.project, validation.changes, validation.saved.changed)
@@ -141,7 +146,7 @@ class BundleValidator:
     def _play(
         self, project: Project, stories: Iterable[Story], urgent: Callable[[], bool] = lambda: False
     ) -> Iterator[Rehearsal]:
-        """Those that fail; one for which there is no time left is left out."""
+        """Yield the stories that fail; those without time left are skipped."""
         until = time.perf_counter() + self._budget
         for story in stories:
             left = until - time.perf_counter()
@@ -157,7 +162,7 @@ def _saved_stories(project: Project, changed: Iterable[str]) -> list[Story]:
 
 
 def _touched_stories(project: Project, found: Iterable[Change], changed: Iterable[str]) -> list[Story]:
-    """Stories of behaviours that changed, the shown one first and then the shortest; all where gestures changed."""
+    """Return the stories of changed behaviours, all if gestures changed: the project's story, then by length."""
     saved = _saved_stories(project, changed)
     files = {change.file for change in found if change.risk is not Risk.COSMETIC or change.kind == "text"}
     behaviors = {PurePosixPath(file).stem for file in files if file.startswith("behaviors/")}
@@ -171,13 +176,13 @@ def _touched_stories(project: Project, found: Iterable[Change], changed: Iterabl
 
 
 def told(rehearsal: Rehearsal) -> str:
-    """A failure in a line, with its place."""
+    """Return a failure in one line, with its place."""
     place = f"{rehearsal.place}: " if rehearsal.place else ""
     failed = rehearsal.failed
     return f"{place}{failed.what if failed else ''}"
 
 
 def fault_of(error: Exception) -> str:
-    """What is said of a fault of ours, with where it was raised in the log."""
+    """Log an internal error with its traceback, and return a sentence about it."""
     _log.error("Lumen failed on the saved files", exc_info=error)
     return f"an error in Lumen prevented the check of these files: {error!r}"

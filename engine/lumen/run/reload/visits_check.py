@@ -1,4 +1,4 @@
-"""Saved files on trial on the visits that were recorded: what would visitors have noticed?"""
+"""The check of saved files against recorded visits: what would visitors have noticed?"""
 
 import time
 from collections.abc import Iterator
@@ -16,29 +16,30 @@ MAX_LISTED = 10
 
 
 class BudgetSpentError(Exception):
-    """The budget is used up."""
+    """The time budget is used up."""
 
 
 @dataclass(frozen=True)
 class VisitsCheck:
-    """What came of playing visits with saved files, the newest first.
-
-    `complete` is whether there was time for all within the `budget` [s]. `trouble` is why the check came to nothing.
-    """
+    """The result of playing recorded visits with saved files, the newest first."""
 
     report: ReplayReport = field(default_factory=ReplayReport)
     mode: CheckMode = "warn"
+    """Whether differences are only reported (`warn`), or the files refused for them."""
     budget: float = 0.0
+    """Time for the check [s]."""
     complete: bool = True
+    """Whether all visits were played within `budget`."""
     trouble: str = ""
+    """Why the check failed, empty if it did not."""
 
     @property
     def objects(self) -> bool:
-        """Whether the files are not to be taken for it."""
+        """Whether the files must be refused for it."""
         return self.mode == "refuse" and bool(self.report.differ)
 
     def lines(self) -> Iterator[str]:
-        """What a person is told; nothing where no visit is kept."""
+        """Yield the lines for people; none if no visit is kept."""
         report = self.report
         if self.trouble:
             yield f"the recorded visits were not played with these files: {self.trouble}"
@@ -69,15 +70,16 @@ class VisitsCheck:
         return ", ".join(told)
 
     def to_json(self) -> dict[str, Any]:
+        """Return the result as JSON data, with the first MAX_LISTED differences."""
         said = self.report.to_json() | {"differ": [row.to_json() for row in self.report.differ[:MAX_LISTED]]}
         more = {"mode": self.mode, "complete": self.complete, "differing": len(self.report.differ)}
         return said | more | ({"trouble": self.trouble} if self.trouble else {})
 
 
 def check_visits(root: Path, new: Project, running: str, budget: float) -> VisitsCheck:
-    """Play the visits that the project in `root` keeps with other files, for so long [s].
+    """Play the kept visits of the project in `root` with other files, for at most `budget` [s]; return the result.
 
-    What the files of the bundle `running` have changed already counts as the same.
+    Differences that the files of the bundle `running` make as well do not count.
     """
     from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
     from lumen.project.home import home_of

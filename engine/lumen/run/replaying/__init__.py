@@ -1,1 +1,1 @@
-"""A journal that is replayed: which part of it is meant, the files that ran then, and what came of it."""
+"""The replay of a journal: the choice of its part, the files that ran then, and the result."""

@@ -1,4 +1,4 @@
-"""Which part of a journal somebody means: a file, a day, all visits, or what was played last."""
+"""The choice of a journal: a file, a day, all visits, or the last run."""
 
 from collections.abc import Iterable, Iterator
 from datetime import date, datetime, time, timedelta
@@ -14,25 +14,26 @@ from lumen.language.iso_time import time_of_day
 from lumen.project.home import home_of
 
 DAYS = {"today": 0, "yesterday": 1}
+"""Words for days, and how many days ago they are."""
 
 
 class ChosenJournal(NamedTuple):
-    """Files of one journal, in their order; `root` is the project that they are of."""
+    """Files of one journal, in order; `root` is their project's folder."""
 
     root: Path
     files: tuple[Path, ...]
 
     def entries(self) -> Iterator[RecordedEntry]:
-        """What stands in them; of a file that was cut what comes before the cut. Raises JournalError."""
+        """Yield the entries of the files; of a truncated file those before the cut. Raises JournalError."""
         for file in self.files:
             yield from read_journal(file).entries
 
 
 def chosen(root: Path, word: str | None, *, all: bool = False, robot: str = "") -> ChosenJournal:
-    """The journal of the project in `root` that a word means: a file, `today`, `yesterday`, or a day as `2026-11-23`.
+    """Return the journal in `root` that a word names: a file, `today`, `yesterday`, or a day as `2026-11-23`.
 
-    Without a word it is the run that was begun last, also one of a story; `all` is every visit that is kept. Raises
-    UsageError where there is none.
+    Without a word it is the last run, which may be a story; `all` means every kept visit. Raises UsageError if there is
+    none.
     """
     folder = home_of(root, robot) / JOURNAL_FOLDER
     if word and (word.endswith(JOURNAL_SUFFIX) or "/" in word):
@@ -59,12 +60,12 @@ def chosen(root: Path, word: str | None, *, all: bool = False, robot: str = "") 
 
 
 def listed(root: Path, robot: str = "") -> list[tuple[Path, JournalHeader]]:
-    """The files of the project's journal, those of stories too, the oldest first."""
+    """Return the files of the project's journal with their headers, including those of stories, the oldest first."""
     return sorted(headers(home_of(root, robot) / JOURNAL_FOLDER), key=lambda row: row[1].began)
 
 
 def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry]:
-    """The entries up to a time of day, `14:03` or `14:03:20`, where the exhibition was. Raises UsageError."""
+    """Yield the entries up to a time of day at the exhibition, `14:03` or `14:03:20`. Raises UsageError."""
     wanted, clock, limit = requested_time(text), JournalClock(), None
     for entry in entries:
         moment = clock.of(entry)
@@ -76,7 +77,7 @@ def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry
 
 
 def requested_time(text: str) -> time:
-    """Return the time of day that a person wrote. Raises UsageError."""
+    """Return the time of day that a person wrote. Raises UsageError if it is no such time."""
     try:
         return time_of_day(text)
     except ValueError:

@@ -1,4 +1,4 @@
-"""The visits of a journal from the newest to the oldest, without reading more of it than is asked for."""
+"""The visits of a journal from the newest to the oldest, reading only as much of it as is used."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -14,9 +14,9 @@ from lumen.run.replaying.other_files import with_machines
 
 
 def latest_first(files: Sequence[Path], bundles: KeptBundles) -> Iterator[RecordedVisit]:
-    """The visits in these files of one journal, which are in their order; a file that can't be read has none.
+    """Yield the visits in these files of one journal, given in order; an unreadable file has none.
 
-    A visit that goes on in the next file is whole; it is one of the file in which it begins.
+    A visit that continues in the next file is completed from it, and belongs to the file in which it begins.
     """
     for number in reversed(range(len(files))):
         entries = _entries(files[number])
@@ -36,6 +36,6 @@ def _entries(file: Path) -> tuple[RecordedEntry, ...]:
 
 
 def _goes_on(entries: Sequence[RecordedEntry], visit: RecordedVisit) -> bool:
-    """Whether that visit has begun in the file before: each file begins with where the behaviour stands."""
+    """Return whether a visit began in the file before; each file begins with a keyframe."""
     first = entries[0]
     return isinstance(first, JournalJump) and first.kind == "keyframe" and visit.first == first.position

@@ -1,4 +1,4 @@
-"""All visits of a journal against other files: how many would have been the same?"""
+"""All visits of a journal played with other files, to count those that would be the same."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
@@ -27,9 +27,9 @@ def against(
     tell: Callable[[int], None] = lambda _: None,
     deadline: float | None = None,
 ) -> ReplayReport:
-    """What comes of playing each visit with the other files; `tell` hears how many were played.
+    """Return the result of playing each visit with the other files; `tell` is called with how many were played.
 
-    Where a `deadline` (`time.monotonic`) passes the rest is left out, and said to be unknown.
+    After `deadline` (`time.monotonic`) the remaining visits are not played, and count as unknown.
     """
     report, player = ReplayReport(), VisitPlayer(bundles, new)
     for visit in visits(with_machines(entries, bundles)):
@@ -43,10 +43,10 @@ def against(
 
 
 class VisitPlayer:
-    """Plays visits with the files of `new`.
+    """A player of visits with the files of `new`.
 
-    One that was recorded under other files than those of the bundle `running` and comes out otherwise now is compared
-    with what these would do: what they have changed already is not news. `hurry` may raise what ends a visit.
+    A difference is compared with what the bundle `running` would do, if the visit was recorded under other files: what
+    those have changed already is not reported. `hurry` may raise an error to end a visit.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class VisitPlayer:
         self._bundles, self._new, self._running, self._hurry = bundles, new, running, hurry
 
     def play(self, visit: RecordedVisit, report: ReplayReport) -> None:
-        """Play it, and let the report know what came of it; nothing is in it of a visit that was ended."""
+        """Play a visit and add its result to the report; an error from `hurry` leaves the report unchanged."""
         old = self._bundles.project(visit.home.bundle, visit.home.behavior) if visit.home else None
         known = old is not None and old.behavior in self._new.behaviors
         verdict = self._verdict(visit, old) if old and known and not visit.redacted else None
@@ -87,12 +87,12 @@ class VisitPlayer:
 
 
 def _staged_like(old: Project, new: Project) -> Project:
-    """The other files with the behaviour that ran then."""
+    """Return the other files with the behaviour that ran then."""
     return new if new.behavior == old.behavior else replace(new, behavior=old.behavior)
 
 
 def takes(project: Project, command: BodyCommand) -> float:
-    """How long the recording robot takes for a command [s]."""
+    """Return how long the recording robot takes for a command [s]."""
     if isinstance(command, Play):
         motion = project.motions.get(command.motion)
         return motion.duration if motion else USUAL_DURATION

@@ -1,4 +1,4 @@
-"""What came of a replay: how many visits and steps, and where the first of each visit differs."""
+"""The result of a replay: counts of visits and steps, and the first difference of each visit."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -13,41 +13,47 @@ from lumen.language.machines import MachineDefinition
 
 
 class ReplayDifference(NamedTuple):
-    """Where a visit was another one than now: its number, 0 outside of visits; when [s since 1970]; what was, and is.
-
-    `how` is `differs`, or with other files `says something else` or `ends elsewhere`. `place` is the file and line of
-    what is said now, empty where nothing is.
-    """
+    """A difference between a recorded visit and its replay."""
 
     visit: int
+    """Number of the visit, 0 outside of visits."""
     at: float
+    """When it happened [s since 1970]."""
     was: str
+    """What was recorded."""
     now: str
+    """What the replay gives."""
     how: str = "differs"
+    """`differs`, or with other files `says something else` or `ends elsewhere`."""
     place: str = ""
+    """File and line of the text that is said now, empty if there is none."""
 
     def to_json(self) -> dict[str, Any]:
+        """Return it as JSON data."""
         place = {"place": self.place} if self.place else {}
         return {"visit": self.visit, "at": iso_time(self.at), "was": self.was, "is": self.now, "how": self.how, **place}
 
 
 @dataclass
 class ReplayReport:
-    """How many `visits` there were, how many of them are the `same`; `redacted` ones are not compared.
-
-    `steps` were taken again. `unknown` says why others were not, and of how many entries that is so.
-    """
+    """Counts of visits and steps, and their differences."""
 
     visits: int = 0
+    """Number of visits."""
     steps: int = 0
+    """Number of steps that were taken again."""
     same: int = 0
+    """Visits without a difference."""
     redacted: int = 0
+    """Visits that were not compared, because a person was forgotten."""
     lost: int = 0
+    """Lost entries."""
     differ: list[ReplayDifference] = field(default_factory=list)
     unknown: dict[str, int] = field(default_factory=dict)
+    """Entries that could not be compared, by the reason."""
 
     def to_json(self) -> dict[str, Any]:
-        """As `lumen replay --format json` prints it."""
+        """Return it as `lumen replay --format json` prints it."""
         return {
             "visits": self.visits,
             "steps": self.steps,
@@ -59,7 +65,7 @@ class ReplayReport:
         }
 
     def add(self, verdict: VisitVerdict, visit: RecordedVisit) -> None:
-        """One more was played with other files."""
+        """Add the verdict on a visit that was played with other files."""
         self.steps += verdict.steps
         if verdict.how == SAME:
             self.same += 1
@@ -69,7 +75,7 @@ class ReplayReport:
         self.differ.append(ReplayDifference(self.visits, at, verdict.was, verdict.now, verdict.how, place))
 
     def join(self, more: "ReplayReport") -> None:
-        """What came of visits that were played after these with other files."""
+        """Add the report on later visits that were played with other files."""
         self.differ += [row._replace(visit=row.visit + self.visits) for row in more.differ]
         self.visits += more.visits
         self.steps += more.steps
@@ -79,30 +85,32 @@ class ReplayReport:
             self.unknown[why] = self.unknown.get(why, 0) + count
 
     def leave_out(self, why: str) -> None:
-        """One more can't be compared."""
+        """Count a visit that can't be compared."""
         self.unknown[why] = self.unknown.get(why, 0) + 1
 
 
 class TakenAgain(NamedTuple):
-    """What counts of a replayed step, small enough to be sent: whether it was taken, and what it was and is now.
-
-    Both are empty where it is the same.
-    """
+    """The result of replaying a step, small enough to be sent to another process."""
 
     stepped: bool
+    """Whether a step was taken."""
     unknown: str = ""
+    """Why it can't be compared, else empty."""
     differs: bool = False
     was: str = ""
+    """The recorded step in words, empty without a difference."""
     now: str = ""
+    """The replayed step in words, empty without a difference."""
 
     @classmethod
     def of(cls, row: ReplayedStep) -> "TakenAgain":
+        """Return the result of a replayed step."""
         words = (str(row.was), str(row.now)) if row.differs else ()
         return cls(row.step is not None, row.unknown, row.differs, *words)
 
 
 class ReplayCount:
-    """Counts replayed steps by their visits; `report` is what they come to."""
+    """A counter of replayed steps by their visits; `report` is the result."""
 
     def __init__(self) -> None:
         self.report = ReplayReport()
@@ -110,7 +118,7 @@ class ReplayCount:
         self._outside = False
 
     def take(self, entry: RecordedEntry, machine: MachineDefinition | None, row: TakenAgain) -> None:
-        """The next step, and the machine that ran then."""
+        """Count the next step, with the machine that ran then."""
         report = self.report
         part = self._watch.take(entry, machine)
         begins = isinstance(entry, JournalJump) and entry.kind == "start"
@@ -131,7 +139,7 @@ class ReplayCount:
             self.end()
 
     def end(self) -> None:
-        """Nothing follows, or nothing of this visit."""
+        """Finish the current visit, if there is one."""
         if self._inside:
             self._inside = False
             self.report.redacted += self._redacted
@@ -149,7 +157,7 @@ class ReplayCount:
 
 
 def replayed(entries: Iterable[RecordedEntry], machines: MachineSource) -> ReplayReport:
-    """What comes of taking all steps again with the files that ran then."""
+    """Return the result of taking all steps again with the files that ran then."""
     count = ReplayCount()
     for row in replay(entries, machines):
         count.take(row.entry, row.machine, TakenAgain.of(row))

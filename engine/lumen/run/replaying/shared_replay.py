@@ -1,4 +1,4 @@
-"""A long journal replayed by several workers, who share its steps or its visits; the report is that of one."""
+"""A long journal replayed by several workers, with the same report as from one."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import closing
@@ -18,9 +18,9 @@ from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in
 from lumen.run.workers.workers import Workers
 
 VISITS = 20
-"""How many visits are a task."""
+"""Visits in a task."""
 ENTRIES = 5_000
-"""A task of steps ends with the first keyframe after so many."""
+"""Entries after which a task of steps ends, at the next jump."""
 NEW = "new"
 """The name of the other files among the bundles."""
 
@@ -28,7 +28,7 @@ Row = tuple[RecordedEntry, MachineDefinition | None]
 
 
 def replay_kit(journal: ChosenJournal, bundles: KeptBundles, new: Mapping[str, bytes] | None = None) -> WorkKit:
-    """What workers need of a journal: the files that ran then, and others that are to be tried."""
+    """Return what workers need for a journal: the files that ran then, and other files to try."""
     hashes = {header_of(file).bundle for file in journal.files}
     kept = {hash: files for hash in hashes if (files := bundles.files(hash))}
     return WorkKit({**kept, **({NEW: new} if new else {})}, models_in(journal.root))
@@ -41,7 +41,7 @@ def shared_replay(
     workers: Workers,
     tell: Callable[[int], None] = lambda _: None,
 ) -> ReplayReport:
-    """What `replayed` returns; `tell` hears how many visits were counted."""
+    """Return what `replayed` returns; `tell` is called with how many visits were counted."""
     count, parts, ready = ReplayCount(), dict[int, list[Row]](), dict[int, list[TakenAgain]]()
     following = 0
 
@@ -69,7 +69,7 @@ def shared_against(
     workers: Workers,
     tell: Callable[[int], None] = lambda _: None,
 ) -> ReplayReport:
-    """What `against` returns for the kit's new files; `tell` hears how many visits were played."""
+    """Return what `against` returns for the kit's new files; `tell` is called with how many visits were played."""
     reports, report, played = dict[int, ReplayReport](), ReplayReport(), 0
     every = visits(with_machines(entries, bundles))
     tasks = iter(lambda: (tuple(islice(every, VISITS)),), ((),))
@@ -84,15 +84,15 @@ def shared_against(
 
 
 def take_again(kit: UnpackedKit, entries: tuple[RecordedEntry, ...], led: bool) -> list[TakenAgain]:
-    """A task: steps taken again. Where it is `led`, the first entry says only where the behaviour stood."""
+    """Take the steps of a task again. If it is `led`, the first entry only gives the snapshot, and has no result."""
     taken = [TakenAgain.of(row) for row in replay(entries, _KitBundles(kit).machine)]
     return taken[1:] if led else taken
 
 
 def play_visits(kit: UnpackedKit, visits: tuple[RecordedVisit, ...]) -> ReplayReport:
-    """A task: visits played with the new files."""
+    """Play the visits of a task with the new files."""
     new = kit.project(NEW)
-    assert new is not None  # who sent the task has loaded it
+    assert new is not None  # the sender of the task has loaded it
     report, player = ReplayReport(), VisitPlayer(_KitBundles(kit), new)
     for visit in visits:
         player.play(visit, report)
@@ -100,7 +100,7 @@ def play_visits(kit: UnpackedKit, visits: tuple[RecordedVisit, ...]) -> ReplayRe
 
 
 class _KitBundles(KeptBundles):
-    """The bundles of a journal where a worker has them."""
+    """The bundles of a journal in a worker's kit."""
 
     def __init__(self, kit: UnpackedKit) -> None:
         super().__init__(kit.root)
@@ -111,9 +111,9 @@ class _KitBundles(KeptBundles):
 
 
 def _parts(rows: Iterable[Row]) -> Iterator[tuple[list[RecordedEntry], list[Row]]]:
-    """The journal cut at jumps, which say where the behaviour stands: a part is compared up to the jump that ends it.
+    """Yield the journal in parts, cut at jumps, which have a snapshot; a part is compared up to its last jump.
 
-    Before each part but the first comes that jump once more, from which its steps go on.
+    That jump also leads the next part, whose steps continue from it.
     """
     lead, part = list[RecordedEntry](), list[Row]()
     for row in rows:

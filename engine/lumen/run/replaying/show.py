@@ -1,4 +1,4 @@
-"""What happened, shown again: told, and performed by a robot, at the pace at which it happened or faster."""
+"""A journal shown again: narrated and performed by a robot, at the original pace or faster."""
 
 from collections.abc import Iterable
 
@@ -12,13 +12,13 @@ from lumen.run.replaying.kept_bundles import KeptBundles
 from lumen.run.setup import Setup
 
 LEAD_IN = 1.0
-"""How long after its beginning a run that goes on is shown [s]."""
+"""Time before the first entry of a run [s]."""
 
 
 def show(entries: Iterable[RecordedEntry], bundles: KeptBundles, setup: Setup, narrator: Narrator) -> None:
-    """Take all steps again, tell of each, and let the robot do what it asked for; what the robot answers is not heard.
+    """Take all steps again, narrate them, and let the robot perform their commands; its answers are ignored.
 
-    Between runs no time passes.
+    Pauses between runs are skipped.
     """
     replayer = Replayer(bundles.machine)
     performer = Performer(setup.robot, MemoryBus(), lambda _: None)
@@ -46,7 +46,7 @@ def show(entries: Iterable[RecordedEntry], bundles: KeptBundles, setup: Setup, n
 
 
 def _tell(entry: JournalInput, narrator: Narrator) -> None:
-    """What somebody said; all else is told where it changes something."""
+    """Narrate a visitor's words; other inputs are narrated by their effects."""
     data = entry.event.data
     if isinstance(data, dict) and isinstance(said := data.get("result"), str):
         narrator.line("visitor", f"“{said}”")

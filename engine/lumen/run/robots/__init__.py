@@ -1,1 +1,1 @@
-"""How each of the robots that come with Lumen is set up, with its clock and the hall around it."""
+"""Set-up of the robots that come with Lumen, each with its clock and hall."""

@@ -1,4 +1,4 @@
-"""A robot that records the commands that it is given."""
+"""A robot that records its commands."""
 
 from lumen.clock.simulated import SimulatedClock
 from lumen.robot.recording import RecordingRobot
