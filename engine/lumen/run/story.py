@@ -1,4 +1,4 @@
-"""Plays a story: does what it says, waits for what it expects, and reports where it failed."""
+"""The player of a story: it performs its actions, waits for its expectations, and reports where it failed."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -49,7 +49,10 @@ QUESTION_WITHIN = 30.0
 
 
 def answered(bus: Bus, project: Project, id: str, answer: AnswerQuestion, waited: float) -> UnmetExpectation | None:
-    """Answer the question of that id, none where it is empty; what is wrong, also where none came in time."""
+    """Answer the question of an id; return what is wrong, None if nothing is.
+
+    An empty `id` means that no question was asked, which is wrong only after QUESTION_WITHIN.
+    """
     if not id:
         wanted = f"a question to the module `answers` within {QUESTION_WITHIN:g} s"
         return UnmetExpectation(wanted, "none was asked") if waited >= QUESTION_WITHIN else None
@@ -62,59 +65,67 @@ def answered(bus: Bus, project: Project, id: str, answer: AnswerQuestion, waited
 
 
 class StoryFailure(NamedTuple):
-    """Why a story failed: in which step (from 1) that stands `where`, what was expected, and what was."""
+    """Why a story failed."""
 
     story: str
     step: int
+    """Number of the step, from 1."""
     where: NodePath
+    """Place of the step in the file."""
     expected: str
+    """What was expected, in words."""
     was: str
+    """What happened instead, in words."""
 
     def __str__(self) -> str:
         return f"step {self.step} of `{self.story}`: {self.what}"
 
     @property
     def what(self) -> str:
-        """What was expected, and what was."""
+        """What was expected and what happened, in one sentence."""
         return f"expected {self.expected}, but {self.was}" if self.expected else self.was
 
 
 def staged(project: Project, story: Story | None) -> Project:
-    """The project with the behaviour that the story is about as the one that runs."""
+    """Return the project with the story's behaviour as the one that runs."""
     return replace(project, behavior=story.behavior) if story and story.behavior else project
 
 
 class StoryEnvironment(Protocol):
-    """Where a story plays: an exhibition, in this process or in others."""
+    """The exhibition in which a story plays, in this process or in others."""
 
     @property
-    def bus(self) -> Bus: ...
+    def bus(self) -> Bus:
+        """Its bus."""
+        ...
 
     @property
-    def project(self) -> Project: ...
+    def project(self) -> Project:
+        """The bundle that runs."""
+        ...
 
-    def happen(self, event: Event) -> None: ...
+    def happen(self, event: Event) -> None:
+        """Raise an event in the behaviour."""
+        ...
 
     def press(self, label: str, by: str) -> str:
-        """Press a button; why that can't be, empty where it can."""
+        """Press a button; return why that can't be done, empty if it was."""
         ...
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Decide what waits longest for approval; why that can't be, empty where it can."""
+        """Let the event that has waited longest go or stay; return why that can't be done, empty if it was."""
         ...
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:
-        """Whether marked transitions wait for GO."""
+        """Set whether marked transitions wait for GO."""
         ...
 
 
 class StoryPlayer(Observer):
-    """One story on an exhibition, which it watches; call `tick` with its time.
-
-    It is `finished` when its last step is done or one has failed; `failed` says what was expected where.
-    """
+    """An observer that plays one story on an exhibition; call `tick` with the exhibition's time."""
 
     failed: StoryFailure | None = None
+    """How it failed, None if it has not."""
 
     def __init__(
         self,
@@ -137,15 +148,16 @@ class StoryPlayer(Observer):
 
     @property
     def failure(self) -> str:
-        """Why it failed, in a line; empty where it has not."""
+        """Why it failed, in one line; empty if it has not."""
         return str(self.failed or "")
 
     @property
     def finished(self) -> bool:
+        """Whether its last step is done, or a step has failed."""
         return self.failed is not None or self.position >= len(self.story.steps)
 
     def start(self, now: float) -> None:
-        """Its first step begins at `now` [s], where that is not 0."""
+        """Begin the first step at `now` [s]; without this call it begins at 0."""
         self._begun = self._since = now
 
     def stepped(self, step: Step) -> None:
@@ -155,9 +167,7 @@ class StoryPlayer(Observer):
         self.see(active_names(step.snapshot), entered_names(step), step.snapshot.context, step.snapshot.place)
 
     def see(self, states: frozenset[str], entered: Iterable[str], context: Mapping[str, Any], place: str = "") -> None:
-        """These states are active now, after those were entered; that is what the behaviour remembers, and the place
-        where it knows the robot to be.
-        """
+        """Take over the active states, the context and the robot's place; fail if a forbidden state was entered."""
         self._witness.states, self._witness.context, self._witness.place = states, dict(context), place
         if bad := states.union(entered).intersection(self.story.never):
             self.fail(UnmetExpectation(f"never state {listed(bad)}", "it was entered"))
@@ -189,11 +199,14 @@ class StoryPlayer(Observer):
 
     def troubled(self, trouble: RunTrouble) -> None:
         expected = self._falls if trouble.kind == "fall" else self._errors if trouble.kind == "do" else False
-        if trouble.kind != "fall" and not expected:  # `answered` fails for a fall
+        if trouble.kind != "fall" and not expected:  # a fall already failed in `answered`
             self.fail(UnmetExpectation("", trouble.what))
 
     def tick(self, now: float) -> None:
-        """Do every step that can be done by `now` [s]; what is done is heard before anything is expected of it."""
+        """Do every step that is possible at `now` [s].
+
+        After an action the next tick follows, so that the behaviour gets it before an expectation is tested.
+        """
         for monitor in sorted(self._monitors, key=lambda monitor: monitor.deadline):
             self._violated(monitor.elapse(now))
         heard = True
@@ -203,7 +216,7 @@ class StoryPlayer(Observer):
             self._since, self._awaited = now, None
 
     def quiet_until(self, now: float) -> float:
-        """Until when it does nothing [s], unless something happens that it expects."""
+        """Return until when it does nothing [s], unless something that it expects happens."""
         if self.finished:
             return now
         return min(self._quiet_until(now), *(monitor.deadline for monitor in self._monitors), inf)
@@ -267,7 +280,7 @@ class StoryPlayer(Observer):
         return True
 
     def _shows(self, schedule: Schedule, now: float) -> bool:
-        """Whether the clock on the wall has come to a time of day since the step began."""
+        """Return whether the story's clock has reached a time of day since the step began."""
         if self._awaited is None:
             before = self._moment(self._since) - 1
             self._awaited = next_moment(schedule, before, self._exhibition.project.timezone)
@@ -277,7 +290,7 @@ class StoryPlayer(Observer):
         return self._moment(now) >= self._awaited
 
     def _answer(self, answer: AnswerQuestion, now: float) -> bool:
-        """Answer the question that was asked last, once there is one."""
+        """Answer the last question; return False until there is one."""
         id, self._witness.asked = self._witness.asked, ""
         if id:
             self._tell(answer)
@@ -302,7 +315,7 @@ class StoryPlayer(Observer):
         return False
 
     def fail(self, lack: UnmetExpectation) -> None:
-        """End the story at the step it stands at; where it has failed already, that counts."""
+        """Fail at the present step, unless the story has failed already."""
         position = min(self.position, len(self.story.steps) - 1)
         self.failed = self.failed or StoryFailure(
             self.story.name, position + 1, self.story.steps[position].where, lack.expected, lack.was
@@ -310,5 +323,5 @@ class StoryPlayer(Observer):
 
 
 def _distance(lacking: tuple[UnmetExpectation, ...]) -> tuple[bool, int]:
-    """How far the exhibition was from an expectation: in another state first, then by how much was missing."""
+    """Return how far an expectation is from being met: first whether the state differs, then how much is missing."""
     return any(lack.state for lack in lacking), len(lacking)

@@ -1,4 +1,4 @@
-"""What has been seen while a story plays, and what of an expectation does not hold."""
+"""What was observed while a story plays, and the expectations that it does not meet."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -13,33 +13,40 @@ from lumen.language.stories import Expect, Happen, SetSkills, Story
 
 
 class UnmetExpectation(NamedTuple):
-    """What was expected, and what was instead, in words."""
+    """What was expected, and what happened instead, in words."""
 
     expected: str
     was: str
     state: bool = False
-    """Whether the state was another one."""
+    """Whether a state was missing."""
 
 
 @dataclass
 class StoryObservations:
-    """What has been seen: the states now, where the robot is, and since the last expectation that held what was said,
-    played, done and published; `asked` is the id of the question that has no answer yet.
-    """
+    """The present state of an exhibition, and what happened since the last expectation that was met."""
 
     states: frozenset[str] = frozenset()
+    """Names of the active states."""
     context: dict[str, object] = field(default_factory=dict)
     place: str = ""
+    """The robot's place, empty if it is at none."""
     said: list[str] = field(default_factory=list)
+    """Texts that the robot began to say."""
     played: list[str] = field(default_factory=list)
+    """Motions that ended."""
     did: list[Do] = field(default_factory=list)
+    """Skills that ended."""
     published: list[tuple[str, Any]] = field(default_factory=list)
+    """Messages that were sent, with their routes."""
     playing: dict[str, str] = field(default_factory=dict)
+    """Motions under way, by id."""
     doing: dict[str, Do] = field(default_factory=dict)
+    """Skills under way, by id."""
     asked: str = ""
+    """Id of the question that has no answer yet, else empty."""
 
     def unmet(self, expected: Expect) -> tuple[UnmetExpectation, ...]:
-        """Everything of `expected` that does not hold now."""
+        """Return everything in `expected` that is not met now."""
         return tuple(self._unmet(expected))
 
     def _unmet(self, expected: Expect) -> Iterator[UnmetExpectation]:
@@ -81,16 +88,17 @@ class StoryObservations:
         return None
 
     def hear(self, event: Event | None) -> None:
-        """The behaviour took this event: one that answers the question leaves none open, but for a filler."""
+        """Note that the question is answered if this event of the behaviour answers it; a filler does not."""
         if event and self.asked and event.name.endswith(f".command.{self.asked}"):
             self.asked = self.asked if event.data and event.data.get("filler") else ""
 
     def forget(self) -> None:
+        """Forget what was said, played, done and published."""
         self.said, self.played, self.did, self.published = [], [], [], []
 
 
 def expects_fall(story: Story, machine: MachineDefinition) -> bool:
-    """Whether a story says that the robot falls: by the event, or by expecting a state that answers it."""
+    """Return whether a story includes a fall: as an event, or by expecting a state that a fall leads to."""
     answers = {
         machine.states[target].name
         for state in machine.states.values()
@@ -105,7 +113,7 @@ def expects_fall(story: Story, machine: MachineDefinition) -> bool:
 
 
 def expects_error(story: Story, machine: MachineDefinition) -> bool:
-    """Whether a story is about an error of a `do`: it sets one itself, or it expects a state of errors only."""
+    """Return whether a story includes an error of a `do`: it sets one, or expects a state that only errors lead to."""
     transitions = [t for m in (machine, *machine.invoked.values()) for s in m.states.values() for t in s.transitions]
     names = {path: state.name for m in (machine, *machine.invoked.values()) for path, state in m.states.items()}
     failed, other = set[str](), set[str]()
@@ -118,14 +126,14 @@ def expects_error(story: Story, machine: MachineDefinition) -> bool:
 
 
 def _holds(body: Any, wanted: Any) -> bool:
-    """Whether a body has all that is wanted of it: of a map the keys given, of a list every item."""
+    """Return whether a body has everything wanted: the given keys of a map, each item of a list."""
     if isinstance(wanted, Mapping) and isinstance(body, Mapping):
         return all(key in body and _holds(body[key], value) for key, value in wanted.items())
     return wanted is None or bool(body == wanted)
 
 
 def listed(names: object) -> str:
-    """`a`, `b`: or nothing."""
+    """Return names as `a`, `b`, sorted; `nothing` if there are none."""
     all_of_them = ", ".join(f"`{n}`" for n in sorted(names))  # type: ignore[call-overload]
     return all_of_them or "nothing"
 
@@ -135,12 +143,12 @@ def _at(place: str) -> str:
 
 
 def _texts(texts: list[str], wanted: str) -> str:
-    """Return what was said, and of several texts the one that is most like the wanted one."""
+    """Return the texts that were said, and of several the one most like the wanted one."""
     shown = "; ".join(f"“{t}”" for t in texts) or "nothing"
     return f"{shown}; the nearest is “{max(texts, key=partial(_likeness, wanted))}”" if len(texts) > 1 else shown
 
 
 def _likeness(wanted: str, text: str) -> int:
-    """The number of letters that a text has in common with the wanted one, in the same order."""
+    """Return how many letters a text has in common with the wanted one, in the same order."""
     blocks = SequenceMatcher(None, wanted.lower(), text.lower(), autojunk=False).get_matching_blocks()
     return sum(block.size for block in blocks if block.size > 2)

@@ -1,4 +1,4 @@
-"""The clock on the wall of a story: it begins when the story says, on whatever day it is played."""
+"""The time of day in a story, which begins at the time that the story sets, on any real day."""
 
 from datetime import date
 
@@ -7,14 +7,14 @@ from lumen.language.hours import Schedule
 from lumen.language.stories import Story
 
 MORNING = Schedule((10 * 60,))
-"""The time of day at which a story begins that does not say."""
+"""The time of day at which a story begins by default."""
 
 MONDAY = date(2026, 6, 1)
-"""The day on which a story begins that names none; of one that names a day of the week, that of this week."""
+"""The date on which a story begins by default; a story with a weekday begins in this week."""
 
 
 def story_epoch(story: Story | None, timezone: str) -> float:
-    """When the story begins, by the clock on the wall there [s since 1970]; without one, as one that does not say."""
+    """Return when a story begins by the clock in a time zone [s since 1970]; None stands for one without a time."""
     begins = (story and story.clock) or MORNING
     midnight = Schedule((0,), dates=(min(begins.dates, default=MONDAY),))
     first = next_moment(midnight, moment(-1e10, 0.0), timezone)
@@ -23,5 +23,5 @@ def story_epoch(story: Story | None, timezone: str) -> float:
 
 
 def story_moment(story: Story, timezone: str, lived: float) -> int:
-    """The moment that the clock on the wall shows when so much of the story has been lived through [s]."""
+    """Return the moment by the story's clock after `lived` [s] of the story, in microseconds."""
     return moment(story_epoch(story, timezone), lived)

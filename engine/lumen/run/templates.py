@@ -1,4 +1,4 @@
-"""Files that `lumen new function NAME` and the like write into a project: right as they are, and made to be changed."""
+"""Files that `lumen new function NAME` and the like write into a project: valid at once, and meant to be edited."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -115,7 +115,7 @@ _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 class Written(NamedTuple):
-    """The files that were written or changed, from the project's root, and the next steps: each with its purpose."""
+    """The files that were written or changed, relative to the project, and the next steps with their purposes."""
 
     files: tuple[str, ...]
     next: tuple[tuple[str, str], ...]
@@ -124,8 +124,8 @@ class Written(NamedTuple):
 def write_template(kind: str, name: str, root: Path) -> Written:
     """Write the files of one of `TEMPLATES` into a project.
 
-    Raises UsageError for a name that can't be used and if a file is there already; then nothing is written. Raises
-    OSError if a file can't be written.
+    Raises UsageError, and writes nothing, for a name that can't be used or if a file exists. Raises OSError if a file
+    can't be written.
     """
     if not _NAME.fullmatch(name):
         raise UsageError(f"a {kind} can't be called `{name}`: write letters, digits and `_`, beginning with a letter")
@@ -199,7 +199,7 @@ def _robot(name: str, root: Path) -> Written:
 
 
 def _write(root: Path, files: Mapping[str, str]) -> None:
-    """Write new files. Raises UsageError if one is there already, and then writes nothing."""
+    """Write new files. Raises UsageError, and writes nothing, if one exists already."""
     for file in files:
         if (root / file).exists():
             raise UsageError(f"{root / file} already exists: choose another name, or delete the file")

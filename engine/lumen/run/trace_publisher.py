@@ -1,4 +1,4 @@
-"""What the behaviour does, on the bus: for operators, and for visitors in a process of their own."""
+"""The behaviour's trace on the bus, for operators and for visitors in other processes."""
 
 import logging
 from collections.abc import Callable, Iterable, Iterator
@@ -21,18 +21,18 @@ from lumen.statechart.nesting import active_names, entered_names, flattened_step
 
 TRACE_ROUTE = "state"
 TRACE_TTL = 10.0
+"""Default lifetime of a message [s]."""
 MAX_DATA_CHARACTERS = 10_000
-"""How long the body of an event may be that is told."""
+"""Longest body of an event that is published."""
 
 _log = logging.getLogger(__name__)
 
 
 class TracePublisher(Observer):
-    """Publishes each step that changed something, each command as it is given, its answer, and what waits for GO.
+    """A publisher of each step that changed something, each command and its answer, and the events that wait for GO.
 
-    `project` returns the bundle that runs, `now` for the time [s]. `count` for how many steps the run has had, and
-    `emitting` which of them asked for the command that is being performed; 0 where nobody counts. `waiting` are the
-    events that wait for a person's GO.
+    `project` returns the bundle that runs, `now` the time [s], `count` how many steps the run has had, `emitting` which
+    of them emitted the present command (0 if unknown), and `waiting` the events that wait for GO.
     """
 
     def __init__(
@@ -61,20 +61,20 @@ class TracePublisher(Observer):
         self._tell({**body, "step": self._count(), "transitions": taken, "bundle": project.hash, "data": _data(step)})
 
     def migrated(self, plan: MigrationPlan) -> None:
-        """Tell where it stands under files that were saved, and which states these left and entered."""
+        """Publish the state after a reload, and which states it left and entered."""
         project = self._project()
         cause = Cause("file", f"behaviors/{project.behavior}.yaml")
         ways = {"entered": list(plan.entered), "exited": list(plan.exited), "event": "", "cause": _cause(cause)}
         self._tell({**_standing(plan.snapshot), **ways, "step": self._count(), "bundle": project.hash})
 
     def standing(self, snapshot: Snapshot) -> None:
-        """Tell somebody who has just come where the behaviour stands, and what waits for GO."""
+        """Publish the present state and the events that wait for GO, for a process that has just joined."""
         self._tell(_standing(snapshot))
         for held in self._waiting():
             self.approval("waits", held, "")
 
     def approval(self, became: str, held: HeldEvent, why: str) -> None:
-        """Tell of an event for a marked transition: that it `waits`, `goes` or `stays`, and why."""
+        """Publish that an event for a marked transition `waits`, `goes` or `stays`, and why."""
         project, (machine, wanted, approval) = self._project(), held.marked
         place = project.place(_file(project, machine), wanted.where)
         said: dict[str, Any] = {
@@ -89,7 +89,7 @@ class TracePublisher(Observer):
         self._tell({"approval": {**said, "since": round(held.since, 3), "until": until, "else": approval.otherwise}})
 
     def pace(self, realtime: float) -> None:
-        """Tell how much of real time is kept, where that has become too little, or enough again."""
+        """Publish the share of real time, when it becomes too low or recovers."""
         self._tell({"realtime": realtime})
 
     def performing(self, command: Command, now: float) -> None:
@@ -124,7 +124,7 @@ class TracePublisher(Observer):
 
 
 def _transitions(project: Project, step: Step) -> Iterator[dict[str, Any]]:
-    """Which transitions were taken, those of invoked behaviours included, and where they stand."""
+    """Yield the transitions that were taken, also in invoked behaviours, with their places."""
     for prefix, machine, part in flattened_steps(project.machine, step):
         file = _file(project, machine)
         for transition in part.transitions:
@@ -134,18 +134,18 @@ def _transitions(project: Project, step: Step) -> Iterator[dict[str, Any]]:
 
 
 def _file(project: Project, machine: MachineDefinition) -> str:
-    """Where a machine stands; a behaviour that is run with a story's context is another one than was read."""
+    """Return the file of a machine; one with a story's context is another object than the one that was read."""
     names = {id(one): name for name, one in project.behaviors.items()} | {id(project.machine): project.behavior}
     return f"behaviors/{names.get(id(machine), machine.id)}.yaml"
 
 
 def _cause(cause: Cause | None) -> dict[str, Any]:
-    """What brought the event about; what is not known is left out."""
+    """Return the known fields of an event's cause."""
     return {key: value for key, value in cause._asdict().items() if value} if cause else {}
 
 
 def _data(step: Step) -> Any:
-    """The event's body; a long one is left out, for it would leave no room for the rest."""
+    """Return the event's data, None if it is too long to leave room for the rest."""
     data = step.event.data if step.event else None
     return data if len(repr(data)) <= MAX_DATA_CHARACTERS else None
 

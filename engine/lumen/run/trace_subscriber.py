@@ -1,4 +1,4 @@
-"""A behaviour that runs in another process, seen from here by what it says on the bus."""
+"""A behaviour in another process, observed through its trace on the bus."""
 
 import logging
 from collections import deque
@@ -19,30 +19,39 @@ from lumen.run.troubles import RunTrouble
 from lumen.upkeep.threads import MessageGuard
 
 REQUEST_TTL = 5.0
-"""How long a wish may wait for the brain [s]."""
+"""How long a request may wait for the brain [s]."""
 MAX_PENDING_TRACES = 10_000
+"""Messages that may wait for a tick; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
 
 class TraceListener(Protocol):
-    """Whoever is called with what is seen."""
+    """An observer of a trace."""
 
     def see(
         self, states: frozenset[str], entered: tuple[str, ...], context: Mapping[str, Any], place: str = ""
-    ) -> None: ...
+    ) -> None:
+        """The states, those just entered, the context and the robot's place have changed."""
+        ...
 
-    def performing(self, command: Command, now: float) -> None: ...
+    def performing(self, command: Command, now: float) -> None:
+        """A command is about to be performed."""
+        ...
 
-    def answered(self, event: Event) -> None: ...
+    def answered(self, event: Event) -> None:
+        """The robot answered a command or noticed something."""
+        ...
 
-    def troubled(self, trouble: RunTrouble) -> None: ...
+    def troubled(self, trouble: RunTrouble) -> None:
+        """A trouble occurred."""
+        ...
 
 
 class TraceSubscriber:
-    """Hears what a behaviour does (`TracePublisher`) and calls `watchers` with it, at each `tick`.
+    """A subscriber to a behaviour's trace (`TracePublisher`), which calls `watchers` at each `tick`.
 
-    It is the scenery of a story: `happen` lets something happen to the robot.
+    It is the environment of a story; `happen` raises an event of the robot.
     """
 
     def __init__(self, project: Project, bus: Bus, happen: Callable[[Event], None]) -> None:
@@ -53,7 +62,7 @@ class TraceSubscriber:
         self._undo = bus.subscribe(project.key_of(TRACE_ROUTE), self._came.append)
 
     def tick(self, now: float) -> None:
-        """Tell of all that has come."""
+        """Pass all received messages on to the watchers."""
         while self._came:
             message = self._came.popleft()
             body = message.body
@@ -63,15 +72,15 @@ class TraceSubscriber:
                         _tell(watcher, body, now)
 
     def press(self, label: str, by: str) -> str:
-        """Ask the brain to press a button; it tells nobody here whether it could."""
+        """Request a button press from the brain; return why that can't be sent. The result is not reported here."""
         return self._wish(PRESS(button=label, by=by))
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Have what waits longest decided."""
+        """Request a decision on the event that has waited longest; return why that can't be sent."""
         return self._wish(APPROVE(id="", go=go, by=by))
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:
-        """Have marked transitions wait for GO, or not."""
+        """Request that marked transitions wait for GO, or not."""
         self._wish(AUTONOMY(level=level, by=by))
 
     def _wish(self, request: dict[str, Any]) -> str:
@@ -82,6 +91,7 @@ class TraceSubscriber:
         return ""
 
     def close(self) -> None:
+        """Unsubscribe."""
         self._undo()
 
 

@@ -1,4 +1,4 @@
-"""Lumen Motion: controllers that follow what is seen, switched on and off by the behaviour."""
+"""Lumen Motion: controllers that follow sightings, switched on and off by the behaviour."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol
@@ -14,23 +14,31 @@ POSE_ROUTE = "joint"
 
 
 class TrackingService(Protocol):
-    """Whatever lets controllers follow what is seen: here, or in the motion module's process."""
+    """A service that lets controllers follow sightings, here or in the motion module's process."""
 
     @property
-    def on(self) -> tuple[str, ...]: ...
+    def on(self) -> tuple[str, ...]:
+        """The names of the controllers that are on."""
+        ...
 
-    def reload(self, project: Project) -> None: ...
+    def reload(self, project: Project) -> None:
+        """Switch to another bundle."""
+        ...
 
-    def switch(self, track: Track) -> None: ...
+    def switch(self, track: Track) -> None:
+        """Switch a controller on or off."""
+        ...
 
-    def tick(self, now: float) -> None: ...
+    def tick(self, now: float) -> None:
+        """Run the controllers at `now` [s]."""
+        ...
 
 
 class LocalTracking:
-    """Feeds each controller that is on with the poses and sights on the bus, and aims the robot's joints as it says.
+    """The controllers that are on; they get poses and sightings from the bus, and aim the robot's joints.
 
-    Everything comes as messages, as it would for a motion module on another machine. A sight without `time` is taken to
-    be as old as its route's `latency`.
+    All inputs are messages, as for a motion module on another machine. A sighting without `time` is assumed to be as
+    old as its route's `latency`.
     """
 
     def __init__(self, project: Project, robot: Robot, bus: Bus) -> None:
@@ -40,7 +48,7 @@ class LocalTracking:
         self.reload(project)
 
     def reload(self, project: Project) -> None:
-        """Go on with another bundle: a controller that is on and has changed goes on with what was seen last."""
+        """Switch to another bundle; a controller that is on and has changed keeps the last sightings."""
         old, self._project = self._project, project
         for name in list(self._trackers):
             controller = project.controllers.get(name)
@@ -58,14 +66,14 @@ class LocalTracking:
         return tuple(self._trackers)
 
     def switch(self, track: Track) -> None:
-        """Switch a controller on or off; one that is on already goes on, one that a reload has taken away stays off."""
+        """Switch a controller on or off; ignore one that is on already, or that the bundle lacks."""
         if not track.on:
             self._trackers.pop(track.controller, None)
         elif track.controller not in self._trackers and (found := self._project.controllers.get(track.controller)):
             self._trackers[track.controller] = Tracker(found, self._project.body)
 
     def tick(self, now: float) -> None:
-        """Take what has come in, and aim."""
+        """Read the messages, and aim at `now` [s]."""
         seen: dict[str, dict[str, float]] = {}
         for route, message in self._inbox.taken():
             for name, tracker in self._trackers.items():
@@ -83,13 +91,13 @@ class LocalTracking:
                 self._robot.start("", Aim(target, tracker.controller.tracking.speed))
 
     def _listen(self) -> None:
-        """Hear the poses and the routes of all controllers."""
+        """Subscribe to the poses and the routes of all controllers."""
         routes = {b.route for c in self._project.controllers.values() for b in c.input_bindings}
         self._inbox.listen(self._project, {POSE_ROUTE} | routes)
 
 
 def _angles(body: Any, joints: tuple[str, ...]) -> dict[str, float]:
-    """Where these joints stand [rad], by a body of the joint route; empty where it does not say so for each."""
+    """Return the angles of these joints [rad] in a message of the joint route; empty if one is missing."""
     names, angles = (body.get("name"), body.get("angle")) if isinstance(body, Mapping) else (None, None)
     if not isinstance(names, list) or not isinstance(angles, list):
         return {}
@@ -98,6 +106,6 @@ def _angles(body: Any, joints: tuple[str, ...]) -> dict[str, float]:
 
 
 def _time(body: Mapping[str, Any], otherwise: float) -> float:
-    """The body's `time` [s] where it has one."""
+    """Return the `time` of a body [s], or `otherwise` without one."""
     time = body.get("time")
     return time if is_number(time) else otherwise

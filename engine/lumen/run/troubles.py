@@ -24,8 +24,7 @@ class RunTrouble(NamedTuple):
 def troubles_of_step(machine: MachineDefinition, step: Step) -> Iterator[RunTrouble]:
     """Yield the errors that ended a `do`, an `invoke` or other actions in this step, invoked behaviours included.
 
-    Errors of a command that was cancelled, or refused because a person keeps the robot still, are left out: they were
-    wanted.
+    Errors of a command that was cancelled, or refused because a person keeps the robot still, are left out as intended.
     """
     if not (step.raised or step.invoked):
         return
@@ -54,7 +53,7 @@ def wanted(reason: str) -> bool:
 
 
 def trouble_of_answer(event: Event) -> RunTrouble | None:
-    """Return the trouble that an answer or an observation of the robot reports."""
+    """Return the trouble that an answer or an observation of the robot reports, None if there is none."""
     if event.name == FALLEN:
         return RunTrouble("fall", "the robot fell")
     missed = event.data.get(MISSED) if isinstance(event.data, dict) else None

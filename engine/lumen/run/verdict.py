@@ -13,7 +13,7 @@ from lumen.run.rehearsal import Rehearsal
 
 @dataclass(frozen=True)
 class JudgedSaying:
-    """A saying that was tried, and its place in its file."""
+    """The result of trying a saying, with its place in the file."""
 
     tried: TriedSaying
     place: Place
@@ -21,7 +21,7 @@ class JudgedSaying:
 
 @dataclass(frozen=True)
 class JudgedExample:
-    """An example of a function that was tried, and its place in its file."""
+    """The result of trying an example of a function, with its place in the file."""
 
     tried: TriedExample
     place: Place
@@ -29,18 +29,20 @@ class JudgedExample:
 
 @dataclass(frozen=True)
 class Verdict:
-    """All of it; `took` is the time of the whole [s]. `wanted` is the least that has to be covered [%].
-
-    `trials` is what became of the exhibition's questions, which fails nothing.
-    """
+    """The result of `lumen test`."""
 
     name: str
     rehearsals: tuple[Rehearsal, ...] = ()
     coverage: Coverage | None = None
+    """What the stories covered, None if that is not measured."""
     wanted: float = 0.0
+    """Least coverage [%]."""
     explored: Explored | None = None
+    """Result of the exploration, None without one."""
     took: float = 0.0
+    """Duration of the whole test [s]."""
     trials: tuple[QuestionTrial, ...] = ()
+    """Results of the exhibition's questions, which never fail the test."""
     sayings: tuple[JudgedSaying, ...] = ()
     examples: tuple[JudgedExample, ...] = ()
 
@@ -51,7 +53,7 @@ class Verdict:
 
     @property
     def misheard(self) -> list[JudgedSaying]:
-        """The sayings that another row takes, or that something else is caught of."""
+        """The sayings that another row matches, or from which something else is extracted."""
         return [one for one in self.sayings if one.tried.wrong]
 
     @property
@@ -66,7 +68,7 @@ class Verdict:
 
     @property
     def uncovered(self) -> bool:
-        """Whether less is covered than wanted."""
+        """Whether the coverage is below `wanted`."""
         return self.coverage is not None and self.coverage.percent < self.wanted
 
     @property

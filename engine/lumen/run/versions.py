@@ -1,4 +1,4 @@
-"""Which version of a project somebody means: a folder, a revision of its repository, or what runs now."""
+"""A version of a project: a folder, a revision of its repository, or what runs now."""
 
 import os
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ LIVE = "live"
 
 
 class Version(NamedTuple):
-    """A project in one version; `snapshot` is where it stands, for one that runs now."""
+    """A project in one version, with the current `snapshot` if it runs now."""
 
     name: str
     project: Project
@@ -30,11 +30,10 @@ class Version(NamedTuple):
 
 
 def version(name: str | None, here: Path | None = None, robot: str = "") -> Version:
-    """The version of that name: `live`, a folder, or a revision of the project `here` (default: this one, or above).
+    """Return a version by name: `live`, a folder, or a revision of the project `here` (default: this one, or above).
 
-    Without a name it is that project as it stands. Of several robots it is what `robot` has, the first where none is
-    named. Raises UsageError where there is none, and where its files have
-    errors.
+    Without a name it is that project's present files. Of several robots it is that of `robot`, by default the first.
+    Raises UsageError if there is no such version, or its files have errors.
     """
     folder = name is not None and name != LIVE and os.path.exists(name)
     root = own_project(name) if folder else here or own_project()

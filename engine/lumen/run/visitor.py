@@ -1,4 +1,4 @@
-"""A visitor who walks up, speaks, touches and leaves: what modules and people do in a real hall."""
+"""A visitor who walks up, speaks, touches and leaves, as modules and people do in a real hall."""
 
 import logging
 from collections.abc import Mapping
@@ -15,14 +15,16 @@ from lumen.run.sending import send
 _log = logging.getLogger(__name__)
 
 VISITOR_SPEED = 1.0
+"""Walking speed [m/s]."""
 APPROACH_DISTANCE = 1.5
+"""Distance that a visitor walks to arrive or leave [m]."""
 SPEECH_ROUTE = "heard"
 
 
 class VisitorActor:
-    """Moves a visitor through the hall at 1 m/s, and lets them speak.
+    """A visitor who walks through the hall at VISITOR_SPEED, and speaks.
 
-    What is said goes out as the speech module's message, on the route `heard`.
+    Their words are published as messages of the speech module, on the route `heard`.
     """
 
     def __init__(self, project: Project, hall: Hall, bus: Bus) -> None:
@@ -34,32 +36,32 @@ class VisitorActor:
 
     @property
     def walking(self) -> bool:
-        """Whether the visitor is on their way."""
+        """Whether the visitor is walking."""
         return self._goal is not None
 
     @property
     def sensors(self) -> tuple[str, ...]:
-        """The tactile sensors of the robot that they can touch."""
+        """The tactile sensors that the visitor can touch; empty if the robot can't feel."""
         return self._project.body.tactile if isinstance(self._hall, FeelsTouch) else ()
 
     def use(self, project: Project) -> None:
-        """Speak on the routes of this project from now on."""
+        """Switch to another bundle's routes."""
         self._project = project
 
     def arrive(self, visitor: Visitor) -> None:
-        """Come from further off to where `visitor` stands; who is there already walks over."""
+        """Walk to the position of `visitor`, from APPROACH_DISTANCE away or from where the visitor already is."""
         if self._visitor is None:
             self._visitor = replace(visitor, x=visitor.x + APPROACH_DISTANCE)
         self._visitor = replace(self._visitor, height=visitor.height)
         self._goal, self._leaving = visitor, False
 
     def leave(self) -> None:
-        """Walk away, and be gone."""
+        """Walk away, and disappear."""
         if self._visitor:
             self._goal, self._leaving = replace(self._visitor, x=self._visitor.x + APPROACH_DISTANCE), True
 
     def speak(self, text: str, language: str = "") -> None:
-        """Say something the speech module understands at once."""
+        """Say a text that the speech module understands at once."""
         if isinstance(self._hall, HearsVisitors):
             self._hall.sound()
         body = {"name": "visitor", "result": text, "date": "", "language": language}
@@ -73,12 +75,13 @@ class VisitorActor:
         self._hall.touch(sensor, pressed)
 
     def set_skills(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
-        """Have skills end so from now on. Raises UsageError if this robot can't pretend."""
+        """Set how skills end from now on. Raises UsageError if this robot can't simulate them."""
         if not isinstance(self._hall, PretendsSkills):
             raise UsageError("this robot performs skills itself: play a story with `skills:` on the recording robot")
         self._hall.set_skills(ends)
 
     def tick(self, now: float) -> None:
+        """Move the visitor on to the time `now` [s]."""
         dt, self._last = now - self._last, now
         if self._visitor is None or self._goal is None:
             return

@@ -1,4 +1,4 @@
-"""`lumen run --voice NAME`: voices of a robot that says its texts aloud, by rows of features."""
+"""`lumen run --voice NAME`: voices that say a robot's texts aloud, from rows of features."""
 
 import logging
 import sys
@@ -23,13 +23,14 @@ _log = logging.getLogger(__name__)
 
 
 class RobotVoice(Protocol):
-    """A voice of a simulated robot; `words` tells when those of the last text begin, if the voice measures that."""
+    """A voice of a simulated robot."""
 
     words: tuple[WordTime, ...]
+    """When the words of the last text begin, if the voice measures that."""
 
     @property
     def mute(self) -> bool:
-        """Whether nobody hears anything."""
+        """Whether it makes no sound that can be heard."""
         ...
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
@@ -37,14 +38,16 @@ class RobotVoice(Protocol):
         ...
 
     def end(self, now: float) -> None:
-        """End the text, which is over or was cancelled."""
+        """End the current text, which is over or was cancelled."""
         ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Release its resources."""
+        ...
 
 
 class AddedVoice:
-    """Speaks with `voice`, a row of a feature with that `name`. After its first fault, which is logged, it is silent.
+    """A wrapper of `voice`, a row `name` of a package's feature, that goes silent after a fault and logs it.
 
     A silent text takes as long as one of a robot without a voice.
     """
@@ -74,7 +77,7 @@ class AddedVoice:
         self._attempt(self._voice.close, None)
 
     def _attempt(self, call: Callable[[], T], otherwise: T) -> T:
-        """Return what a call of the voice returns, or `otherwise` if the voice is or becomes silent."""
+        """Return the result of a call of the voice, or `otherwise` if the voice is or becomes silent."""
         if self._silent:
             return otherwise
         faults: list[Diagnostic] = []
@@ -101,16 +104,15 @@ def _word(value: object) -> WordTime:
 class Speaks(Protocol):
     """A robot that can be given a voice."""
 
-    def speak_with(self, voice: RobotVoice) -> None: ...
+    def speak_with(self, voice: RobotVoice) -> None:
+        """Say all texts with a voice."""
+        ...
 
 
 def voiced(
     chosen: Setup, voice: str, file: Path | None, language: str, track: AudioTrack | None = None
 ) -> Callable[[], None]:
-    """Give the robot the voice that was asked for; what ends it.
-
-    Raises UsageError or ModuleError where that can't be had.
-    """
+    """Give the robot a voice; return the function that ends it. Raises UsageError or ModuleError if that fails."""
     found = speaker(voice, file, chosen.robot, language, track)
     if found is None:
         return lambda: None
@@ -122,7 +124,7 @@ def voiced(
 def speaker(
     voice: str, file: Path | None, robot: Robot, language: str, track: AudioTrack | None = None
 ) -> RobotVoice | None:
-    """The voice that was asked for; None for none. Raises UsageError or ModuleError where it can't be had."""
+    """Return a voice; None for `none`. Raises UsageError or ModuleError if it is not available."""
     if voice == "none":
         if file:
             raise UsageError("--sound needs a voice: add --voice espeak")

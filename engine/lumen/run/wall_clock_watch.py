@@ -1,4 +1,4 @@
-"""Whether the clock on the wall still shows what a running behaviour takes it to show."""
+"""The check that the real time of day is still what a running behaviour assumes."""
 
 import time
 from collections.abc import Callable
@@ -8,21 +8,21 @@ from lumen.language.events import CLOCK_SET, Event
 from lumen.statechart import Snapshot
 
 TOLERANCE = 1.0
-"""How far it may be off [s] before that is said: a tick is late at times, and a simulation slower than real time."""
+"""Difference [s] that is ignored, because ticks may be late, and a simulation slower than real time."""
 
 
 class WallClockWatch:
-    """Compares the exhibition's time with that of this machine's clock, and its time zone with the project's.
+    """A comparison of the exhibition's time and time zone with this machine's clock and the project's time zone.
 
-    `timezone` returns the one that counts. Where the exhibition does not live in real time (`real`) its own time of day
-    counts, and nothing is compared.
+    `timezone` returns the project's. Unless the exhibition runs in real time (`real`), it has a time of day of its own,
+    and only the time zones are compared.
     """
 
     def __init__(self, timezone: Callable[[], str], *, real: bool, clock: Callable[[], float] = time.time) -> None:
         self._timezone, self._real, self._clock = timezone, real, clock
 
     def tick(self, now: float, snapshot: Snapshot) -> Event | None:
-        """What the behaviour has to hear of it at `now` [s], None where all is well."""
+        """Return the event for the behaviour if its time of day changed at `now` [s], else None."""
         epoch, zone = snapshot.epoch, self._timezone()
         if self._real and abs(self._clock() - now - epoch) > TOLERANCE:
             epoch = self._clock() - now

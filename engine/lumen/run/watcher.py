@@ -1,4 +1,4 @@
-"""Sees that a project's files were saved, and has them judged where nobody waits for it."""
+"""The watcher of a project's files: it notices saved files, and has them checked on another thread."""
 
 import logging
 import queue
@@ -16,15 +16,17 @@ from lumen.project.project_folders import ALL_FOLDERS, MOTIONS
 from lumen.upkeep.threads import WatchedThread
 
 QUIET_PERIOD = 0.3
+"""Time without a change after which files are checked [s]."""
 SHORT_QUIET_FRACTION = 0.2
-"""The part of the quiet period for which a single file that is whole and good has to stay as it is."""
+"""Share of the quiet period that is enough for a single complete and good file."""
 MAX_READ_PERIOD = 1.0
+"""Longest time between two readings of the files [s]."""
 HINT_DEBOUNCE = 10
-"""How long the operating system's notices are gathered [ms]."""
+"""How long the operating system's notifications are collected [ms]."""
 EARLY = 5.0
-"""How long after its beginning a watcher has what judges made ready [s]: until then an exhibition has enough to do."""
+"""Time after a watcher's start when the checker is prepared [s]: before, the exhibition is busy."""
 SWITCH_INTERVAL = 0.001
-"""How long one thread may keep the others of an exhibition from their work [s]: a stop passes four on its way."""
+"""How long a thread may block the others of an exhibition [s]: a stop passes through four of them."""
 
 _log = logging.getLogger(__name__)
 WatchedFiles = Mapping[str, bytes]
@@ -32,38 +34,38 @@ T = TypeVar("T")
 
 
 class SavedFiles(NamedTuple):
-    """Files as they were once quiet, `changed` those that differ from what was judged before, by path.
-
-    `seen` [s, monotonic] is when the first change was noticed, `quiet` when the last had been for the quiet period.
-    `asked` is what was handed to `ask`, None where nobody asked.
-    """
+    """Files that have settled after a change."""
 
     files: WatchedFiles
     changed: tuple[str, ...]
+    """Paths of the files that differ from those checked before."""
     seen: float
+    """When the first change was noticed [s, monotonic]."""
     quiet: float
+    """When the last change was a quiet period ago [s, monotonic]."""
     asked: object = None
+    """The argument of `ask`, None for files that were saved."""
 
 
 class GivenFiles(NamedTuple):
-    """Files to be judged that do not lie in the project's folder, and what comes back with the verdict."""
+    """Files from elsewhere than the project's folder, and what is returned with their result."""
 
     files: WatchedFiles
     asked: object
 
 
 class FileWatcher(Generic[T]):
-    """Judges the project's files anew whenever their content has changed and stayed quiet, or when somebody asks.
+    """A watcher that checks the project's files when their content has changed and settled, or on request.
 
-    The operating system's notice of a saved file is a hint that hurries it; what decides is the content, read at least
-    once a second. `files` are those before, `hash` that of the bundle that runs where it is another. `results` yields
-    what `judge` makes of each new content, good or bad. `leisure` is then given what was judged, and a function that
-    says whether there is something more urgent. `done` is called when there is a result, `noticed` when a change shows,
-    before it has settled, `early` once, EARLY after the beginning, with the files that run. Without `hints` only who
-    asks is served. The files are read as that `robot` of several does.
+    Notifications of the operating system only speed this up: the content decides, and is read at least once a second.
+    `files` are the present files, `hash` that of the running bundle if it differs. `judge` checks a new content, and
+    its return values go to `results`. `leisure` is then called with the result and a function that returns whether
+    something more urgent waits. `done` is called after a result; `noticed` after a change, before it settles; `early`
+    once, EARLY after the start, with the running files. Without `hints` only requests are served. Files are read as for
+    `robot`.
 
-    With `good` one file that ends as it did before is judged at once: where that is said of what came of it, a part of
-    the quiet period is enough (docs/decisions/080).
+    With `good`, a single changed file whose last line is unchanged is checked at once: if `good` is true for the
+    result, a part of the quiet period is enough (docs/decisions/080).
     """
 
     def __init__(
@@ -95,29 +97,30 @@ class FileWatcher(Generic[T]):
             self._threads.append(WatchedThread("lumen-watching", self._watch))
 
     def start(self) -> None:
+        """Start the threads."""
         for thread in self._threads:
             thread.start()
 
     def ask(self, what: object) -> None:
-        """Judge the files as they are now, changed or not; `what` comes back with it."""
+        """Check the present files, changed or not; `what` is returned with the result."""
         self._asked.put(what)
         self._hint.set()
 
     def give(self, files: WatchedFiles, what: object) -> None:
-        """Judge these files, which do not lie in the folder; `what` comes back with it."""
+        """Check files from elsewhere than the folder; `what` is returned with the result."""
         self._asked.put(GivenFiles(files, what))
         self._hint.set()
 
     def write(self, change: Callable[[], WatchedFiles]) -> None:
-        """Let the folder be changed, on the thread that reads it: nothing half-written is read.
+        """Let `change` write to the folder on the thread that reads it, so that nothing half-written is read.
 
-        The files that `change` gives back run already: they are not judged.
+        `change` returns the files that are there afterwards; they run already, and are not checked.
         """
         self._asked.put(change)
         self._hint.set()
 
     def close(self) -> None:
-        """End the threads; returns when they have ended."""
+        """End the threads, and wait for their end."""
         self._stop.set()
         self._hint.set()
         for thread in self._threads:
@@ -175,7 +178,7 @@ class FileWatcher(Generic[T]):
         self._done()
 
     def _judged(self, saved: SavedFiles) -> T | None:
-        """What comes of these files; None where we fail on them."""
+        """Return the result for these files; None after an internal error."""
         changed = tuple(sorted(_differing(saved.files, self._files)))
         with _as_others_need():
             return self._judge(saved._replace(changed=changed, quiet=time.monotonic()))
@@ -185,7 +188,7 @@ class FileWatcher(Generic[T]):
         return self._hint.is_set()
 
     def _settled(self, saved: SavedFiles) -> tuple[T | None, SavedFiles]:
-        """The files once they have not changed for long enough, and what came of them where that was asked already."""
+        """Return the files once they have not changed for long enough, with their result if already checked."""
         since, judged = time.monotonic(), self._judged_at_once(saved)
         while not self._stop.is_set():
             self._hint.clear()
@@ -203,7 +206,7 @@ class FileWatcher(Generic[T]):
         return judged, saved
 
     def _judged_at_once(self, saved: SavedFiles) -> T | None:
-        """What comes of them, where they look like what somebody wanted to save, and not like a half of it."""
+        """Return the result if the files look complete, rather than half-written; else None."""
         return self._judged(saved) if self._good and self._watching and _whole(saved.files, self._files) else None
 
     def _needed(self, files: WatchedFiles) -> float:
@@ -238,7 +241,7 @@ class FileWatcher(Generic[T]):
 
 
 def _whole(files: WatchedFiles, before: WatchedFiles) -> bool:
-    """Whether one file differs, and ends as it did before: what was not written to its end ends anywhere else."""
+    """Return whether one file differs, and its last line is the same: a half-written file ends elsewhere."""
     match list(_differing(files, before)):
         case [path] if path in files and path in before:
             return _end(files[path]) == _end(before[path]) != b""
@@ -246,7 +249,7 @@ def _whole(files: WatchedFiles, before: WatchedFiles) -> bool:
 
 
 def _end(text: bytes) -> bytes:
-    """The last line of a file, empty where there is none or it can't be read; it has to be ended as well."""
+    """Return the last line of a file with its line break; empty if it has none or can't be read."""
     lines = [] if isinstance(text, Unreadable) else text.splitlines(keepends=True)
     return lines[-1] if lines else b""
 
@@ -257,7 +260,7 @@ def _differing(files: WatchedFiles, others: WatchedFiles) -> Iterator[str]:
 
 @contextmanager
 def _as_others_need() -> Iterator[None]:
-    """The exhibition's threads have their turn sooner than Python would let them, and a fault of ours ends nothing."""
+    """Let the exhibition's threads run sooner than Python would, and log any error instead of raising it."""
     usual = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_INTERVAL)
     try:
@@ -269,9 +272,9 @@ def _as_others_need() -> Iterator[None]:
 
 
 def watched_folders(root: Path) -> dict[Path, tuple[int, int]]:
-    """The folders to be watched that are there now, and which they are: one of the same name may take their place.
+    """Return the watched folders that exist, with device and inode: another folder of the same name may replace one.
 
-    Where the project's folder is a link, the one that the link is in counts too.
+    If the project's folder is a link, the folder that contains the link is watched too.
     """
     robots = sorted((root / MOTIONS).glob("*/"))
     wanted = [root, *(root / name for name in sorted(ALL_FOLDERS)), *robots]

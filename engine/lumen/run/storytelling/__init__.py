@@ -1,1 +1,1 @@
-"""A recorded visit as a story: what somebody did, played anew, and what the robot did then is what has to happen."""
+"""Stories made from recorded visits: the visitor's actions are played again, and the robot's are expected."""

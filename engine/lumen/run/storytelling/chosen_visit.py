@@ -1,4 +1,4 @@
-"""Which recorded visit somebody means by a time of day."""
+"""The choice of a recorded visit by a time of day."""
 
 from collections.abc import Sequence
 from datetime import datetime, time, timedelta
@@ -13,7 +13,7 @@ from lumen.run.replaying.other_files import with_machines
 
 
 class ChosenVisit(NamedTuple):
-    """A visit, and when it was, where the exhibition is."""
+    """A visit, and its local time at the exhibition."""
 
     visit: RecordedVisit
     began: datetime
@@ -21,14 +21,14 @@ class ChosenVisit(NamedTuple):
 
     @property
     def when(self) -> str:
-        """In words."""
+        """Its time in words."""
         return f"from {self.began:%H:%M:%S} to {self.ended:%H:%M:%S} on {self.began:%Y-%m-%d}"
 
 
 def chosen_visit(journal: ChosenJournal, bundles: KeptBundles, at: str | None) -> ChosenVisit:
-    """The visit that was under way at a time of day, `14:03` for any time of that minute; without one the last.
+    """Return the visit that was under way at a time of day (`14:03` means any time in that minute), or the last visit.
 
-    Raises UsageError where there is none, which names the nearest, and where somebody is forgotten who was in it.
+    Raises UsageError if there is none, with the nearest one, and if a visitor in it was forgotten.
     """
     entries, clock = list(journal.entries()), JournalClock()
     for entry in entries:
@@ -54,7 +54,7 @@ def _under_way(found: Sequence[ChosenVisit], at: str) -> ChosenVisit:
 
 
 def _distance(one: ChosenVisit, wanted: time, length: timedelta) -> timedelta:
-    """How far a time of day is from a visit, nothing where that was under way then."""
+    """Return how far a time of day is from a visit, zero if the visit was under way."""
     days = {one.began.date(), one.ended.date()}
     moments = [datetime.combine(day, wanted, one.began.tzinfo) for day in days]
     return min(max(one.began - (moment + length), moment - one.ended, timedelta()) for moment in moments)

@@ -1,4 +1,4 @@
-"""A script played on the recording robot, and what could be noticed of the robot meanwhile, tick by tick."""
+"""A script played on the recording robot, with the robot's observable actions tick by tick."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -18,14 +18,20 @@ from lumen.statechart.nesting import active_names, entered_names
 
 @dataclass
 class TickNotes:
-    """What was noticed in the tick at `at` [s]: the states that are `active` at its end, and those it entered."""
+    """What was observed in one tick."""
 
     at: float
+    """Time of the tick [s]."""
     active: frozenset[str] = frozenset()
+    """States that are active at its end."""
     entered: list[str] = field(default_factory=list)
+    """States that were entered."""
     said: list[str] = field(default_factory=list)
+    """Texts that began."""
     played: list[str] = field(default_factory=list)
+    """Motions that ended."""
     published: list[str] = field(default_factory=list)
+    """Routes of messages that were sent."""
 
     def __bool__(self) -> bool:
         return bool(self.entered or self.said or self.played or self.published)
@@ -33,16 +39,19 @@ class TickNotes:
 
 @dataclass
 class Rendition:
-    """How a story went: `ticks` in which something was noticed, when somebody did something, and what others heard."""
+    """The course of a story."""
 
     rehearsal: Rehearsal
     ticks: list[TickNotes]
+    """Ticks in which something was observed."""
     acted: list[float]
+    """Times of the visitor's actions [s]."""
     told: list[str]
+    """The robot's observable actions, in words."""
 
 
 def played(project: Project, story: Story) -> Rendition:
-    """The story, played to its end or failure."""
+    """Play a story to its end or failure; return its course."""
     watch = _Watch()
     rehearsal = rehearse(project, story, observers=[watch], hooks=[watch.tick], whole=True)
     acted = [at for at, who, _ in rehearsal.trace if who in ("visitor", "story")]
@@ -50,7 +59,7 @@ def played(project: Project, story: Story) -> Rendition:
 
 
 def told(commands: Sequence[tuple[float, Any]]) -> list[str]:
-    """What others notice of commands, in words."""
+    """Return the observable effects of commands, in words."""
     return [words for _, words, _ in noticed(list(commands))]
 
 

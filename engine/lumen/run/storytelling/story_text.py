@@ -28,10 +28,11 @@ from lumen.language.stories import (
 
 HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
 USUAL_WITHIN = 30.0
+"""The default of `within`, which is not written [s]."""
 
 
 def story_text(story: Story, remarks: list[str]) -> str:
-    """The YAML of a story; `remarks` are comments on top."""
+    """Return a story as YAML, with `remarks` as comments at the top."""
     lines = [HEAD, *(f"# {remark}" for remark in remarks), f"title: {flow(story.title)}"]
     robot: dict[str, Any] = {verb: how if isinstance(how, str) else f"{how:g}s" for verb, how in story.robot.items()}
     for verb, result in story.results.items():
@@ -48,7 +49,7 @@ def story_text(story: Story, remarks: list[str]) -> str:
 
 
 def flow(value: Any) -> str:
-    """The value as YAML in one line."""
+    """Return a value as YAML on one line."""
     text: str = yaml.safe_dump([value], default_flow_style=True, allow_unicode=True, sort_keys=False, width=10**6)
     return text.strip()[1:-1]
 

@@ -1,4 +1,4 @@
-"""What happened in a recorded visit, as what somebody does in a story, each at its time."""
+"""The script of a recorded visit: the visitor's actions as those of a story, with their times."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
@@ -27,24 +27,30 @@ from lumen.statechart.command_ids import result_of
 
 FACE_ROUTE = "face"
 GONE = 3.0
-"""Who has not been seen for so long has left [s]."""
+"""Time without a face after which the visitor has left [s]."""
 COMMANDED = frozenset(("say", *(verb.name for verb in VERBS)))
-"""The verbs that a story may let fail; a walk to a place is made of others."""
+"""The verbs that a story may make fail; a walk to a place consists of others."""
 OF_ITSELF = ("arrived", "left", CLOCK_SET)
-"""What a robot notices again by itself, where it does what it did."""
+"""Events that the robot raises again by itself when it repeats its actions."""
 
 
 class TimedAction(NamedTuple):
-    """Something that somebody did at `at` [s]; `states` were entered last before, at `since`, and still active."""
+    """An action of the visitor."""
 
     at: float
+    """Its time [s]."""
     action: VisitorAction
     states: tuple[str, ...] = ()
+    """States that were entered last before it and are still active."""
     since: float = 0.0
+    """When those were entered [s]."""
 
 
 def script(visit: RecordedVisit, project: Project, *, faces: bool) -> list[TimedAction]:
-    """What was done, in its order; with `faces` those that changed something, else who comes and goes."""
+    """Return the visitor's actions in order.
+
+    With `faces` they include each seen face that changed something, else only arrivals and departures.
+    """
     found = [row for entry in visit.inputs if entry.how == "heard" for row in _done(entry, project, faces=faces)]
     found += _answers(visit)
     if not faces:
@@ -53,10 +59,10 @@ def script(visit: RecordedVisit, project: Project, *, faces: bool) -> list[Timed
 
 
 def broken(visit: RecordedVisit, verbs: Collection[str], *, hanging: bool, lasting: bool) -> dict[str, str | float]:
-    """What the robot did badly, or otherwise than usual, as `robot:` of a story says it: verbs that always failed.
+    """Return the robot's faults for `robot:` of a story: verbs that always failed.
 
-    `verbs` are those that features and the project add. With `hanging` also those that never ended, with `lasting` how
-    long it spoke each time [s].
+    `verbs` are those that features and the project add. With `hanging` the result includes verbs that never ended, with
+    `lasting` the shortest duration of its speech [s].
     """
     begun = dict[str, tuple[str, float]]()
     kinds = dict[str, list[tuple[str, float]]]()
@@ -77,7 +83,7 @@ def broken(visit: RecordedVisit, verbs: Collection[str], *, hanging: bool, lasti
         elif hanging and hows == {"cancelled"}:
             found[kind] = "hangs"
         elif lasting and kind == "say" and took:
-            found[kind] = min(took)  # what waits for another one ends later
+            found[kind] = min(took)  # the shortest: a text that waits for another ends later
     if hanging:
         found |= {kind: "hangs" for kind, _ in begun.values() if kind not in kinds}
     return {kind: how for kind, how in found.items() if kind in COMMANDED or kind in verbs}
@@ -95,7 +101,7 @@ def results(visit: RecordedVisit) -> dict[str, Mapping[str, Any]]:
 
 
 def _verb(begun: tuple[str, str, Mapping[str, Any]]) -> str:
-    """The verb of a command in the journal; for built-in verbs its class in small letters."""
+    """Return the verb of a command in the journal; for built-in verbs its class name in lower case."""
     _, kind, said = begun
     return str(said.get("skill")) if kind == "Do" else kind.lower()
 
@@ -126,7 +132,7 @@ def _action(event: Event, project: Project) -> VisitorAction:
 
 
 def _answers(visit: RecordedVisit) -> Iterator[TimedAction]:
-    """What the module `answers` said to each question, when it began to; what the robot knows itself it knows again."""
+    """Yield the answers of the module `answers`, when each began; those from passages are found again by themselves."""
     began = dict[str, float]()
     said = dict[str, list[str]]()
     for entry in visit.inputs:
@@ -150,7 +156,7 @@ def _is_face(event: Event, project: Project) -> bool:
 
 
 def _walks(seen: Sequence[float], visit: RecordedVisit) -> Iterator[TimedAction]:
-    """Somebody comes where a face is seen, and leaves before none is."""
+    """Yield an arrival when a face appears, and a departure in time before it is gone."""
     away = APPROACH_DISTANCE / VISITOR_SPEED
     if not seen:
         return
@@ -164,7 +170,7 @@ def _walks(seen: Sequence[float], visit: RecordedVisit) -> Iterator[TimedAction]
 
 
 def _anchored(found: Sequence[TimedAction], visit: RecordedVisit) -> Iterator[TimedAction]:
-    """Each with the states that were entered last before it."""
+    """Yield each action with the states that were entered last before it."""
     steps = iter(visit.inputs)
     entry, active, states, since = next(steps, None), set[str](), tuple[str, ...](), 0.0
     for row in found:

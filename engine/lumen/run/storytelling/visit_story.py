@@ -1,4 +1,4 @@
-"""A recorded visit made into a story that passes: the simplest one in which the robot does what it did then."""
+"""A recorded visit turned into a story that passes: the simplest one in which the robot repeats its actions."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -23,45 +23,50 @@ from lumen.statechart import Snapshot, deserialize, initial
 
 USUAL_WITHIN = 30.0
 LEAD = 2.0
-"""How long nothing happens before a visit at most [s]."""
+"""Longest time without events before a visit [s]."""
 TRIES = 20
-"""How often a check that does not hold is left out before it is given up."""
+"""How many unmet expectations are left out before the story is given up."""
 
 Renamed = Callable[[Any], Any]
+"""A function that replaces names in data."""
 
 
 class _Way(NamedTuple):
-    """How the story is told: with each face that was seen, by states or by the clock alone, and the robot's faults."""
+    """A way to write the story."""
 
     lasting: bool
+    """Whether to set how long the robot speaks."""
     hanging: bool
+    """Whether to set the verbs that never ended."""
     faces: bool
+    """Whether to repeat each face that was seen."""
     clocked: bool
+    """Whether actions follow each other by time alone, without expected states."""
 
 
 WAYS = [_Way(*way) for way in product((False, True), repeat=4)]
-"""From what a person would write to what is most exact."""
+"""All ways, from the one that a person would write to the most exact."""
 
 
 @dataclass(frozen=True)
 class VisitStory:
-    """A story of a visit; `same` is whether the robot says and does in it what it did then.
-
-    If not, it `was` something then that `now` is something else.
-    """
+    """A story of a visit."""
 
     story: Story
     same: bool
+    """Whether the robot says and does the same as in the visit."""
     was: str = ""
+    """The first action of the robot that differs, as recorded."""
     now: str = ""
+    """The robot's action in the story instead."""
 
 
 def visit_story(
     project: Project, old: Project, visit: RecordedVisit, *, name: str, title: str, renamed: Renamed = lambda data: data
 ) -> VisitStory:
-    """The story of a visit that was recorded with the files of `old`, as it goes with those of `project`.
+    """Return the story of a visit that was recorded with the files of `old`, as it runs with those of `project`.
 
-    `renamed` takes names out of whatever somebody said. Raises UsageError where none can be made.
+    `renamed` replaces names in what was said. Raises UsageError if no story can be made.
     """
     home = visit.home
     if home is None or home.snapshot is None or not visit.inputs:
@@ -101,7 +106,7 @@ def visit_story(
 
 
 def _blank(project: Project, stands: Snapshot, visit: RecordedVisit, name: str, title: str, renamed: Renamed) -> Story:
-    """The world as it was when the visit began."""
+    """Return a story without steps that begins with the state of the world before the visit."""
     assert visit.home is not None
     machine = project.behaviors[visit.home.behavior]
     first = initial(machine, language=stands.language).snapshot.context
@@ -124,7 +129,7 @@ def _clock(stands: Snapshot, visit: RecordedVisit) -> Schedule:
 
 
 def _draft(acts: Sequence[TimedAction], visit: RecordedVisit, *, clocked: bool) -> Iterator[StoryStep]:
-    """What somebody does, each so long after what the robot did; `clocked`: after what they did before."""
+    """Yield the actions, each at its delay after the robot's last one, or with `clocked` after the previous action."""
     assert visit.home is not None
     last = max(visit.home.at, visit.inputs[0].event.at - LEAD)
     for row in acts:
@@ -139,19 +144,22 @@ def _draft(acts: Sequence[TimedAction], visit: RecordedVisit, *, clocked: bool) 
 
 
 def _approved(project: Project, visit: RecordedVisit) -> tuple[StoryStep, ...]:
-    """What was recorded of an event that waited for GO is when it went: in the story it does not wait once more."""
+    """Return a step that turns approval off: recorded events had GO already, and must not wait again."""
     assert visit.home is not None
     marked = marked_transitions(project.behaviors[visit.home.behavior])
     return (StoryStep(SetAutonomy("alone")),) if marked else ()
 
 
 def _alike(was: Sequence[str], now: Sequence[str]) -> int:
-    """How many of what was told come again, in their order from the beginning."""
+    """Return how many of the recorded actions are repeated, in order from the beginning."""
     return next((i for i, row in enumerate(was) if i >= len(now) or now[i] != row), len(was))
 
 
 def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequence[VisitorAction]) -> Story:
-    """The story with what was noticed as what is expected; what can't be expected at that moment is left out."""
+    """Return the story with the observations as expectations, without those that can't be met at their time.
+
+    Raises UsageError if its events do not repeat.
+    """
     approved = [step for step in draft.steps if isinstance(step.action, SetAutonomy)]
     left_out = set[int]()
     for digits in (1, 2):
@@ -175,7 +183,7 @@ def _checked(project: Project, draft: Story, rendition: Rendition, acts: Sequenc
 def _steps(
     rendition: Rendition, acts: Sequence[VisitorAction], left_out: set[int], digits: int
 ) -> Iterator[tuple[int | None, VisitorAction]]:
-    """The steps in their order, those that expect something with their number among what was noticed."""
+    """Yield the steps in order; expectations come with the index of their tick's notes."""
     rows: list[tuple[float, int, int]] = [(at, 0, i) for i, at in enumerate(rendition.acted)]
     rows += [(notes.at, 1, i) for i, notes in enumerate(rendition.ticks)]
     last, before = 0.0, frozenset[str]()
@@ -206,7 +214,7 @@ def _expected(notes: TickNotes, before: frozenset[str], gap: float) -> Expect | 
 
 
 def renaming(names: Mapping[str, str]) -> Renamed:
-    """Writes other names in texts, wherever they are in data."""
+    """Return a function that replaces names in texts, anywhere in data."""
 
     patterns = [(re.compile(rf"(?<!\w){re.escape(old)}(?!\w)", re.IGNORECASE), new) for old, new in names.items()]
 
@@ -226,7 +234,7 @@ def renaming(names: Mapping[str, str]) -> Renamed:
 
 
 def _without(action: VisitorAction, renamed: Renamed) -> VisitorAction:
-    """The same, with other names."""
+    """Return an action with replaced names."""
     found = {name: renamed(value) for name in ("text", "data", "body") if (value := getattr(action, name, None))}
     try:
         return replace(action, **found) if found else action

@@ -1,4 +1,4 @@
-"""A cluster of Dask, which somebody else runs, as an executor."""
+"""A Dask cluster, run by others, as an executor."""
 
 import logging
 import socket
@@ -15,11 +15,14 @@ from lumen.extras import demand
 SCHEME = "dask://"
 PACKAGE_NAME = "lumen-robot"
 ANSWER_TIMEOUT = 10.0
-"""How long a scheduler may take to answer [s]."""
+"""Longest wait for the scheduler's answer [s]."""
 
 
 def cluster_address(text: str) -> str:
-    """`tcp://HOST:PORT` of `dask://HOST:PORT`. Raises UsageError, also where the extra is not installed."""
+    """Return `tcp://HOST:PORT` for `dask://HOST:PORT`.
+
+    Raises UsageError for anything else, or if the extra is not installed.
+    """
     host, _, port = text.removeprefix(SCHEME).rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port[:6]) < 65536:
         raise UsageError(f"`{text[:80]}` is not the address of a cluster: write it as dask://HOST:8786")
@@ -29,17 +32,17 @@ def cluster_address(text: str) -> str:
 
 @contextmanager
 def cluster(address: str, packed: bytes) -> Iterator[tuple[Executor, Any]]:
-    """The cluster as an executor, and what stands for `packed` among the arguments of a task.
+    """Connect to a cluster; yield its executor, and a handle for `packed` in the arguments of tasks.
 
-    Raises WorkersError where nobody answers, or no worker is there.
+    Raises WorkersError if no scheduler answers, or it has no workers.
     """
     distributed: Any = import_module("distributed")
     shown = address.replace("tcp://", SCHEME)
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what goes wrong is said in our words
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors are reported in Lumen's own words
     warnings.filterwarnings("ignore", module="distributed")
     host, _, port = address.removeprefix("tcp://").rpartition(":")
     try:
-        socket.create_connection((host.strip("[]"), int(port)), ANSWER_TIMEOUT).close()  # Dask would go on trying
+        socket.create_connection((host.strip("[]"), int(port)), ANSWER_TIMEOUT).close()  # Dask would retry for long
         client = distributed.Client(address, timeout=ANSWER_TIMEOUT, set_as_default=False)
     except (OSError, ValueError) as error:
         raise WorkersError(
@@ -62,7 +65,7 @@ def cluster(address: str, packed: bytes) -> Iterator[tuple[Executor, Any]]:
 
 
 def lost_in_cluster() -> tuple[type[BaseException], ...]:
-    """What a task raises that no worker could do, or that the cluster has forgotten."""
+    """Return the errors of a task whose workers were lost, or that the cluster has forgotten."""
     from distributed import KilledWorker
 
     return KilledWorker, CancelledError

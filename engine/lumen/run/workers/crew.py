@@ -1,4 +1,4 @@
-"""Those who do tasks, one round after the other: this process itself, or the workers of an executor."""
+"""The crew that does tasks, one round after the other: this process, or the workers of an executor."""
 
 import logging
 from collections.abc import Callable, Iterable, Iterator
@@ -11,43 +11,48 @@ from lumen.language.counts import counted
 from lumen.run.workers.tasks import TaskHead, do_task
 
 IN_FLIGHT = 256
-"""How many tasks are given away at once: what they carry is in memory, and a cluster may have as many workers."""
+"""Tasks that are submitted at once: their data is in memory, and a cluster may have as many workers."""
 _log = logging.getLogger(__name__)
 
 
 class Crew(Protocol):
-    """Who does rounds of tasks."""
+    """Something that does rounds of tasks."""
 
     def results(self, tasks: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
-        """The number of each task of this round and what came of it, as they come."""
+        """Yield the number and the result of each task of this round, as they finish."""
 
 
 class AloneCrew:
-    """This process itself."""
+    """This process itself, as a crew."""
 
     def __init__(self, do: Callable[[tuple[Any, ...]], Any]) -> None:
         self._do = do
 
     def results(self, tasks: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
+        """Do the tasks in order; yield the number and the result of each."""
         yield from ((number, self._do(task)) for number, task in enumerate(tasks))
 
 
 class Staff(NamedTuple):
-    """An executor, what comes with each task, the kit as tasks get it, and what they raise whose worker is lost."""
+    """An executor with its workers."""
 
     executor: Executor
     head: TaskHead
+    """The data that comes with each task."""
     blob: Any
+    """The kit as tasks get it."""
     lost: tuple[type[BaseException], ...]
+    """Errors of a task whose worker is lost."""
 
     def give(self, task: tuple[Any, ...]) -> Future[Any]:
+        """Submit a task."""
         return self.executor.submit(do_task, self.head, self.blob, task)
 
 
 class StaffedCrew:
-    """Workers of an executor; `staff` opens one, in place of one whose workers are lost.
+    """The workers of an executor; `staff` opens one, also as a replacement if workers are lost.
 
-    Raises WorkersError with `trouble` and `remedy` where a round loses them twice.
+    Raises WorkersError with `trouble` and `remedy` if a round loses its workers twice.
     """
 
     def __init__(self, staff: Callable[[], Staff], trouble: str, remedy: str) -> None:
@@ -55,6 +60,7 @@ class StaffedCrew:
         self._staff: Staff | None = None
 
     def results(self, tasks: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, Any]]:
+        """Yield the number and the result of each task, as they finish; tasks of lost workers are repeated once."""
         numbered: Iterator[tuple[int, tuple[Any, ...]]] = enumerate(tasks)
         for again in (False, True):
             self._staff = self._staff or self._open()
@@ -70,7 +76,7 @@ class StaffedCrew:
 
 
 class _Work:
-    """Tasks that are given to an executor, some at a time; `left` are those of which nothing came back."""
+    """Tasks that are submitted to an executor, some at a time; `left` are those without a result."""
 
     def __init__(self, staff: Staff) -> None:
         self._staff = staff
@@ -79,7 +85,7 @@ class _Work:
         self.left: dict[int, tuple[Any, ...]] = {}
 
     def done(self, tasks: Iterator[tuple[int, tuple[Any, ...]]]) -> Iterator[tuple[int, Any]]:
-        """What came of the tasks, as it comes; none is taken any more as soon as workers are lost."""
+        """Yield the results as they arrive; after a loss of workers no further task is submitted."""
         while True:
             self._give(islice(tasks, 0 if self._broken else IN_FLIGHT - len(self._futures)))
             if not self._futures:

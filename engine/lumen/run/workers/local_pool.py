@@ -1,4 +1,4 @@
-"""Processes of this machine as an executor. However it ends, no process and no folder of it stays."""
+"""Processes of this machine as an executor; however it ends, no process or folder is left."""
 
 import os
 import shutil
@@ -16,13 +16,14 @@ from typing import Any, NoReturn
 from lumen.upkeep.threads import WatchedThread
 
 TERMINATED = 128 + signal.SIGTERM
+"""Exit code after SIGTERM."""
 
 
 @contextmanager
 def local_pool(count: int, folder: Path) -> Iterator[Executor]:
-    """So many processes; what they are at is not waited for where an exception ends it.
+    """Start `count` processes; an exception kills them without waiting for their tasks.
 
-    They end with this process, also where that is killed, and delete the `folder` then.
+    They end with this process, even if it is killed, and then delete `folder`.
     """
     before = set(active_children())
     pool = ProcessPoolExecutor(count, get_context("spawn"), _begin, (str(folder),))
@@ -40,7 +41,7 @@ def local_pool(count: int, folder: Path) -> Iterator[Executor]:
 
 @contextmanager
 def working_folder() -> Iterator[Path]:
-    """A folder for as long as there is work; SIGTERM ends that in order, too, as Ctrl-C does."""
+    """Make a folder for the time of the work; SIGTERM then ends the process like Ctrl-C, so it is deleted too."""
     handled = threading.current_thread() is threading.main_thread() and (
         signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
     )
@@ -57,7 +58,7 @@ def working_folder() -> Iterator[Path]:
 
 @contextmanager
 def interrupts_blocked() -> Iterator[None]:
-    """Whoever is started meanwhile is not interrupted until it says so itself; this process is, a moment later."""
+    """Delay Ctrl-C for this process, and block it in processes started meanwhile until they unblock it."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -73,7 +74,7 @@ def _terminate(number: int, frame: FrameType | None) -> NoReturn:
 
 
 def _begin(folder: str) -> None:
-    """Prepare a worker: Ctrl-C ends it without a word, and it ends with its parent."""
+    """Prepare a worker: Ctrl-C ends it without output, and it ends with its parent."""
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     if hasattr(signal, "pthread_sigmask"):

@@ -1,4 +1,4 @@
-"""What a worker does: it unpacks the kit of a piece of work once, and does one task after another with it."""
+"""The worker's side: it unpacks the kit of a piece of work once, and does its tasks one after another."""
 
 import pickle
 import sys
@@ -16,28 +16,29 @@ from lumen.project.memoization import memoize
 from lumen.run.workers.work_kit import UnpackedKit
 
 PACKAGES = ("lumen-robot", "mujoco", "dm-control", "numpy")
-"""What outcomes depend on, beside Python."""
+"""Packages on which results depend, besides Python."""
 
 _alone = threading.Lock()
-"""A worker of a cluster may have several threads; the simulation's compiler is made for one."""
+"""A cluster's worker may have several threads, but the simulation's compiler supports only one."""
 
 
 class TaskHead(NamedTuple):
-    """What comes with every task: the `function`, by which `engine` it was sent, and the name of the kit.
-
-    `folder` is where the kit is unpacked; empty for the worker's own.
-    """
+    """The data that comes with every task."""
 
     function: Callable[..., Any]
+    """Does a task."""
     engine: str
+    """Description of the sender's software."""
     kit: str
+    """Name of the kit."""
     folder: str = ""
+    """Where the kit is unpacked; empty for the worker's own folder."""
 
 
 def do_task(head: TaskHead, packed: bytes | str, task: tuple[Any, ...]) -> Any:
-    """What the function makes of the kit and this task. `packed` is the kit, or the file that it stands in.
+    """Return the function's result for the kit and a task. `packed` is the kit, or the path of its file.
 
-    Raises WorkersError where another engine sent it.
+    Raises WorkersError if the sender has other software.
     """
     if head.engine != engine():
         raise WorkersError(
@@ -56,7 +57,7 @@ def _unpacked(head: TaskHead, packed: bytes | str) -> UnpackedKit:
 
 @cache
 def _own_folder() -> str:
-    """A folder in that of the cluster's worker, who deletes it when it ends."""
+    """Return a new folder within that of the cluster's worker, which deletes it at its end."""
     from distributed import get_worker
 
     return tempfile.mkdtemp(prefix="lumen-", dir=get_worker().local_directory)
@@ -64,7 +65,7 @@ def _own_folder() -> str:
 
 @cache
 def engine() -> str:
-    """Which software this is, for people, with a hash of Lumen's own code."""
+    """Return a description of this software for people, with a hash of Lumen's own code."""
     python = ".".join(map(str, sys.version_info[:2]))
     packages = ", ".join(f"{name} {_version(name)}" for name in PACKAGES)
     return f"Lumen's code {code_hash('lumen')[:8]}, Python {python}, {packages}"

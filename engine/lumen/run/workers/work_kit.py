@@ -1,4 +1,4 @@
-"""What all tasks of one piece of work need: files, sent to each worker once and loaded there once."""
+"""The files that all tasks of a piece of work need, sent to each worker and loaded there only once."""
 
 import hashlib
 import os
@@ -18,22 +18,22 @@ from lumen.project.project_folders import MODELS
 
 @dataclass(frozen=True)
 class WorkKit:
-    """The files of one or more `bundles`, by a name for each; and the `meshes`, which the simulation opens by itself.
+    """The files of one or more `bundles`, by name, and the `meshes`, which the simulation opens itself.
 
-    The paths of both begin at the project's root.
+    The paths of both are relative to the project's root.
     """
 
     bundles: Mapping[str, Mapping[str, bytes]]
     meshes: Mapping[str, bytes]
 
     def packed(self) -> bytes:
-        """As it travels: the same bytes for the same files, wherever they are."""
+        """Return the kit as bytes, which are the same for the same files anywhere."""
         bundles = {name: dict(sorted(files.items())) for name, files in sorted(self.bundles.items())}
         return pickle.dumps(WorkKit(bundles, dict(sorted(self.meshes.items()))), pickle.HIGHEST_PROTOCOL)
 
 
 def models_in(root: Path) -> dict[str, bytes]:
-    """The files in the project's `models/`, by their path from its root; one that can't be read is left out."""
+    """Return the readable files in the project's `models/`, by their paths relative to its root."""
     found = {}
     for path in sorted((root / MODELS).rglob("*")):
         with suppress(OSError):
@@ -43,7 +43,7 @@ def models_in(root: Path) -> dict[str, bytes]:
 
 
 class UnpackedKit:
-    """A kit where a worker has it, in a folder of its own below `folder`; a project is loaded when a task asks."""
+    """A kit in a worker, in its own folder below `folder`; a project is loaded on first use."""
 
     def __init__(self, kit: WorkKit, name: str, folder: Path) -> None:
         self.kit, self._name, self._folder = kit, name, folder
@@ -51,7 +51,7 @@ class UnpackedKit:
 
     @cached_property
     def root(self) -> Path:
-        """The folder with the meshes; it is there whole, or not at all."""
+        """The folder with the meshes; it is created complete, in one step."""
         root = self._folder / self._name
         if not root.exists():
             draft = Path(tempfile.mkdtemp(dir=self._folder))
@@ -65,7 +65,7 @@ class UnpackedKit:
         return root
 
     def project(self, bundle: str = "") -> Project | None:
-        """The project of that bundle, None where its files have errors, or there is none of that name."""
+        """Return the project of a bundle, None if its files have errors or there is no such bundle."""
         if bundle not in self._projects:
             files = self.kit.bundles.get(bundle)
             self._projects[bundle] = check_files(self.root, files)[0] if files else None
@@ -73,5 +73,5 @@ class UnpackedKit:
 
 
 def name_of(packed: bytes) -> str:
-    """The hash of a kit as it travels."""
+    """Return the hash of a packed kit, which is its name."""
     return hashlib.sha256(packed).hexdigest()[:32]

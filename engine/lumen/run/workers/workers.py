@@ -1,4 +1,4 @@
-"""Tasks for workers: in this process, in others of this machine, or on a cluster; what comes of them is the same."""
+"""Tasks for workers: in this process, in others of this machine, or on a cluster, with the same results."""
 
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -17,27 +17,28 @@ from lumen.run.workers.work_kit import UnpackedKit, WorkKit, name_of
 
 Result = TypeVar("Result")
 MAX_WORKERS = 1024
+"""Largest number of processes."""
 
 
 class Workers:
-    """Who does tasks: `count` processes of this machine (1: this one itself), or the cluster at `address`."""
+    """Workers for tasks: `count` processes of this machine (1: this process itself), or the cluster at `address`."""
 
     def __init__(self, count: int = 1, address: str = "") -> None:
         self.count, self.address = count, address
 
     @property
     def alone(self) -> bool:
-        """Whether it is this process itself."""
+        """Whether this process does the tasks itself."""
         return not self.address and self.count == 1
 
     def results(
         self, function: Callable[..., Result], kit: WorkKit, tasks: Iterable[tuple[Any, ...]]
     ) -> Generator[tuple[int, Result], None, None]:
-        """The number of each task and what `function(kit, *task)` returns, as they come; close it to end the work.
+        """Yield the number of each task and the result of `function(kit, *task)`; close it to end the work.
 
-        `function` stands in a module, and depends on nothing else. Tasks are taken from where they come when there is
-        somebody to do them. What a lost worker was at is done once more, by new ones. Raises WorkersError where they
-        are lost again, or can't be reached, and whatever a task raises.
+        `function` is defined in a module and depends on nothing else. Tasks are drawn only when a worker is free. The
+        tasks of lost workers are repeated once, by new ones. Raises WorkersError if workers are lost again or can't be
+        reached, and any error of a task.
         """
         waiting = iter(tasks)
         first = list(islice(waiting, self.count if not self.address else 1))
@@ -46,7 +47,7 @@ class Workers:
 
     @contextmanager
     def crew(self, function: Callable[..., Result], kit: WorkKit, most: int) -> Iterator[Crew]:
-        """Those who do one round of such tasks after the other, `most` of them at a time; they go when it is closed."""
+        """Open a crew that does rounds of such tasks, `most` of them at a time, until the context ends."""
         with working_folder() as folder, ExitStack() as staffed:
             if not self.address and min(self.count, most) <= 1:
                 own = UnpackedKit(kit, "kit", folder)
@@ -56,7 +57,7 @@ class Workers:
             name = name_of(packed)
 
             def staff() -> Staff:
-                staffed.close()  # those who are lost
+                staffed.close()  # close the lost executor
                 executor, blob, where, lost = staffed.enter_context(self._opened(packed, most, folder))
                 return Staff(executor, TaskHead(function, engine(), name, where), blob, lost)
 
@@ -64,7 +65,7 @@ class Workers:
 
     @contextmanager
     def _opened(self, packed: bytes, tasks: int, folder: Any) -> Iterator[tuple[Executor, Any, str, Any]]:
-        """An executor, the kit as its tasks get it, where they unpack it, and what they raise who are lost."""
+        """Yield an executor, the kit for its tasks, where they unpack it, and the errors of lost workers."""
         if self.address:
             with cluster(self.address, packed) as (executor, blob):
                 yield executor, blob, "", lost_in_cluster()
@@ -84,7 +85,7 @@ class Workers:
 
 
 def workers_of(text: str | None) -> Workers:
-    """What `--workers` says: a number, or `dask://HOST:PORT`; all cores of this machine where nobody says anything.
+    """Return the workers for `--workers`: a number, or `dask://HOST:PORT`; None means all cores of this machine.
 
     Raises UsageError for anything else.
     """
@@ -102,5 +103,5 @@ def workers_of(text: str | None) -> Workers:
 
 
 def cores() -> int:
-    """How many cores this process may use."""
+    """Return how many cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
