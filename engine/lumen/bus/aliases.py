@@ -1,7 +1,7 @@
-"""The second names of keys: those of 2015, which knew of one robot, and how long they are used.
+"""The second names of keys: those of 2015, which assumed one robot, and when they are used.
 
-A message of ours goes out under its key and under the alias; the copy is marked in its id, so that whoever listens to
-both takes it once. While another robot is on the same bus neither happens: nobody hears another's visitor.
+A message is sent under its key and under the alias; the id of the copy is marked, so that a subscriber to both gets it
+once. While another robot is on the bus aliases are not used, so that no robot receives another's visitor.
 """
 
 import logging
@@ -16,20 +16,20 @@ from lumen.ports import Bus, Message, MessageHandler
 from lumen.upkeep.drops import TELL_PERIOD
 
 COPY = "/alias"
-"""How the id of a copy ends that goes out under an alias."""
+"""The end of the id of a copy that is sent under an alias."""
 AWAY_AFTER = 10.0
-"""How long another robot has to be silent to be gone [s]; it says every half second that it is there."""
+"""Silence after which another robot counts as gone [s]; its signs of life come every half second."""
 MAX_ROBOTS = 100
-"""How many other robots are remembered, those that were heard last: nobody fills the memory."""
+"""Other robots that are remembered, the most recent ones, to bound the memory."""
 MAX_NAME = 100
-"""Characters of each of their names."""
+"""Characters that are kept of each name."""
 PRESENCE = "presence"
 
 _log = logging.getLogger(__name__)
 
 
 def aliases_of(project: Project) -> Mapping[str, str]:
-    """The aliases of a project's keys, and of those of ours that it does not list."""
+    """Return the aliases of a project's keys, and of Lumen's keys that it does not list; empty if it uses none."""
     if project.aliases is False or (project.aliases is None and len(project.served) > 1):
         return {}
     listed = {row.key_for(project.robot): row.alias for row in project.routes.values() if row.alias}
@@ -39,17 +39,18 @@ def aliases_of(project: Project) -> Mapping[str, str]:
 
 
 class Aliases:
-    """Which aliases are used now; `listen` has others' presence say so. Safe from any thread."""
+    """The aliases that are in use now, depending on the presence of other robots. Safe from any thread."""
 
     def __init__(self) -> None:
         self.names: Mapping[str, str] = {}
+        """The alias of each key."""
         self._project: Project | None = None
         self._others: dict[str, float] = {}
         self._warned = -inf
         self._undo: list[Callable[[], None]] = []
 
     def use(self, project: Project, bus: Bus) -> None:
-        """Go on with this project's aliases, and look out for other robots where there are any."""
+        """Switch to this project's aliases, and subscribe to other robots' presence if it has any."""
         old, self._undo, self._project = self._undo, [], project
         self.names = aliases_of(project)
         for pattern in _presences(project) if self.names else ():
@@ -62,13 +63,13 @@ class Aliases:
 
     @property
     def used(self) -> bool:
-        """Whether messages travel under aliases now: while no other robot is there, or where the project insists."""
+        """Whether aliases are used now: while no other robot is there, or if the project requires them."""
         if not self._others or (self._project and self._project.aliases):
             return True
         return time.monotonic() - max(self._others.values()) > AWAY_AFTER
 
     def taking(self, handler: MessageHandler) -> MessageHandler:
-        """What listens under an alias: it leaves out what comes under the key, too."""
+        """Return a handler for an alias that ignores messages which also arrive under the key."""
 
         def take(message: Message) -> None:
             if self.used and not message.id.endswith(COPY):
@@ -106,7 +107,7 @@ class Aliases:
 
 
 def _presences(project: Project) -> tuple[str, ...]:
-    """Where robots say that they are there: each under a key of its own, or all under one."""
+    """Return the keys of robots' presence: one pattern for keys with a name, and the common key."""
     row = project.routes.get(PRESENCE)
     key, alias = (row.key, row.alias) if row else (DEFAULT_KEYS[PRESENCE], DEFAULT_ALIASES[PRESENCE])
     return tuple(dict.fromkeys(found for found in (key.replace("{robot}", "*"), alias) if found))

@@ -1,7 +1,7 @@
 """Bodies as they cross a bus: JSON data, in memory and as bytes.
 
-What one side does with a body must not be seen by another, so every reader gets a copy of its own. Copying containers
-and sharing the scalars in them is several times cheaper than a round trip through text, and as strict.
+A receiver's changes to a body must not be visible to others, so each gets its own copy. Copying containers and sharing
+their scalars is several times cheaper than a round trip through text, and as strict.
 """
 
 import codecs
@@ -15,29 +15,29 @@ import orjson
 from lumen.errors import BadMessageError
 
 MAX_BODY_DEPTH = 64
-"""How many levels deep lists and objects in a body may be nested."""
+"""Deepest nesting of lists and objects in a body."""
 MAX_BODY_BYTES = 1024 * 1024
-"""How long a body may be [bytes of JSON in UTF-8]."""
+"""Longest body [bytes of JSON in UTF-8]."""
 MAX_KEY_BYTES = 255
-"""How long a routing key may be [bytes]: AMQP's bound on a short string."""
+"""Longest routing key [bytes]: AMQP's limit for a short string."""
 MAX_TTL = 10 * 365 * 24 * 3600
-"""How long a message may be of use [s]."""
+"""Longest lifetime of a message [s]."""
 TEXT = "text/plain"
 JSON = "application/json"
 UTF_16 = "it is UTF-16: send UTF-8"
 
 MIN_INTEGER, MAX_INTEGER = -(2**63), 2**63
-"""Between which integers may lie: what every language can hold, and a float without overflowing."""
+"""Limits of integers: every language can store those between them, and a float does not overflow."""
 
 _SCALARS = frozenset((str, bool, type(None)))
 _FLOATS, _INTEGERS = frozenset((float,)), frozenset((int,))
 
 
 def copied(body: Any, depth: int = MAX_BODY_DEPTH) -> Any:
-    """A copy that shares no container with `body`; tuples become lists, as JSON would have them.
+    """Return a copy that shares no container with `body`; tuples become lists, as in JSON.
 
-    Raises BusError for what JSON can't say: other types, keys that are no texts, NaN and infinity, deep nesting; and
-    for integers beyond ±2**63.
+    Raises BusError for what JSON can't express: other types, keys that are no strings, NaN and infinity, deep nesting;
+    and for integers beyond ±2**63.
     """
     kind = type(body)
     if kind is dict and depth:
@@ -54,7 +54,7 @@ def copied(body: Any, depth: int = MAX_BODY_DEPTH) -> Any:
 
 
 def _object(body: dict[Any, Any], depth: int) -> dict[str, Any]:
-    """A loop rather than a comprehension: nearly every message comes through here, and what is common goes first."""
+    """Copy an object, in a loop with the common types first, because nearly every message passes through here."""
     own = {}
     for key, value in body.items():
         kind = type(value)
@@ -71,7 +71,7 @@ def _object(body: dict[Any, Any], depth: int) -> dict[str, Any]:
 
 
 def _plain(values: Sequence[Any]) -> bool:
-    """Whether a list is seen at a glance to hold nothing but texts, or but numbers that can be sent."""
+    """Return whether a list has only strings, booleans and nulls, or only valid numbers, and can be shared at once."""
     kinds = set(map(type, values))
     if kinds == _FLOATS:
         return isfinite(sum(values))
@@ -97,7 +97,7 @@ def _key(key: object) -> str:
 
 
 def _derived(body: object, depth: int) -> Any:
-    """What a subclass of a JSON type (a StrEnum, a NamedTuple, an OrderedDict) is in JSON."""
+    """Convert an instance of a subclass of a JSON type (a StrEnum, a NamedTuple, an OrderedDict) to JSON data."""
     if isinstance(body, str):
         return str.__str__(body)
     if isinstance(body, int):
@@ -112,13 +112,13 @@ def _derived(body: object, depth: int) -> Any:
 
 
 def check_key(key: str) -> None:
-    """Raise BusError where AMQP could not carry this key: a text of 255 bytes at most."""
+    """Raise BusError if AMQP can't carry this key: it must be a string of at most 255 bytes."""
     if not isinstance(key, str) or not _fits(key):
         raise BadMessageError(f"a key must be a string of at most {MAX_KEY_BYTES} bytes, not {str(key)[:40]!r}")
 
 
 def check_subscription(pattern: str, handler: object) -> None:
-    """Raise BusError where nobody could be called, or no key be meant."""
+    """Raise BusError if the pattern is no key, or the handler can't be called."""
     check_key(pattern)
     if not callable(handler):
         raise BadMessageError(f"a subscriber must be a function, not {str(handler)[:40]!r}")
@@ -132,13 +132,13 @@ def _fits(key: str) -> bool:
 
 
 def check_ttl(ttl: object) -> None:
-    """Raise BusError for what is no length of time: a number from 0 on, in [s], or None."""
+    """Raise BusError unless `ttl` is None or a number from 0 to MAX_TTL [s]."""
     if ttl is not None and not (type(ttl) in (int, float) and 0 <= ttl <= MAX_TTL):  # type: ignore[operator]
         raise BadMessageError(f"a ttl must be a number of seconds from 0 to {MAX_TTL}, not {str(ttl)[:40]!r}")
 
 
 def encode(body: Any) -> bytes:
-    """The body as JSON in UTF-8; raises BusError where it is not JSON data or too large."""
+    """Return the body as JSON in UTF-8. Raises BusError if it is not JSON data or too large."""
     try:
         data = orjson.dumps(copied(body))
     except orjson.JSONEncodeError as error:
@@ -176,7 +176,7 @@ def decode(data: bytes, content_type: str = JSON, content_encoding: str = "") ->
 
 
 def _is_utf_16(data: bytes) -> bool:
-    """Whether each second byte of the beginning is zero, and no other one: ASCII in UTF-16 without a mark."""
+    """Return whether bytes look like ASCII in UTF-16 without a mark: of two bytes always one is zero."""
     even, odd = data[0:8:2], data[1:8:2]
     return bool(odd) and any(all(letters) and not any(zeros) for letters, zeros in ((even, odd), (odd, even)))
 
@@ -197,7 +197,7 @@ def _foreign(data: bytes, content_encoding: str) -> str:
 
 
 def text_of_json(body: Any) -> str:
-    """Why a body is a text although an object or a list was meant; empty if it is no text that holds JSON."""
+    """Return why a body is wrong that is a string with JSON in it; empty if it is no such string."""
     if not isinstance(body, str) or body.lstrip()[:1] not in ("{", "["):
         return ""
     try:

@@ -32,11 +32,11 @@ class Probe(Protocol):
         ...
 
     def reading(self, key: str) -> str:
-        """Return why we may not read what is sent under a key; empty if we may."""
+        """Return why this user may not read messages under a key; empty if that is allowed."""
         ...
 
     def writing(self, key: str) -> str:
-        """Return why we may not send under a key; empty if we may."""
+        """Return why this user may not send under a key; empty if that is allowed."""
         ...
 
     def served(self, key: str, route: Route) -> QueueStatus:
@@ -44,41 +44,44 @@ class Probe(Protocol):
         ...
 
     def misdeclared(self) -> Iterator[str]:
-        """Iterate over what is wrong with the queues of unusable messages."""
+        """Yield what is wrong with the queues of unusable messages."""
         ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Disconnect."""
+        ...
 
 
 class StreamEntry(NamedTuple):
-    """A message of a stream, at its `offset`, which is -1 in none; `body` is JSON data, None if it can't be read.
-
-    `id` is unique, and `time` is when it was sent [s since 1970]: empty and 0 if the sender gave none.
-    """
+    """A message of a stream."""
 
     offset: int
+    """Its offset, -1 if the message is not from a stream."""
     key: str
     body: Any
+    """JSON data, None if it can't be read."""
     id: str = ""
+    """A unique id, empty if the sender gave none."""
     time: float = 0.0
+    """When it was sent [s since 1970], 0 if the sender gave no time."""
 
 
 class Stream(Protocol):
-    """Reads a stream through all outages of the broker."""
+    """A reader of a stream that survives outages of the broker."""
 
     def take(self) -> list[StreamEntry]:
         """Return what was read since the last call, in the stream's order."""
         ...
 
     def close(self) -> None:
-        """End; what was not taken is read again by the next one that begins there."""
+        """Stop reading; entries that were not taken are read again by the next reader from there."""
         ...
 
 
 def probe_of(url: str) -> Probe | None:
     """Return a connection for questions about the broker at an address; None if there is no broker.
 
-    Raises BusError, saying what to do, if the broker can't be used.
+    Raises BusError, with advice, if the broker can't be used.
     """
     row = row_of(url)
     if row is None or not row.probe:
@@ -88,12 +91,12 @@ def probe_of(url: str) -> Probe | None:
 
 
 def has_streams(url: str) -> bool:
-    """Return whether buses of that kind can have streams."""
+    """Return whether buses at such an address can have streams."""
     return (row := row_of(url)) is not None and bool(row.stream)
 
 
 def stream_of(url: str, name: str, first: int) -> Stream | None:
-    """Read the stream of that name from the offset `first` on; None if the broker has no such stream.
+    """Read a stream from the offset `first` on; return None if the broker has no such stream.
 
     Raises BusError if the broker can't be reached.
     """

@@ -33,7 +33,7 @@ _VALUES: tuple[tuple[type[Any], str, Callable[[Any], object], type], ...] = (
 
 
 class CheckedBus(Bus):
-    """Passes everything on to `bus`; `fault` makes the error about it, from words such as "returned 7 from …".
+    """A wrapper that passes everything on to `bus`; `fault` makes an error of words such as "returned 7 from …".
 
     Raises that error for an ability whose values have wrong types.
     """

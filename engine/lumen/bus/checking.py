@@ -1,4 +1,4 @@
-"""What is wrong with a body, in a line, by the JSON Schema of its message."""
+"""The check of a body by the JSON Schema of its message, with a one-line reason."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from jsonschema.exceptions import ValidationError
 
 MAX_SHOWN_CHARACTERS = 80
-"""How much of either end of a long reason is shown."""
+"""Characters of a long reason that are shown at either end."""
 
 
 def body_checks(project: Project) -> dict[str, "SchemaCheck"]:
-    """A check for every key of the project's routes that names a schema; schemas are compiled when first needed."""
+    """Return a check for every key of the project's routes with a schema; schemas are compiled on first use."""
     compiled = {name: SchemaCheck(schema) for name, schema in project.messages.items()}
     return {
         key: compiled[route.schema]
@@ -27,11 +27,12 @@ def body_checks(project: Project) -> dict[str, "SchemaCheck"]:
 
 
 class SchemaCheck:
-    """What is wrong with a body by one schema (2020-12), empty where nothing is; `fits` only says whether it is."""
+    """A check by one schema (2020-12): a call returns what is wrong with a body, empty if nothing is."""
 
     def __init__(self, schema: Mapping[str, object]) -> None:
         self._schema = JsonSchema(schema)
         self.fits = self._schema.fits
+        """Returns only whether a body is valid."""
 
     def __call__(self, body: Any) -> str:
         if self.fits(body):
@@ -46,7 +47,7 @@ class SchemaCheck:
 
 
 def _say(error: "ValidationError") -> str:
-    """`x: 'left' is not of type 'integer'`, cut where a body holds a picture."""
+    """Return an error as `x: 'left' is not of type 'integer'`, cut if it contains a long body such as a picture."""
     message = (
         error.message
         if len(error.message) <= 2 * MAX_SHOWN_CHARACTERS

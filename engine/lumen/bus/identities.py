@@ -1,4 +1,4 @@
-"""Ids of messages, and what is believed of the ids, senders and times that come in."""
+"""Ids of messages, and the check of the ids, senders and times that arrive."""
 
 from time import time as now
 
@@ -7,23 +7,23 @@ from lumen.language.numbers import is_number
 from lumen.ports import NUMBERS, PREFIX, Outgoing
 
 MAX_IDENTITY_BYTES = 255
-"""How long an id or a sender may be [bytes]: AMQP's bound on a short string."""
+"""Longest id or sender [bytes]: AMQP's limit for a short string."""
 MAX_TIME = 253_402_300_800.0
 """The end of the year 9999 [s since 1970]."""
 
 
 def new_id() -> str:
-    """An id that no other message has, in this run, another process, or after a restart."""
+    """Return an id that no other message has, in this process, another one, or after a restart."""
     return f"{PREFIX}-{next(NUMBERS)}"
 
 
 def origin_of(message: Outgoing, sender: str) -> MessageOrigin:
-    """Return the origin of a message; its id, sender and time are filled in if the message lacks them."""
+    """Return the origin of a message; a missing id, sender or time is filled in."""
     return MessageOrigin(message.id or new_id(), message.sender or sender, message.time or now(), message.cause)
 
 
 def believed(id: object = "", sender: object = "", time: object = 0.0, cause: object = "") -> MessageOrigin:
-    """What somebody said, who may say anything: what can't be is left out; without an id the message gets one."""
+    """Return an origin from unchecked data: invalid values are dropped, a missing id or time is filled in."""
     return MessageOrigin(_text(id) or new_id(), _text(sender), _moment(time) or now(), _text(cause))
 
 

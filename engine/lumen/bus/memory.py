@@ -1,11 +1,11 @@
-"""The embedded bus: topics without a broker, without a thread, and without surprises.
+"""The embedded bus: topics without a broker or a thread.
 
-`publish` appends to a queue and, where nobody is delivering yet, delivers until the queue is empty. So messages reach
-their subscribers in the order published, one at a time, whoever publishes from wherever, a handler included; in a
-program of one thread everything has been delivered when the outermost `publish` returns.
+`publish` appends to a queue and, unless a delivery is under way, delivers until the queue is empty. So messages reach
+their subscribers in the order published, one at a time, from any publisher, also from a handler; in a program with one
+thread everything is delivered when the outermost `publish` returns.
 
-What waits is bounded, as in the queues of a broker: when it is full, the oldest message gives way. The newest says how
-things are now, and a `rest` is not refused because of a flood before it.
+The queue is bounded, as in a broker: if it is full, the oldest message is dropped. The newest has the present state,
+and a `rest` must not be refused because of a flood before it.
 """
 
 import logging
@@ -25,13 +25,13 @@ from lumen.language.routes import Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
 from lumen.upkeep.drops import DropLog
 
-# A pattern matches keys as an AMQP 0-9-1 topic exchange decides it: keys and patterns are words with dots between them;
+# A pattern matches keys as in an AMQP 0-9-1 topic exchange: keys and patterns are words separated by dots;
 # in a pattern `*` matches exactly one word and `#` any number of them. An empty key has no words.
 
 
 @lru_cache(maxsize=16_384)
 def matches(pattern: str, key: str) -> bool:
-    """Whether a message with this key goes to who subscribed to `pattern`; remembered for each pair."""
+    """Return whether a key matches a subscription's pattern; cached for each pair."""
     return _match(_words(pattern), _words(key))
 
 
@@ -41,7 +41,7 @@ def _words(text: str) -> tuple[str, ...]:
 
 
 def _match(pattern: tuple[str, ...], key: tuple[str, ...]) -> bool:
-    """Compare word by word; where that fails, the last `#` takes one word more. At most |pattern| x |key| steps."""
+    """Compare word by word; after a mismatch the last `#` takes one word more. At most |pattern| x |key| steps."""
     p = k = taken = 0
     hash_at = -1
     while k < len(key):
@@ -58,15 +58,15 @@ def _match(pattern: tuple[str, ...], key: tuple[str, ...]) -> bool:
 
 
 HANDLER_TIMEOUT = 5.0
-"""How long closing waits for a subscriber that still works [s]."""
+"""How long closing waits for a subscriber that is still working [s]."""
 MAX_CACHED_KEYS = 4_096
-"""Keys whose listeners are remembered."""
+"""Keys whose listeners are cached."""
 MAX_QUEUED_MESSAGES = 100_000
-"""Messages that wait for a subscriber; then the oldest give way."""
+"""Messages that wait for a subscriber; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
-_new = tuple.__new__  # half the price of Message(…)
+_new = tuple.__new__  # half the cost of Message(…)
 
 
 class _Subscription:
@@ -81,7 +81,7 @@ _Delivery = tuple[tuple[_Subscription, ...], Message]
 
 
 class _Hub:
-    """What all the handles on one bus share."""
+    """The state that all handles on one bus share."""
 
     def __init__(self) -> None:
         self.subscriptions: tuple[_Subscription, ...] = ()
@@ -99,7 +99,7 @@ class _Hub:
             self.listeners = {}
 
     def find(self, key: str) -> tuple[_Subscription, ...]:
-        """Who listens to this key, in the order subscribed; remembered until somebody comes or goes."""
+        """Return the subscriptions that match a key, in order, and cache them until subscriptions change."""
         check_key(key)
         with self.changing:
             if len(self.listeners) >= MAX_CACHED_KEYS:
@@ -109,7 +109,7 @@ class _Hub:
             return found
 
     def shed(self) -> None:
-        """Drop the oldest messages; a `close` that waits in the queue goes on waiting, behind the newest."""
+        """Drop the oldest messages; a waiting `close` is moved to the end of the queue."""
         with self.changing:
             while len(self.queue) > MAX_QUEUED_MESSAGES:
                 item = self.queue.popleft()
@@ -121,7 +121,7 @@ class _Hub:
                     self.queue.append(item)
 
     def refuse(self, message: Message, reason: str) -> None:
-        """Answer a sender who wants an answer that nobody could use the message."""
+        """Reply to a sender who wants an answer that the message could not be used."""
         if message.reply_to and (listeners := self.find(message.reply_to)):
             text = f"message refused: {reason}"
             self.queue.append(
@@ -129,7 +129,7 @@ class _Hub:
             )
 
     def hand_over(self, subscriptions: tuple[_Subscription, ...], message: Message) -> None:
-        """Call the handlers, and answer the sender for each that refuses."""
+        """Call the handlers, and reply to the sender for each that refuses."""
         last = subscriptions[-1]
         for subscription in subscriptions:
             if not subscription.active:
@@ -143,9 +143,9 @@ class _Hub:
                 _log.exception("a subscriber of `%s` failed on `%s`", subscription.pattern, message.key)
 
     def deliver(self) -> None:
-        """Empty the queue, unless somebody is at it already.
+        """Empty the queue, unless another call does so already.
 
-        Who is at it looks at the queue once more after giving up the lock: what was appended until then is not lost.
+        That call looks at the queue again after it has released the lock, so nothing appended before is lost.
         """
         queue, delivering = self.queue, self.delivering
         while queue and delivering.acquire(False):
@@ -168,10 +168,10 @@ _shared: WeakValueDictionary[str, _Hub] = WeakValueDictionary()
 
 
 class MemoryBus(Bus):
-    """A handle on a bus inside this process: a new one, or with a `name` the one that all handles of that name share.
+    """A handle on a bus inside this process: a new bus, or with a `name` the one shared by all handles of that name.
 
-    Every subscriber is handed a copy of the body of its own. A message goes to who was subscribed when it was
-    published; there is no time to wait in, so `ttl` changes nothing. `sender` is the program whose handle this is.
+    Every subscriber gets its own copy of the body. A message reaches those who were subscribed when it was published,
+    at once, so `ttl` has no effect. `sender` is the name of this program in its messages.
     """
 
     def __init__(self, name: str = "", sender: str = "") -> None:
@@ -186,10 +186,10 @@ class MemoryBus(Bus):
         return self._hub.drops.counts
 
     def carry(self, routes: Mapping[str, Route]) -> None:
-        """Nothing changes: here every message arrives, and at once."""
+        """Do nothing: every message arrives at once."""
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        """There is nothing to wait for."""
+        """Do nothing: no preparation is needed."""
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
@@ -223,7 +223,7 @@ class MemoryBus(Bus):
             hub.deliver()
 
     def heard(self, key: str) -> bool:
-        """Whether anybody has subscribed to what is published under this key."""
+        """Return whether a subscription matches this key."""
         return bool(self._hub.find(key))
 
     def reply(self, message: Message, body: Any) -> None:
@@ -231,7 +231,7 @@ class MemoryBus(Bus):
             self.publish(message.reply_to, body, correlation_id=message.correlation_id)
 
     def close(self) -> None:
-        """Deliver what was published, then let go of this handle's subscriptions; other handles live on."""
+        """Deliver what was published, then cancel this handle's subscriptions; other handles stay open."""
         if self._closed:
             return
         self._closed = True

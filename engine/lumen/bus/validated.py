@@ -1,4 +1,4 @@
-"""Bodies checked at the boundary, against the message schemas of a project's routes."""
+"""Validation of bodies against the message schemas of a project's routes."""
 
 import logging
 from collections.abc import Callable, Mapping
@@ -17,27 +17,26 @@ from lumen.project.broken_features import fault_of_subscriber
 from lumen.upkeep.drops import ReasonLog
 
 OnRefused = Callable[[str, str], object]
-"""Called for a message that was not handed on, with its key and the reason."""
+"""Called for a message that was not delivered, with its key and the reason."""
 
 MAX_FAULTS = 100
-"""The number of different faults of subscribers that are reported; later ones are not."""
+"""Different faults of subscribers that are reported; later ones are not."""
 
 _log = logging.getLogger(__name__)
 
 
 class ValidatedBus(Bus):
-    """A bus on which only bodies pass that fit their route.
+    """A bus that passes only bodies that are valid on their routes.
 
-    A body of our own that does not is our own fault: `publish` raises BusError. One that comes in is not handed to the
-    subscriber: `on_refused` is called, the bus puts it aside and answers the sender. Keys without a route pass
-    unchecked where they begin with `avatar` or `lumen`, else they don't pass. What has an alias is sent and heard under
-    that, too. `use` takes another bundle of the project while messages flow.
+    An invalid body of this program is its own fault: `publish` raises BusError. An invalid one that arrives is not
+    delivered: `on_refused` is called, and the bus sets it aside and answers the sender. Keys without a route pass
+    unchecked if they begin with `avatar` or `lumen`, others not at all. A key with an alias is also sent and received
+    under it.
 
-    `arrived` is called, on any thread, when a subscriber has taken a message, and `failed` with the fault of a
-    subscriber of an installed package, once for each fault: that costs the message, and is logged with its traceback.
-
-    On a bus in this process a message that was sent here comes back with the very same object as its id: it is not
-    checked again for each subscriber.
+    `arrived` is called, on any thread, after a subscriber has handled a message. `failed` is called once with each
+    fault of an installed package's subscriber, whose message is lost; the fault is logged with its traceback. On a bus
+    in this process, a message that was sent here keeps the same object as its id, and is not checked again for each
+    subscriber.
     """
 
     def __init__(
@@ -63,7 +62,7 @@ class ValidatedBus(Bus):
 
     @property
     def unchecked(self) -> Bus:
-        """The bus beneath, for who only looks on: also what fits no route is said there."""
+        """The bus beneath, for observers: it also carries messages that fit no route."""
         return self._bus
 
     def heard(self, key: str) -> bool:
@@ -73,11 +72,11 @@ class ValidatedBus(Bus):
         return known is None or known.heard(key) or bool(alias and known.heard(alias))
 
     def use(self, project: Project) -> None:
-        """Check against the routes and schemas of this project from now on."""
+        """Switch to the routes and schemas of another bundle, also while messages flow."""
         routes = by_key(project)
         self._checks, self._routed, self._passed = body_checks(project), frozenset(routes), None
         self._bus.carry(routes)
-        if not isinstance(self._bus, ValidatedBus):  # whose aliases are sent and heard already
+        if not isinstance(self._bus, ValidatedBus):  # a validated bus beneath handles the aliases already
             self._aliases.use(project, self._bus)
             for listening in tuple(self._listening):
                 self._listen(listening)
@@ -144,7 +143,7 @@ class ValidatedBus(Bus):
             self._failed(fault)
 
     def _listen(self, listening: "_Listening") -> None:
-        """Listen under the alias that the pattern has now, if any."""
+        """Subscribe under the present alias of the pattern, if it has one, instead of the previous alias."""
         alias, before = self._aliases.names.get(listening.pattern, ""), listening.alias
         if alias == (before.pattern if before else ""):
             return
@@ -174,7 +173,7 @@ class _Listening:
 
 
 def by_key(project: Project) -> dict[str, Route]:
-    """The project's routes under their keys and aliases; of several with the same key, the one that promises most."""
+    """Return the project's routes by their keys and aliases; of several with the same key, the most reliable one."""
     routes = sorted(project.routes.values(), key=lambda route: route.must_arrive)
     aliases = {route.alias: route for route in routes if route.alias and project.aliases is not False}
     return aliases | {route.key_for(robot): route for route in routes for robot in project.served}
@@ -187,5 +186,5 @@ def validated(
     arrived: Callable[[], None] | None = None,
     failed: Callable[[str], None] = lambda _: None,
 ) -> ValidatedBus:
-    """Return the bus, with everything on it checked against the project's message schemas."""
+    """Return the bus with all messages checked against the project's message schemas."""
     return ValidatedBus(bus, project, on_refused, arrived, failed)

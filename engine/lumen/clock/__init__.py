@@ -1,0 +1,1 @@
+"""The clocks of an exhibition: real, simulated, virtual, and one that follows a robot's."""

@@ -1,24 +1,25 @@
-"""Sleep that ends early where there is something that can't wait."""
+"""A sleep that an urgent event ends early."""
 
 import threading
 import time
 
 SPACING = 0.02
-"""How long after one sleep was cut short the next may be [s]: who rings all the time gets no more ticks than usual."""
+"""Least time between two sleeps that are cut short [s], so that frequent rings give no more ticks than usual."""
 
 
 class Bell:
-    """Rung from any thread; whoever sleeps wakes, or does not fall asleep."""
+    """A bell that any thread may ring; it ends the current sleep, or else the next one."""
 
     def __init__(self) -> None:
         self._rung = threading.Event()
         self._woke = -SPACING
 
     def ring(self) -> None:
+        """End the sleep."""
         self._rung.set()
 
     def sleep(self, seconds: float) -> None:
-        """Sleep so long, or until it is rung."""
+        """Sleep for `seconds` [s], or until the bell rings."""
         now = time.monotonic()
         if (deaf := min(seconds, self._woke + SPACING - now)) > 0:
             time.sleep(deaf)

@@ -15,7 +15,7 @@ Ability = TypeVar("Ability")
 
 
 class CheckedClock:
-    """Passes everything on to `clock`; `fault` makes the error about it, from words such as "returned None from …".
+    """A wrapper that passes everything on to `clock`; `fault` makes an error of words such as "returned None from …".
 
     Raises that error if the clock can't tell the time, or if its `speed` is no number.
     """
@@ -28,13 +28,16 @@ class CheckedClock:
 
     @property
     def realtime(self) -> float:
+        """The share of its speed that the clock keeps, 1 if it does not measure that."""
         clock = self.clock
         return self._number("realtime", lambda: clock.realtime) if isinstance(clock, MeasuresPace) else 1.0
 
     def now(self) -> float:
+        """Return the clock's time [s]."""
         return self._number("now", self.clock.now)
 
     def wait(self, until: float) -> None:
+        """Wait until a time on the clock [s]."""
         with faults_named(self._fault, "wait"):
             self.clock.wait(until)
 
@@ -47,28 +50,30 @@ class CheckedClock:
 
 
 class CheckedDozingClock(CheckedClock):
-    """A clock that can sleep."""
+    """A checked clock that can sleep."""
 
     def __init__(self, clock: Clock, dozes: Dozes, fault: Callable[[str], LumenError]) -> None:
         super().__init__(clock, fault)
         self._dozes = dozes
 
     def doze(self, until: float) -> float:
+        """Sleep until a time [s] or until `hurry`; return the time [s]."""
         return self._number("doze", partial(self._dozes.doze, until))
 
     def hurry(self) -> None:
+        """End the current wait."""
         with faults_named(self._fault, "hurry"):
             self._dozes.hurry()
 
 
 def checked_clock(clock: Clock, fault: Callable[[str], LumenError]) -> Clock:
-    """Return the clock with checks; one of Lumen's as it is. Raises what `fault` makes if it can't tell the time."""
+    """Return the clock with checks, one of Lumen's unchanged. Raises the error of `fault` as CheckedClock does."""
     if isinstance(clock, RealClock | SimulatedClock):
         return clock
     return CheckedDozingClock(clock, clock, fault) if isinstance(clock, Dozes) else CheckedClock(clock, fault)
 
 
 def ability(clock: Clock, kind: type[Ability]) -> Ability | None:
-    """Return the clock, or the one that is checked, as one with that ability; None if it lacks it."""
+    """Return the clock itself (or the one beneath the checks) if it has an ability, else None."""
     own = clock.clock if isinstance(clock, CheckedClock) else clock
     return own if isinstance(own, kind) else None

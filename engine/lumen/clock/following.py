@@ -1,4 +1,4 @@
-"""The time of a robot in another process: timers of a behaviour there and what the robot does here share one time."""
+"""The time of a robot in another process, so that a behaviour's timers here and the robot's actions share one time."""
 
 import time
 from collections import deque
@@ -7,21 +7,21 @@ from collections.abc import Callable
 from lumen.clock.bell import Bell
 
 WINDOW = 5.0
-"""Over how long the robot's pace is measured [s]."""
+"""Interval over which the robot's pace is measured [s]."""
 MIN_MEASURED = 1.0
-"""How long it has to be measured to count [s]."""
+"""Least interval for a measurement [s]."""
 SILENCE = 2.0
-"""Where nothing was heard for so long [s], the time in between is not caught up with."""
+"""Time without a report [s] after which the missed time is not made up for."""
 CATCH_UP = 2.0
-"""In how long most of a difference is caught up with [s]: time is stretched, it neither jumps nor goes back."""
+"""Time in which most of a difference is made up for [s]: the clock is stretched, and never jumps or goes back."""
 SLOWEST, FASTEST = 0.05, 2.0
-"""Between which times the speed it follows [1]."""
+"""Limits of the pace, relative to the speed [1]."""
 
 
 class FollowingClock:
-    """Runs at `speed` times real time by itself, and as fast as the robot's clock where that is heard of (`follow`).
+    """A clock that runs at `speed` times real time, or at the pace of a robot's clock if reported (`follow`).
 
-    What it shows is its own: between two moments as much time has passed as on the robot, or will have soon.
+    Its readings are its own: between two moments as much time passes as on the robot, or soon will have.
     """
 
     def __init__(self, speed: float = 1.0, monotonic: Callable[[], float] = time.monotonic) -> None:
@@ -34,26 +34,28 @@ class FollowingClock:
 
     @property
     def realtime(self) -> float:
-        """How much of the wanted speed it keeps."""
+        """The share of its speed that it keeps."""
         return self._rate / self.speed
 
     def now(self) -> float:
+        """Return its time [s]."""
         return self._shown_at(self._monotonic())
 
     def hurry(self) -> None:
-        """Let the `wait` that is going on return: something can't wait. From any thread."""
+        """End the current `wait` for something urgent; on any thread."""
         self._bell.ring()
 
     def doze(self, until: float) -> float:
-        """Wait until then, or until `hurry`; when that was [s]."""
+        """Wait until `until` [s], or until `hurry`; return the time [s]."""
         self.wait(until)
         return self.now()
 
     def wait(self, until: float) -> None:
+        """Wait until `until` [s], or until `hurry`."""
         self._bell.sleep(max(0.0, (until - self.now()) / self._rate))
 
     def follow(self, whose: str, robots: float, at: float) -> None:
-        """At `at` [s, monotonic] the clock of the robot of that session showed `robots` [s]."""
+        """Note that the robot's clock showed `robots` [s] at `at` [s, monotonic]; `whose` is the robot's session."""
         last = self._heard[-1] if self._heard else None
         if last and whose == self._whose and at <= last[0]:
             return
@@ -67,7 +69,7 @@ class FollowingClock:
         self._run_at(self._pace() + behind / CATCH_UP)
 
     def tick(self) -> None:
-        """Run by itself where the robot was not heard of for long."""
+        """Return to the own speed if the robot has been silent for long."""
         if self._heard and self._monotonic() - self._heard[-1][0] > SILENCE:
             self._heard.clear()
             self._run_at(self.speed)

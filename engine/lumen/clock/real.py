@@ -1,4 +1,4 @@
-"""The time of the world outside."""
+"""Real time."""
 
 import time
 
@@ -6,9 +6,9 @@ from lumen.clock.bell import Bell
 
 
 class RealClock:
-    """Seconds since it was made, and those that it began with: `now` [s].
+    """The seconds since it was made, plus the initial `now` [s].
 
-    At another `speed` than 1 they are that many times shorter, for processes around a simulation that is as fast.
+    At another `speed` than 1 they are that many times shorter, for processes beside a simulation of the same speed.
     """
 
     realtime = 1.0
@@ -18,16 +18,18 @@ class RealClock:
         self._bell = Bell()
 
     def now(self) -> float:
+        """Return its time [s]."""
         return (time.monotonic() - self._start) * self.speed
 
     def hurry(self) -> None:
-        """Let the `wait` that is going on return: something can't wait. From any thread."""
+        """End the current `wait` for something urgent; on any thread."""
         self._bell.ring()
 
     def doze(self, until: float) -> float:
-        """Wait until then, or until `hurry`; when that was [s]."""
+        """Wait until `until` [s], or until `hurry`; return the time [s]."""
         self.wait(until)
         return self.now()
 
     def wait(self, until: float) -> None:
+        """Wait until `until` [s], or until `hurry`."""
         self._bell.sleep(max(0.0, (until - self.now()) / self.speed))

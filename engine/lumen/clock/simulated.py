@@ -1,4 +1,4 @@
-"""Time that a simulated world lives through."""
+"""The time of a simulated world."""
 
 import time
 from collections import deque
@@ -8,29 +8,29 @@ from lumen.clock.bell import Bell
 from lumen.language.nanoseconds import to_the_nanosecond
 
 WINDOW = 10.0
-"""Over how long the pace is measured [s]."""
+"""Interval over which the pace is measured [s]."""
 MIN_MEASURED = 2.0
-"""How long it has to be measured to count [s]."""
+"""Least interval for a measurement [s]."""
 SAMPLE_PERIOD = 0.25
-"""How often the time is noted [s]."""
+"""Time between two samples [s]."""
 
 
 class PaceMeter:
-    """Told of a clock's time, says how fast that passed of late: 1 where it kept the `speed` that it should have."""
+    """A meter of a clock's recent pace, relative to the `speed` that it should have."""
 
     def __init__(self, speed: float, clock: Callable[[], float] = time.monotonic) -> None:
         self._speed, self._clock = speed, clock
         self._noted: deque[tuple[float, float]] = deque(maxlen=round(WINDOW / SAMPLE_PERIOD))
 
     def note(self, now: float) -> None:
-        """The clock shows `now` [s]."""
+        """Record that the clock shows `now` [s]."""
         at = self._clock()
         if not self._noted or at - self._noted[-1][0] >= SAMPLE_PERIOD:
             self._noted.append((at, now))
 
     @property
     def factor(self) -> float:
-        """How many seconds of the wanted speed passed in each; 1 before enough is known."""
+        """The share of its speed that the clock kept; 1 before enough is measured."""
         if len(self._noted) < 2:
             return 1.0
         (first, began), (last, ended) = self._noted[0], self._noted[-1]
@@ -38,14 +38,14 @@ class PaceMeter:
 
 
 MAX_ARREARS = 0.25
-"""How far [s] the clock may be behind and still catch up: a tick that the machine held back costs no time."""
+"""Delay that the clock makes up for [s], so that a tick delayed by the machine costs no time."""
 
 
 class SimulatedClock:
-    """A clock whose passing is `live(dt)`: physics, or nothing but counting.
+    """A clock that advances a world by `live(dt)`: physics, or just counting.
 
-    `speed` is how many times real time it runs at most, None as fast as the world can. Where the world is slower than
-    that, the clock falls behind and, but for `MAX_ARREARS`, does not hurry to catch up; `realtime` says how slow it is.
+    `speed` is the fastest pace in multiples of real time, None for no limit. If the world is slower, the clock falls
+    behind and makes up for at most `MAX_ARREARS`.
     """
 
     def __init__(
@@ -62,20 +62,21 @@ class SimulatedClock:
 
     @property
     def realtime(self) -> float:
-        """How much of the wanted speed it has kept of late; 1 where it may be as fast as it can."""
+        """The share of its speed that it has kept recently; 1 without a limit."""
         return self._meter.factor if self.speed else 1.0
 
     def now(self) -> float:
+        """Return its time [s]."""
         return self._now
 
     def hurry(self) -> None:
-        """Let the `wait` that is going on return: something can't wait. From any thread."""
+        """End the current `wait` for something urgent; on any thread."""
         self._bell.ring()
 
     def doze(self, until: float) -> float:
-        """Sleep until the world is to live on, or until `hurry`; until when that is due by now, at most `until` [s].
+        """Sleep until the world is due to advance to `until` [s], or until `hurry`.
 
-        As fast as it can there is nothing to sleep for.
+        Return the time up to which it is due now, at most `until` [s]. Without a speed limit it returns at once.
         """
         if not self.speed:
             return self._now
@@ -83,6 +84,7 @@ class SimulatedClock:
         return min(until, self._now + max(0.0, self._monotonic() - self._due) * self.speed)
 
     def wait(self, until: float) -> None:
+        """Advance the world to `until` [s], and sleep until that time is due."""
         until = to_the_nanosecond(until)
         dt = until - self._now
         if dt <= 0:

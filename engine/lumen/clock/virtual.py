@@ -1,4 +1,4 @@
-"""Time that passes by `advance` alone, stopping at everything that is due on the way."""
+"""A clock that passes only by `advance`, and stops at everything that is due on the way."""
 
 from math import inf
 from typing import Protocol
@@ -9,14 +9,14 @@ from lumen.upkeep.arguments import need_number
 
 
 class Sleeper(Protocol):
-    """Somebody who wants to be woken at certain times."""
+    """An object that is woken at certain times."""
 
     def next_due(self) -> float | None:
-        """When [s], None where there is nothing to wake for."""
+        """Return when it must be woken next [s], None for never."""
         ...
 
     def wake(self) -> None:
-        """It is that time."""
+        """Called when that time has come."""
         ...
 
 
@@ -29,12 +29,13 @@ class VirtualClock:
         self._sleepers: list[Sleeper] = []
 
     def now(self) -> float:
+        """Return its time [s]."""
         return self._now
 
     def advance(self, dt: float) -> None:
-        """Let `dt` [s] pass; each sleeper is woken at each of its due times, in their order.
+        """Let `dt` [s] pass, and wake each sleeper at its due times, in order.
 
-        Raises UsageError for a time that never passes: below 0, infinite, NaN.
+        Raises UsageError if `dt` is negative, infinite or NaN.
         """
         need_number(dt, "the time to advance a clock by", finite=False)
         if not 0.0 <= dt < inf:
@@ -51,7 +52,7 @@ class VirtualClock:
         self._now = max(self._now, until)
 
     def attach(self, sleeper: Sleeper) -> None:
-        """Wake this one from now on."""
+        """Wake a sleeper from now on."""
         self._sleepers.append(sleeper)
 
     def _first(self, until: float) -> Sleeper | None:

@@ -17,6 +17,7 @@ PROMISES = Path(__file__).with_name("robot_promises.py")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options `--lumen-robot` and `--lumen-project`."""
     group = parser.getgroup("lumen")
     group.addoption(
         "--lumen-robot",

@@ -1,4 +1,4 @@
-"""A robot of one's own under test: it lives for some time, and each broken promise is a sentence."""
+"""A user's robot under test: time passes for it, and each broken promise fails with a sentence."""
 
 import json
 import time
@@ -16,18 +16,17 @@ from lumen.robot.bounded_robot import BoundedRobot
 from lumen.run.driver import fault_of, make_robot
 
 TICK = 0.02
-"""The time between two looks, as in a run [s]."""
+"""Time between two polls, as in a run [s]."""
 PATIENCE = 20.0
-"""The longest time that a short command may take [s]."""
+"""Longest time for a short command [s]."""
 BLOCKING = 5.0
-"""The longest time that a method may take [s]: a tick has 0.02 s, but a loaded machine is slow."""
+"""Longest time for a method [s]: a tick has 0.02 s, but a loaded machine is slow."""
 
 
 class RobotTrial:
     """A new robot of a driver, as an exhibition uses it.
 
-    A robot with a method `advance` lives in its own time, any other in real time. `now` is the time since its start
-    [s].
+    A robot with a method `advance` runs in its own time, any other in real time. `now` is the time since its start [s].
     """
 
     def __init__(self, driver: str, project: Project) -> None:
@@ -44,23 +43,26 @@ class RobotTrial:
             self._robot.start(id, command)
 
     def cancel(self, id: str) -> None:
+        """Cancel a command."""
         with self._calling("cancel"):
             self._robot.cancel(id)
 
     def read(self, sense: Sense) -> Reading | None:
+        """Return the reading of a sense, None without that sense."""
         with self._calling("read"):
             return self._robot.read(sense)
 
     def begun(self) -> list[str]:
+        """Return the ids of commands that began since the last call."""
         with self._calling("begun"):
             return list(self._robot.begun())
 
     def live(self, seconds: float) -> list[Event]:
-        """Let time pass; return the events of that time."""
+        """Let `seconds` [s] pass; return the events of that time."""
         return self.until(lambda: False, seconds)
 
     def until(self, done: Callable[[], bool], seconds: float = PATIENCE) -> list[Event]:
-        """Let time pass until a condition holds, for so long at most; return the events of that time."""
+        """Let time pass until a condition holds, for at most `seconds` [s]; return the events of that time."""
         first, end = len(self.events), self.now + seconds
         while not done() and self.now < end:
             self._pass()
@@ -85,7 +87,7 @@ class RobotTrial:
         return [self.answers(id)[0] for id in ids]
 
     def close(self) -> None:
-        """End the robot; harmless when repeated."""
+        """Close the robot; harmless when repeated."""
         with self._calling("close"):
             self._robot.close()
 
@@ -115,7 +117,7 @@ class RobotTrial:
 
     @contextmanager
     def _calling(self, method: str) -> Iterator[None]:
-        """Run a method; fail if it raises, or blocks."""
+        """Run a method; fail if it raises or blocks."""
         began = time.monotonic()
         try:
             yield

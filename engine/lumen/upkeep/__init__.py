@@ -1,1 +1,1 @@
-"""What keeps an exhibition going: watched threads, counts of drops, limits of rate, pauses between attempts."""
+"""Infrastructure of a long run: watched threads, counts of drops, rate limits, pauses between attempts."""

@@ -1,4 +1,4 @@
-"""Arguments of public functions: who gives something else than is meant hears what would be right."""
+"""Checks of the arguments of public functions, with errors that name what is allowed."""
 
 from collections.abc import Mapping
 from math import isfinite, isnan
@@ -9,13 +9,13 @@ from lumen.errors import UsageError
 
 
 def need(value: Any, kind: type | tuple[type, ...], what: str, meant: str) -> None:
-    """Raises UsageError where the value is of another kind."""
+    """Raise UsageError if a value is not of the right type; a bool is no number."""
     if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
         raise UsageError(f"{what} must be {meant}, not {_shown(value)}")
 
 
 def need_methods(value: Any, kind: type, what: str) -> None:
-    """Raises UsageError if the value lacks a method of a protocol."""
+    """Raise UsageError if a value lacks a method of a protocol."""
     if missing := missing_methods(value, kind):
         names = f"the method `{missing[0]}`" if len(missing) == 1 else f"the methods {', '.join(missing)}"
         protocol = f"{kind.__module__}.{kind.__name__}"
@@ -29,21 +29,21 @@ def missing_methods(value: Any, kind: type) -> list[str]:
 
 
 def need_map(value: Any, what: str) -> None:
-    """Raises UsageError where it is no map with texts as keys."""
+    """Raise UsageError if a value is no map with strings as keys."""
     need(value, Mapping, what, "a map")
     for key in value:
         need(key, str, f"each key of {what}", "a string")
 
 
 def need_text(value: Any, what: str, *, empty: bool = False) -> None:
-    """Raises UsageError where it is no text, or an empty one where that says nothing."""
+    """Raise UsageError if a value is no string, or an empty one unless `empty` allows that."""
     need(value, str, what, "a string")
     if not value and not empty:
         raise UsageError(f"{what} is empty")
 
 
 def need_number(value: Any, what: str, *, finite: bool = True) -> None:
-    """Raises UsageError where it is no number; an infinite one is none where it has to be `finite`."""
+    """Raise UsageError if a value is no number; with `finite` also if it is infinite."""
     try:
         sound = not isinstance(value, str | bytes | bool) and not isnan(value) and (not finite or isfinite(value))
     except (TypeError, ValueError, OverflowError):
@@ -53,14 +53,14 @@ def need_number(value: Any, what: str, *, finite: bool = True) -> None:
 
 
 def need_numbers(values: Any, what: str) -> None:
-    """Raises UsageError where it is no map of numbers."""
+    """Raise UsageError if a value is no map of numbers."""
     need_map(values, what)
     for key, value in values.items():
         need_number(value, f"`{key}` of {what}")
 
 
 def need_path(value: Any) -> Path:
-    """The path of a file; raises UsageError where it is none."""
+    """Return a value as the path of a file. Raises UsageError if it is no path."""
     need(value, (str, Path), "the path of a file", "a string or a Path")
     if "\0" in str(value):
         raise UsageError("the path of a file contains a character that is not allowed in paths")

@@ -3,16 +3,16 @@
 from math import inf
 
 MAX_DOUBLINGS = 60
-"""More would be too long for a float's exponent to matter, and for anyone to wait."""
+"""Limit of the doublings, far beyond any useful pause, so that the float does not overflow."""
 
 
 def pause_after(failures: int, first: float, longest: float = inf) -> float:
-    """Return the pause after so many failures in a row [s]: `first` after one, 0 after none."""
+    """Return the pause after a number of failures in a row [s]: `first` after one, 0 after none."""
     return min(first * 2.0 ** min(failures - 1, MAX_DOUBLINGS), longest) if failures > 0 else 0.0
 
 
 class Backoff:
-    """Counts failures in a row, and returns the pause after each [s]."""
+    """A counter of failures in a row, with the pause after each [s]."""
 
     def __init__(self, first: float, longest: float = inf) -> None:
         self._first, self._longest, self._failures = first, longest, 0
@@ -23,5 +23,5 @@ class Backoff:
         return pause_after(self._failures, self._first, self._longest)
 
     def reset(self) -> None:
-        """An attempt succeeded: the next pause is the first again."""
+        """Note a success: the next pause is the first again."""
         self._failures = 0

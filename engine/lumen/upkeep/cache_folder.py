@@ -1,4 +1,4 @@
-"""What this user's programs have worked out once, kept on the disk: nothing is lost where it is deleted."""
+"""A cache on the disk for the results of this user's programs; it may be deleted at any time."""
 
 import os
 import stat
@@ -6,21 +6,21 @@ from contextlib import suppress
 from pathlib import Path
 
 MAX_FILES = 64
-"""How many files of a kind are kept where nothing else is said: those that were made or read last."""
+"""Default number of files of a kind that are kept, those made or read last."""
 
 
 class CacheFolder:
-    """Files of one kind, by name; one that can't be read or written is as good as none.
+    """The cached files of one kind, by name; a file that can't be read or written counts as missing.
 
-    It lies among the user's own files and not in a project: what is in it is believed, and whoever sends a project may
-    send any file with it. A folder that others may write is not used.
+    It is among the user's own files and not in a project, because its content is trusted, and a project from elsewhere
+    may contain any file. A folder that others may write to is not used.
     """
 
     def __init__(self, kind: str, most: int = MAX_FILES) -> None:
         self._folder, self._most = _own() / kind, most
 
     def read(self, name: str) -> bytes | None:
-        """What is kept under that name, None where nothing is."""
+        """Return the content under a name, None if there is none."""
         try:
             content = (self._folder / name).read_bytes() if self._private() else None
         except OSError:
@@ -30,7 +30,7 @@ class CacheFolder:
         return content
 
     def write(self, name: str, content: bytes) -> None:
-        """Keep it, whole or not at all; the oldest go where there are too many."""
+        """Save a content completely or not at all; delete the oldest files above the limit."""
         draft = self._folder / f".{os.urandom(16).hex()}"
         try:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -45,7 +45,7 @@ class CacheFolder:
                 draft.unlink(missing_ok=True)
 
     def _private(self) -> bool:
-        """Whether nobody else may write it; Windows keeps the folders of its users apart by itself."""
+        """Return whether only this user may write to the folder; on Windows users' folders are always separate."""
         if not hasattr(os, "getuid"):
             return True
         status = self._folder.stat()
@@ -60,7 +60,7 @@ def _used(file: Path) -> float:
 
 
 def _own() -> Path:
-    """Where this user's programs keep what they can make again (the XDG Base Directory Specification)."""
+    """Return the folder for this user's cached files (the XDG Base Directory Specification)."""
     given = os.environ.get("XDG_CACHE_HOME") or os.environ.get("LOCALAPPDATA")
     try:
         return Path(given) / "lumen" if given else Path.home() / ".cache" / "lumen"

@@ -1,4 +1,4 @@
-"""Counts of what is dropped, by key, and lines about them: a flood costs a line and a count, not a line each."""
+"""Counts of dropped items by key, and lines about them: a flood gives a line and a count, not a line each."""
 
 import logging
 import re
@@ -11,9 +11,9 @@ from math import inf
 from typing import TypeVar
 
 TELL_PERIOD = 10.0
-"""The least time between two lines about a key [s]."""
+"""Least time between two lines about a key [s]."""
 MAX_KEYS = 1_000
-"""Keys that are counted apart; what is dropped under further ones is counted as `OTHERS`."""
+"""Keys that are counted separately; drops under further ones are counted as `OTHERS`."""
 OTHERS = "other keys"
 
 T = TypeVar("T")
@@ -21,10 +21,10 @@ _DIGITS = re.compile(r"\d+")
 
 
 class Drops:
-    """Counts what is dropped (`counts`, by key), and writes lines: the first at once, then a count every ten seconds.
+    """A counter of drops, with lines about them: the first at once, then a count every ten seconds.
 
-    Safe from any thread. The owner calls `tell` now and then, and at its end, so that the last ones are reported too.
-    If `untold` is empty there is nothing to report.
+    Safe from any thread. The owner calls `tell` from time to time, and at its end, so that the last drops are reported
+    too.
     """
 
     def __init__(
@@ -33,6 +33,7 @@ class Drops:
         self._write, self._what, self._clock = write, what, clock
         self._counts: dict[str, int] = {}
         self.untold: dict[str, tuple[int, str]] = {}
+        """Drops that are not reported yet, by key, with the reason."""
         self._told: dict[str, float] = {}
         self._changing = threading.Lock()
 
@@ -43,7 +44,7 @@ class Drops:
             return dict(self._counts)
 
     def add(self, key: str, why: str, count: int = 1) -> None:
-        """So many under that key were dropped."""
+        """Count drops under a key."""
         with self._changing:
             key = key if key in self._counts or len(self._counts) < MAX_KEYS else OTHERS
             first = key not in self._told
@@ -63,7 +64,7 @@ class Drops:
         waiting.append(item)
 
     def tell(self, *, all: bool = False) -> None:
-        """Report what was dropped since the last line about its key, if that was ten seconds ago, or `all` of it."""
+        """Report the drops under each key whose last line is ten seconds old, or `all` of them."""
         if not self.untold:
             return
         now = self._clock()
@@ -76,7 +77,7 @@ class Drops:
 
 
 class DropLog(Drops):
-    """Drops whose lines are warnings of a logger."""
+    """A counter of drops whose lines are warnings of a logger."""
 
     def __init__(
         self, log: logging.Logger, what: str = "messages", clock: Callable[[], float] = time.monotonic
@@ -85,9 +86,9 @@ class DropLog(Drops):
 
 
 class ReasonLog:
-    """Logs each reason once in ten seconds, whatever the numbers in it; what comes meanwhile is counted in `drops`.
+    """A log of reasons, each once in ten seconds, whatever its numbers are; repetitions are counted in `drops`.
 
-    `line` has places for `%(key)s` and `%(reason)s`.
+    `line` has placeholders for `%(key)s` and `%(reason)s`.
     """
 
     def __init__(
@@ -102,7 +103,7 @@ class ReasonLog:
         self._said: dict[tuple[str, str], float] = {}
 
     def __call__(self, key: str, reason: str) -> bool:
-        """Log or count it; whether it was logged."""
+        """Log a reason, or count it as dropped; return whether it was logged."""
         kind, now = (key, _DIGITS.sub("#", reason)), self._clock()
         if now - self._said.get(kind, -inf) < TELL_PERIOD or (kind not in self._said and len(self._said) >= MAX_KEYS):
             self.drops.add(key, reason)

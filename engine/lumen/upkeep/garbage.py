@@ -1,19 +1,19 @@
-"""Python's search for garbage, left out where it would not pay, and kept from stopping the robot."""
+"""Control of Python's garbage collection: none if it would not pay, and none that delays the robot."""
 
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 NEVER = 2**31 - 1
-"""After how many smaller searches Python begins a full one, where it is to begin none."""
+"""Threshold of smaller collections at which Python in effect never begins a full one."""
 
 RARELY = 100_000
-"""The number of new objects between two searches in a short-lived process: about 10 MB."""
+"""New objects between two collections in a short-lived process: about 10 MB."""
 
 
 @contextmanager
 def gc_paused() -> Iterator[None]:
-    """No garbage is searched for within: for imports and short work, of which it takes a tenth and finds nothing."""
+    """Pause garbage collection, for imports and short work: it would take a tenth of the time and find nothing."""
     before = gc.isenabled()
     gc.disable()
     try:
@@ -24,26 +24,28 @@ def gc_paused() -> Iterator[None]:
 
 
 def search_rarely() -> None:
-    """Search for garbage only after many new objects: for a short-lived process, most of whose time is imports."""
+    """Collect garbage only after many new objects, for a short-lived process that mostly imports."""
     gc.set_threshold(RARELY)
 
 
 class GcScheduler:
-    """Called after each tick, when there is most time until the next: looks for garbage where a search is due.
+    """A scheduler of full collections, called after each tick, when the most time is left until the next.
 
-    What is there when it is made is never looked through again, and Python begins no full search of its own, in
-    whatever moment and thread: one through all that was imported and loaded takes a tick and more, one through what
-    came after some milliseconds. `close` gives that back.
+    Objects that exist when it is made are never searched again, and Python begins no full collection itself, at any
+    moment and on any thread: one of all that was imported and loaded takes a tick and more, one of later objects some
+    milliseconds. `close` restores the usual settings.
     """
 
     def __init__(self) -> None:
-        gc.freeze()  # not after a search: what imports and loading leave behind is next to nothing
+        gc.freeze()  # without a collection before: imports and loading leave almost no garbage
         self._usual = gc.get_threshold()
         gc.set_threshold(*self._usual[:2], NEVER)
 
     def __call__(self, _: float = 0.0) -> None:
+        """Run a full collection if one is due."""
         if gc.get_count()[2] > self._usual[2]:
             gc.collect()
 
     def close(self) -> None:
+        """Restore Python's usual thresholds."""
         gc.set_threshold(*self._usual)

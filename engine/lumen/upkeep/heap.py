@@ -1,17 +1,17 @@
-"""Memory that a long run has no use for any more goes back to the system."""
+"""Return of unused memory to the system in long runs."""
 
 import ctypes
 
 TRIM_THRESHOLD, MMAP_THRESHOLD = -1, -3
-"""Which of its limits the C library is told (`malloc.h`)."""
+"""The parameters of the C library that are set (`malloc.h`)."""
 LARGE = 128 * 1024
-"""From this size on a block is asked of the system itself, and given back when it is freed [bytes]: as glibc begins."""
+"""Size from which a block is mapped separately and returned when freed [bytes]; this is glibc's initial value."""
 
 
 def give_back() -> None:
-    """Let what is freed be given back from now on, where the C library is glibc; else nothing changes.
+    """Make glibc return freed memory from now on; with another C library nothing changes.
 
-    By itself it keeps larger and larger blocks, between which what stays lies scattered: each saved file cost a running
+    By default it keeps ever larger blocks, between which live data is scattered: each saved file cost a running
     exhibition 0.5 MB.
     """
     try:

@@ -1,6 +1,6 @@
 """A process that answers questions under limits, from both ends: `JudgeProcess` asks, `answering` is its other end.
 
-Both are programs of ours, and nothing else uses the pipes between them. A message is a length and a pickled value.
+Both are Lumen's own programs with private pipes. A message is a length and a pickled value.
 """
 
 import os
@@ -56,10 +56,10 @@ class _SizeError(Exception):
 
 
 class JudgeProcess:
-    """Runs `command` and asks it one question at a time; it is started again after it has ended.
+    """A process that runs `command` and answers one question at a time; it can be started again after its end.
 
-    An answer may have `max_answer` [bytes], any number if that is None. `end` may be called from any thread: a question
-    without an answer then raises NoAnswerError.
+    An answer may have `max_answer` [bytes], None for no limit. `end` may be called on any thread: an open question then
+    raises NoAnswerError.
     """
 
     def __init__(self, command: Sequence[str], max_answer: int | None = None) -> None:
@@ -74,11 +74,12 @@ class JudgeProcess:
 
     @property
     def alive(self) -> bool:
+        """Whether it is running."""
         child = self._child
         return child is not None and child.poll() is None
 
     def start(self) -> None:
-        """Start the process unless it runs already; raises OSError if the system refuses."""
+        """Start the process unless it is running. Raises OSError if the system refuses."""
         if self.alive:
             return
         self.end()
@@ -86,13 +87,13 @@ class JudgeProcess:
             self.command,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            start_new_session=True,  # Ctrl-C is not for it
+            start_new_session=True,  # so that Ctrl-C does not reach it
         )
 
     def ask(self, question: Any, timeout: float = threading.TIMEOUT_MAX) -> Any:
         """Return the answer, or raise it if it is an exception.
 
-        Raises NoAnswerError if the process ends without one, or is ended because it needs more than `timeout` [s].
+        Raises NoAnswerError if the process ends without one, or is killed after `timeout` [s].
         """
         with self._asking:
             if (child := self._child) is None:
@@ -106,7 +107,7 @@ class JudgeProcess:
                 self._end(child)
                 late = time.monotonic() - began >= timeout
                 raise NoAnswerError(_fault(error, child.returncode, late=late), child.returncode) from None
-            except BaseException:  # the answer is still to come, and would be taken for that to the next question
+            except BaseException:  # a late answer would be mistaken for that to the next question
                 self._end(child)
                 raise
             finally:
@@ -116,7 +117,7 @@ class JudgeProcess:
         return answer
 
     def send(self, message: Any) -> None:
-        """Send a message that has no answer; that the process has ended shows at the next question."""
+        """Send a message that has no answer; if the process has ended, the next question fails."""
         if child := self._child:
             self._send(child, message)
 
@@ -146,7 +147,7 @@ class JudgeProcess:
             self._child = None
         child.kill()
         child.wait()
-        with self._asking, self._sending:  # whoever reads or writes notices the end, and is done with the pipes
+        with self._asking, self._sending:  # wait until all readers and writers have noticed the end
             for pipe in (child.stdin, child.stdout):
                 assert pipe
                 with suppress(OSError):  # what the process did not read
@@ -154,7 +155,7 @@ class JudgeProcess:
 
 
 class AnswerPipe:
-    """The questions of a `JudgeProcess`, one after the other, and the way back."""
+    """The questions of a `JudgeProcess`, one after the other, and the channel for the answers."""
 
     def __init__(self, questions: IO[bytes], answers: IO[bytes]) -> None:
         self._questions, self._answers = questions, answers
@@ -164,22 +165,23 @@ class AnswerPipe:
             yield self.receive()
 
     def receive(self) -> Any:
-        """Return the next question; raises EOFError after the last."""
+        """Return the next question. Raises EOFError after the last."""
         return receive(self._questions)
 
     def send(self, answer: Any) -> None:
+        """Send an answer."""
         self._answers.write(_packed(answer))
         self._answers.flush()
 
     def answer(self, judge: Callable[[], Any], seconds: float = 0.0) -> None:
-        """Send what `judge` returns, or the exception that it raises; the system ends the process after `seconds`."""
+        """Send the return value or the exception of `judge`; the system ends the process after `seconds` [s]."""
         limit_time(seconds)
         answer: Any
         try:
             answer = judge()
         except MemoryError:
             raise
-        except Exception as error:  # a fault of ours, which costs this answer only
+        except Exception as error:  # an internal error fails only this answer
             answer = error
         self.send(answer)
         limit_time(0.0)
@@ -187,7 +189,7 @@ class AnswerPipe:
 
 @contextmanager
 def answering(max_memory: int | None = None) -> Iterator[AnswerPipe]:
-    """Answer the parent until it closes the pipe, in at most `max_memory` [bytes]; prints go to the terminal."""
+    """Answer the parent until it closes the pipe, with at most `max_memory` [bytes]; prints go to the terminal."""
     if max_memory is not None:
         if hasattr(os, "nice"):
             os.setpriority(os.PRIO_PROCESS, 0, NICENESS)
@@ -203,7 +205,7 @@ def answering(max_memory: int | None = None) -> Iterator[AnswerPipe]:
 
 
 def limit_time(seconds: float) -> None:
-    """Let the system end this process after `seconds`, even if its parent is gone; 0 removes the limit."""
+    """Let the system end this process after `seconds` [s], even if its parent is gone; 0 removes the limit."""
     if hasattr(signal, "setitimer"):
         signal.setitimer(signal.ITIMER_REAL, seconds)
 
@@ -214,7 +216,7 @@ def _packed(message: Any) -> bytes:
 
 
 def receive(pipe: IO[bytes], most: int | None = None) -> Any:
-    """Return the next message; raises EOFError at the end, and _SizeError if it has more than `most` bytes."""
+    """Return the next message. Raises EOFError at the end, and _SizeError if it has more than `most` bytes."""
     head = pipe.read(_LENGTH.size)
     if len(head) < _LENGTH.size:
         raise EOFError

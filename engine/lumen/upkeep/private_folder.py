@@ -1,4 +1,4 @@
-"""Folders and files of ours that hold names, pictures or keys."""
+"""Folders and files of Lumen that hold names, pictures or keys."""
 
 import os
 from contextlib import suppress
@@ -8,13 +8,13 @@ IGNORE_FILE = ".gitignore"
 _IGNORING = b"# Written by Lumen: here are names, pictures and keys.\n*\n"
 
 NO_LINK = getattr(os, "O_NOFOLLOW", 0)
-"""The flag that refuses a link: one in a project may lead to any file of the user, and a stranger may have sent it."""
+"""The flag that refuses links: a link in a foreign project may lead to any of the user's files."""
 
 
 def private_folder(folder: Path) -> None:
-    """Make the folder where it is missing, and have version control pass it over: `git add -A` takes nothing of it.
+    """Make a folder if it is missing, with a .gitignore that excludes all of it from version control.
 
-    What stands in its .gitignore already stays. Raises OSError where the folder can't be made.
+    An existing .gitignore is kept. Raises OSError if the folder can't be made.
     """
     folder.mkdir(parents=True, exist_ok=True)
     with suppress(OSError):
@@ -24,9 +24,9 @@ def private_folder(folder: Path) -> None:
 
 
 def write_private(path: Path, content: bytes, *, durable: bool = False) -> None:
-    """Write a file for its owner alone, as a whole or not at all. Raises OSError.
+    """Write a file for its owner only, completely or not at all. Raises OSError.
 
-    A crash of the process loses nothing. A power cut may bring back the file before, unless `durable` forces the
+    A crash of the process loses nothing. After a power cut the previous file may come back, unless `durable` forces the
     content to the disk.
     """
     draft = path.with_name(f"{path.name}.new")

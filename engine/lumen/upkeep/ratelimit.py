@@ -6,16 +6,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 BURST = 5.0
-"""For how long a silence counts [s]."""
+"""Length of the silence that can be made up for at once [s]."""
 MAX_KEYS = 10_000
-"""The most keys that are counted at a time: those that were used last."""
+"""Keys that are counted at a time, those used last."""
 MAX_SENDERS = 16
-"""The most senders of a key that are counted separately at a time; further ones are counted as one."""
+"""Senders of a key that are counted separately at a time; further ones are counted together."""
 
 
 @dataclass(slots=True)
 class TokenBucket:
-    """Tokens that are taken one by one and come back with time. Times are those of one clock [s]."""
+    """Tokens that are used one by one and come back with time. Times are those of one clock [s]."""
 
     tokens: float
     since: float
@@ -27,7 +27,7 @@ class TokenBucket:
 
 
 class RateLimiter:
-    """A token bucket for each key: after a silence as many may come at once as else in `BURST` seconds."""
+    """A token bucket for each key: after a silence it allows at once what it otherwise allows in `BURST`."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock

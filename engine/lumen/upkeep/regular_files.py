@@ -1,4 +1,4 @@
-"""Reading a file that may be anything: a pipe, a device, a link to somewhere else, or larger than memory."""
+"""Safe reading of a path that may be a pipe, a device, a link to elsewhere, or a file larger than memory."""
 
 import errno
 import os
@@ -11,9 +11,9 @@ MEGABYTE = 1_000_000
 
 
 def read_regular(path: Path, most: int, *, follow: bool = True) -> bytes:
-    """What a plain file of at most so many bytes holds; raises OSError, whose `strerror` is the reason in words.
+    """Return the content of a regular file of at most `most` bytes, without blocking.
 
-    Nothing is waited for: of what is no plain file nothing is read. Without `follow` a link is refused, too.
+    Raises OSError, with the reason as its `strerror`, for anything else; without `follow` also for a link.
     """
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     handle = os.open(path, flags if follow else flags | NO_LINK)

@@ -1,4 +1,4 @@
-"""Saves a file as a whole or not at all: the content is written to a new file, which then replaces the old one."""
+"""Saving of a file completely or not at all: the content is written to a new file, which replaces the old one."""
 
 import errno
 import os
@@ -15,9 +15,9 @@ _IN_PLACE = (errno.EBUSY, errno.EACCES, errno.EPERM, errno.EROFS)
 def replace_file(path: Path, content: bytes) -> None:
     """Save the content under a path. If that fails, raise OSError and leave an existing file unchanged.
 
-    An existing file keeps its owner and rights. A link stays a link: its target is replaced. Devices and pipes are
-    written to directly, and so are files that can't be replaced: those of another owner, mounted ones, and those in a
-    folder that can't be written. A file without the right to be written is not replaced.
+    An existing file keeps its owner and permissions. For a link the target is replaced. Devices and pipes are written
+    to directly, and so are files that can't be replaced: those of another owner, mounted ones, and those in a read-only
+    folder. A file without write permission is not replaced.
     """
     try:
         there = os.stat(path)
@@ -53,7 +53,7 @@ def _write(draft: Path, content: bytes) -> None:
 
 
 def _inherit(draft: Path, target: Path, there: os.stat_result) -> None:
-    """Give the draft the owner, the rights and the access lists of the file; raises OSError."""
+    """Give the draft the owner, the permissions and the access lists of the file. Raises OSError."""
     made = os.stat(draft)
     if (made.st_uid, made.st_gid) != (there.st_uid, there.st_gid):
         os.chown(draft, there.st_uid, there.st_gid)
@@ -62,7 +62,7 @@ def _inherit(draft: Path, target: Path, there: os.stat_result) -> None:
 
 
 def _overwrite(target: Path, content: bytes) -> None:
-    """Write into the file itself, after the disk has reserved the room for it."""
+    """Overwrite the file itself, after the disk has reserved the space for it."""
     with open(target, "r+b") as file:
         if content and hasattr(os, "posix_fallocate"):
             os.posix_fallocate(file.fileno(), 0, max(len(content), os.fstat(file.fileno()).st_size))

@@ -1,4 +1,4 @@
-"""Where this user's programs keep what they need from run to run and what belongs to no project."""
+"""The folder for data that this user's programs keep between runs and that belongs to no project."""
 
 import os
 import tempfile
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def state_folder() -> Path:
-    """Lumen's folder among the user's own files (the XDG Base Directory Specification)."""
+    """Return Lumen's state folder among the user's own files (the XDG Base Directory Specification)."""
     given = os.environ.get("XDG_STATE_HOME") or os.environ.get("LOCALAPPDATA")
     try:
         return Path(given) / "lumen" if given else Path.home() / ".local" / "state" / "lumen"

@@ -1,7 +1,7 @@
-"""A program of the user beside an exhibition: started, restarted with pauses, and ended with all that it has started.
+"""A user's program beside an exhibition: started, restarted with pauses, and ended with everything it started.
 
-The program is in a process group of its own, together with a shell that waits for the end of a pipe from this process.
-If this process is gone, however it ended, the shell kills the group.
+The program is in its own process group, together with a shell that waits for the end of a pipe from this process. If
+this process is gone, however it ended, the shell kills the group.
 """
 
 import os
@@ -20,13 +20,13 @@ from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
-"""The pauses before a program is started again [s]."""
+"""Shortest and longest pause before a program is started again [s]."""
 STEADY = 60.0
-"""A program that ran for so long begins again with the first pause [s]."""
+"""Running time after which the pauses begin with the first again [s]."""
 END_TIMEOUT = 2.0
-"""The time that a program has to exit after SIGTERM [s]."""
+"""Time for a program to exit after SIGTERM [s]."""
 MAX_LINES, MAX_LINE = 200, 4_000
-"""Lines of a program that wait to be printed, and bytes of a line; what is more is counted or cut."""
+"""Waiting lines of a program, and bytes of a line; further lines are counted, and longer ones cut."""
 
 _GUARD = """
 exec 3<&0
@@ -37,9 +37,9 @@ exec "$@" 3<&- </dev/null
 
 
 class SupervisedProcess:
-    """Keeps a program running; `tick` starts it, notices its end and hands on what it prints.
+    """A program that is kept running; `tick` starts it and notices its end.
 
-    `command` is run in `folder`. All methods are called on one thread.
+    `command` is run in `folder`. All methods must be called on one thread.
     """
 
     def __init__(
@@ -64,15 +64,16 @@ class SupervisedProcess:
 
     @property
     def running(self) -> bool:
+        """Whether it is running."""
         return self._process is not None and self._process.poll() is None
 
     @property
     def next(self) -> float:
-        """When it will be started, by the clock [s]; meaningless while it runs."""
+        """When it will be started again, by the clock [s]; meaningless while it runs."""
         return self._next
 
     def tick(self) -> str:
-        """Start it if it is time to; return why it has ended since the last call, empty if it has not."""
+        """Start the program when due; return why it has ended since the last call, empty if it has not."""
         now = self._clock()
         if self._closed or self.running:
             return ""
@@ -81,19 +82,19 @@ class SupervisedProcess:
         return self._start(now) if now >= self._next else ""
 
     def lines(self) -> list[str]:
-        """Return what it has printed since the last call, with a line about what was left out."""
+        """Return the lines it has printed since the last call, and a line about those left out."""
         with self._lock:
             found, left_out, self._left_out = list(self._lines), self._left_out, 0
             self._lines.clear()
         return [*found, *([f"{left_out:,} more lines are left out"] if left_out else [])]
 
     def restart(self) -> None:
-        """Kill it; it is started again after a pause."""
+        """Kill the program; it is started again after a pause."""
         if self._process:
             _kill(self._process)
 
     def close(self) -> None:
-        """End it and all that it has started: SIGTERM, and SIGKILL after END_TIMEOUT. Harmless when repeated."""
+        """End it and everything it started: SIGTERM, and SIGKILL after END_TIMEOUT. Harmless when repeated."""
         self._closed = True
         if (process := self._process) is None:
             return
@@ -134,7 +135,7 @@ class SupervisedProcess:
         return ""
 
     def _ended(self, process: "subprocess.Popen[bytes]", now: float) -> str:
-        """Note the end of the process, and end what it has left behind."""
+        """Note the end of the process, and end the processes that it left behind."""
         self._process = None
         _kill(process)
         self._release(process)
@@ -159,7 +160,7 @@ class SupervisedProcess:
                         self._left_out += 1
 
     def _release(self, process: "subprocess.Popen[bytes]") -> None:
-        """Close the pipes, once their reader has read to the end."""
+        """Close the pipes after their reader has read to the end."""
         process.wait()
         if self._reader:
             self._reader.join(END_TIMEOUT)
@@ -179,7 +180,7 @@ def _ending(code: int) -> str:
 
 
 def _kill(process: "subprocess.Popen[bytes]") -> None:
-    """Kill the process and its group, also what is left of a group whose first process has ended."""
+    """Kill the process and its group, even if the first process of the group has ended."""
     _signal(process, signal.SIGKILL)
 
 

@@ -1,4 +1,4 @@
-"""Threads that nobody may miss: a fault costs what met it, a thread that ends by one is begun again, or told of."""
+"""Threads that an exhibition can't do without: after a fault they are restarted, and given up with a report."""
 
 import logging
 import threading
@@ -12,15 +12,15 @@ from lumen.upkeep.backoff import pause_after
 from lumen.upkeep.drops import DropLog
 
 MAX_FAULTS = 5
-"""How often a thread may fail within `FAULT_PERIOD` until it is given up."""
+"""Faults within `FAULT_PERIOD` after which a thread is given up."""
 FAULT_PERIOD = 60.0
-"""[s]."""
+"""Time in which faults are counted [s]."""
 FIRST_PAUSE = 0.05
-"""How long after its first fault a thread begins again [s]; each further one twice as long."""
+"""Pause before a thread restarts after its first fault [s]; it doubles with each further one."""
 WATCH_PERIOD = 1.0
-"""How often somebody looks whether the threads are there [s]."""
+"""Time between two checks of the threads [s]."""
 MAX_KINDS = 100
-"""Kinds of faults that are logged with where they were raised."""
+"""Kinds of faults that are logged with their tracebacks."""
 
 _log = logging.getLogger(__name__)
 _watched: "WeakSet[WatchedThread]" = WeakSet()
@@ -28,14 +28,15 @@ _changing = threading.Lock()
 
 
 class WatchedThread:
-    """Does its `work` until that returns, and begins it anew after a fault.
+    """A thread that runs its `work` until that returns, and again after a fault.
 
-    After `MAX_FAULTS` within a minute it is given up: `lost` says why. Where it is `vital` the robot rests then, for
-    nobody could reach it any more. `work` has to find its way from wherever a fault left it.
+    After `MAX_FAULTS` within a minute it is given up. `work` must be able to continue from where a fault left it.
     """
 
     def __init__(self, name: str, work: Callable[[], None], *, vital: bool = False) -> None:
         self.name, self.vital, self.lost = name, vital, ""
+        """Why the thread was given up, empty if it was not."""
+        """Whether the robot must rest if the thread is given up, because no person could reach it any more."""
         self._work = work
         self._ending = threading.Event()
         self._faults: deque[float] = deque(maxlen=MAX_FAULTS)
@@ -43,30 +44,33 @@ class WatchedThread:
 
     @property
     def current(self) -> bool:
-        """Whether the caller runs on it."""
+        """Whether the caller runs on this thread."""
         return threading.current_thread() is self._thread
 
     @property
     def started(self) -> bool:
+        """Whether it has been started."""
         return self._thread is not None
 
     def start(self) -> None:
+        """Start the thread."""
         with _changing:
             _watched.add(self)
         self._begin()
 
     def is_alive(self) -> bool:
+        """Return whether it is running."""
         return self._thread is not None and self._thread.is_alive()
 
     def join(self, timeout: float | None = None) -> bool:
-        """Wait until it has ended, at most `timeout` [s]; whether it has. It is not begun again."""
+        """Let it end, and wait for at most `timeout` [s]; return whether it has ended. It is not restarted."""
         self._ending.set()
         if self._thread is not None and not self.current:
             self._thread.join(timeout)
         return not self.is_alive()
 
     def revive(self) -> None:
-        """Begin it again where it has died without ending its work; from a thread that watches over it."""
+        """Restart it if it died without finishing its work; called by a `ThreadWatch`."""
         if self.started and not self.is_alive() and not self._ending.is_set() and not self.lost:
             _log.error("the thread `%s` died and is being restarted", self.name)
             if self._again("it died"):
@@ -86,7 +90,7 @@ class WatchedThread:
             try:
                 self._work()
                 self._ending.set()
-            except BaseException as error:  # whatever it is: nobody but its owner ends it
+            except BaseException as error:  # any error, even SystemExit: only its owner ends the thread
                 if self._ending.is_set():
                     return
                 _log.exception("the thread `%s` failed", self.name)
@@ -94,7 +98,7 @@ class WatchedThread:
                     return
 
     def _again(self, why: str) -> bool:
-        """Whether it may begin once more, after a pause."""
+        """Count a fault, and wait for the pause; return whether the thread may run again."""
         now = time.monotonic()
         self._faults.append(now)
         recent = sum(now - at < FAULT_PERIOD for at in self._faults)
@@ -113,13 +117,14 @@ def _all() -> list[WatchedThread]:
 
 
 class ThreadWatch:
-    """Who looks after all watched threads of this process: `tick` returns those that were given up since the last."""
+    """A watch over all watched threads of this process."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock, self._next = clock, 0.0
         self._told: WeakSet[WatchedThread] = WeakSet(thread for thread in _all() if thread.lost)
 
     def tick(self) -> list[WatchedThread]:
+        """Restart dead threads; return those that were given up since the last call."""
         if self._clock() < self._next:
             return []
         self._next = self._clock() + WATCH_PERIOD
@@ -132,9 +137,9 @@ class ThreadWatch:
 
 
 class MessageGuard:
-    """Lets a fault of ours cost no more than the message that met it.
+    """A context in which an internal error loses only the message that caused it.
 
-    It is logged, with where it was raised for the first of its kind, and counted in `drops` under the message's key.
+    The error is logged, the first of its kind with a traceback, and counted in `drops` under the message's key.
     """
 
     def __init__(self, log: logging.Logger, what: str) -> None:

@@ -1,8 +1,8 @@
 """An embedded bus, reached from other processes on the same machine.
 
-Whoever runs an exhibition lets a `LocalBusServer` listen; a `LocalBusClient` connects. They speak JSON in frames over
-a socket that only the same user can open (a file of mode 0600, or loopback where there are no such sockets), after each
-has proved that it knows the key of the address. Nothing that comes in is ever executed.
+The process of an exhibition runs a `LocalBusServer`; a `LocalBusClient` connects. They exchange JSON in frames over a
+socket that only the same user can open (a file of mode 0600, or loopback on systems without such sockets), after each
+has proved that it has the address's key. Received data is never executed.
 """
 
 from lumen.bus.local.address import LocalAddress

@@ -1,4 +1,4 @@
-"""Where a local bus server listens, and the key that its clients have to know."""
+"""The address of a local bus server, with the key that its clients need."""
 
 import os
 import secrets
@@ -13,32 +13,35 @@ from typing import Any
 from lumen.errors import BusAddressError
 
 MAX_SOCKET_PATH_BYTES = 100
-"""How long the path of a socket may be [bytes]: systems allow 104 to 108."""
+"""Longest path of a socket [bytes]: systems allow 104 to 108."""
 SOCKET_NAME = "door.sock"
 TEMPORARY_PREFIX = "lumen-door-"
-"""Of the folder that is made for a socket whose path would be too long."""
+"""Beginning of the name of a folder that is made for a socket whose path would be too long."""
 ANSWER_TIMEOUT = 5.0
-"""How long the server may take to answer [s]."""
+"""Longest wait for the server's answer [s]."""
 
 
 @dataclass(frozen=True)
 class LocalAddress:
-    """`path` of a socket, or where there are none a `port` on loopback; `key` is what both sides have to know."""
+    """The address of a server on this machine."""
 
     path: str = ""
+    """Path of its socket, empty if it uses a port."""
     port: int = 0
+    """Port on loopback, on systems without such sockets."""
     key: str = ""
+    """The secret that both sides must have."""
 
     @staticmethod
     def of(data: Mapping[str, Any]) -> "LocalAddress":
-        """The address in what a file says; raises BusError where it holds none."""
+        """Return the address in the data of a file. Raises BusAddressError if it has none."""
         try:
             return LocalAddress(str(data["path"]), int(data["port"]), str(data["key"]))
         except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise BusAddressError(f"this is not an address: {error!r}") from None
 
     def connect(self) -> socket.socket:
-        """A connection to whoever listens there; raises OSError where nobody does."""
+        """Return a connection to the server. Raises OSError if none listens."""
         wire = socket.socket(socket.AF_UNIX if self.path else socket.AF_INET)
         wire.settimeout(ANSWER_TIMEOUT)
         try:
@@ -52,7 +55,7 @@ class LocalAddress:
         return wire
 
     def remove(self) -> None:
-        """Delete the socket's file, and the folder that was made for it."""
+        """Delete the socket's file, and a folder that was made for it."""
         if self.path:
             with suppress(OSError):
                 os.unlink(self.path)
@@ -62,7 +65,7 @@ class LocalAddress:
 
 
 def listen(folder: Path) -> tuple[socket.socket, LocalAddress]:
-    """A socket that listens in that folder, and its address; raises OSError where there can be none."""
+    """Return a socket that listens in a folder, and its address. Raises OSError if that is impossible."""
     key = secrets.token_hex(32)
     if not hasattr(socket, "AF_UNIX"):
         listener = socket.create_server(("127.0.0.1", 0))

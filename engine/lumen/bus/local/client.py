@@ -1,4 +1,4 @@
-"""A handle on an exhibition's bus, from another process of the same machine."""
+"""A client of an exhibition's bus, in another process of the same machine."""
 
 import json
 import logging
@@ -33,11 +33,11 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_UNSENT_BYTES = 64 * 1024 * 1024
-"""Frames that wait [bytes]; then the oldest are dropped."""
+"""Frames that wait [bytes]; more drop the oldest."""
 
 
 class SendBuffer:
-    """Any thread puts, one thread takes."""
+    """A queue of frames: any thread puts, one thread takes."""
 
     def __init__(self) -> None:
         self._frames: deque[bytes] = deque()
@@ -46,6 +46,7 @@ class SendBuffer:
         self._changed = threading.Condition()
 
     def put(self, frame: bytes) -> None:
+        """Append a frame; drop the oldest ones if it exceeds MAX_UNSENT_BYTES."""
         with self._changed:
             self._frames.append(frame)
             self._bytes += len(frame)
@@ -54,7 +55,7 @@ class SendBuffer:
             self._changed.notify_all()
 
     def take(self) -> list[bytes]:
-        """All that waits, once there is something; nothing where it has ended before."""
+        """Wait for frames, and remove and return all of them; none after the end."""
         with self._changed:
             self._changed.wait_for(lambda: self._frames or self._ended)
             taken = list(self._frames)
@@ -64,36 +65,36 @@ class SendBuffer:
             return taken
 
     def emptied(self, timeout: float) -> bool:
-        """Wait until everything has been taken; whether it has, within `timeout` [s]."""
+        """Wait until everything has been taken; return False if `timeout` [s] passed before."""
         with self._changed:
             return self._changed.wait_for(lambda: not self._frames, timeout)
 
     def end(self) -> None:
-        """Let nobody wait for more."""
+        """End the waiting of `take`."""
         with self._changed:
             self._ended = True
             self._changed.notify_all()
 
 
 CLOSE_TIMEOUT = 5.0
-"""How long closing may take [s]."""
+"""Longest time for closing [s]."""
 MAX_UNHANDLED_MESSAGES = 20_000
-"""Messages that wait for a handler; then the oldest are dropped."""
+"""Messages that wait for a handler; one more drops the oldest."""
 
 _log = logging.getLogger(__name__)
 
 
 class LocalBusClient(Bus):
-    """The bus of a `LocalBusServer`; raises BusError where none listens, or does not know the key.
+    """The bus of a `LocalBusServer`. Raises BusError if none listens, or it does not have the key.
 
-    A thread sends, one receives, one runs the handlers. Where a handler is too slow the oldest messages are dropped.
-    When the exhibition ends, `gone` is set and nothing can be published any more. `sender` is the program whose handle
-    this is.
+    One thread sends, one receives, and one runs the handlers; if a handler is too slow, the oldest messages are
+    dropped. `sender` is the name of this program in its messages.
     """
 
     def __init__(self, address: LocalAddress, sender: str = "") -> None:
         self.sender = sender
         self.gone = threading.Event()
+        """Set when the exhibition ends; then nothing can be published any more."""
         self._wire, self._read = _connect(address)
         self._unsent, self._closed = SendBuffer(), False
         self._handlers: dict[int, MessageHandler] = {}
@@ -110,10 +111,10 @@ class LocalBusClient(Bus):
             thread.start()
 
     def carry(self, routes: Mapping[str, Route]) -> None:
-        """Nothing changes: whose bus it is says how messages are carried."""
+        """Do nothing: the exhibition determines how messages are carried."""
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        """There is nothing to make ready."""
+        """Do nothing: no preparation is needed."""
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
         if self._closed:
@@ -146,6 +147,7 @@ class LocalBusClient(Bus):
         self._put(framed(["publish", key, reply_to, correlation_id, ttl, *origin], encode(body)))
 
     def returns(self, handler: Callable[[str], None]) -> None:
+        """Call `handler` with the key of each published message that has no receiver."""
         self._returned = handler
         self._put(frame("returns"))
 
@@ -154,7 +156,7 @@ class LocalBusClient(Bus):
             self.publish(message.reply_to, body, correlation_id=message.correlation_id)
 
     def close(self) -> None:
-        """Deliver what was published, to our own subscribers too, within 5 s, and end."""
+        """Deliver what was published, also to this client's own subscribers, within 5 s, and disconnect."""
         if self._closed:
             return
         deadline = time.monotonic() + CLOSE_TIMEOUT
@@ -200,7 +202,7 @@ class LocalBusClient(Bus):
                 if not data:
                     break
                 self._read += data
-        except Exception as error:  # whatever comes ends the connection, and whoever waits hears of it
+        except Exception as error:  # any invalid data ends the connection, which wakes all waiting threads
             if not self._closed:
                 _log.debug("the exhibition closed the connection: %r", error)
         self._end()
@@ -245,7 +247,10 @@ class LocalBusClient(Bus):
 
 
 def _connect(address: LocalAddress) -> tuple[socket.socket, bytearray]:
-    """A connection on which both sides have proved that they know the key, and what else has come on it."""
+    """Return a connection on which both sides have proved the key, and further data received on it.
+
+    Raises BusError if no exhibition answers, or the proof fails.
+    """
     buffer = bytearray()
     try:
         wire = address.connect()

@@ -1,4 +1,4 @@
-"""What goes over the socket: JSON arrays, each behind its length; and the proof that both sides know the key."""
+"""Frames on the socket: JSON arrays, each preceded by its length; and the proof that both sides have the key."""
 
 import hashlib
 import hmac
@@ -11,33 +11,33 @@ from typing import Any
 from lumen.bus.bodies import MAX_BODY_BYTES
 
 MAX_FRAME_BYTES = MAX_BODY_BYTES + 4_096
-"""How long a frame may be [bytes]: a body and what stands around it."""
+"""Longest frame [bytes]: a body and its surroundings."""
 RECEIVE_BYTES = 1 << 16
-"""What is read from the socket at once."""
+"""Bytes that are read from the socket at once."""
 CLIENT, SERVER = "guest", "door"
-"""The two sides, as they stand in a proof; a process of an older Lumen must come to the same."""
+"""The names of the two sides in a proof; they must stay the same for compatibility with older versions."""
 
 _LENGTH = struct.Struct(">I")
 
 
 class BadFrameError(Exception):
-    """What came is no frame, or none that fits here: the connection ends."""
+    """Received data is no frame, or not a valid one at this point; the connection ends."""
 
 
 def frame(*words: Any) -> bytes:
-    """The words, which are JSON data, as they cross the wire."""
+    """Return words, which must be JSON data, as a frame."""
     data = json.dumps(words, ensure_ascii=False, separators=(",", ":")).encode("utf-8", "surrogatepass")
     return _LENGTH.pack(len(data)) + data
 
 
 def framed(head: list[Any], body: bytes) -> bytes:
-    """A frame of `head` that ends with a body that is JSON already."""
+    """Return a frame of `head` followed by a body that is already JSON."""
     data = json.dumps(head, ensure_ascii=False)[:-1].encode() + b"," + body + b"]"
     return _LENGTH.pack(len(data)) + data
 
 
 def unframed(buffer: bytearray) -> Iterator[list[Any]]:
-    """The frames that have come as a whole, taken from the front of the buffer; raises BadFrameError."""
+    """Remove the complete frames from the front of the buffer and yield them. Raises BadFrameError."""
     while len(buffer) >= _LENGTH.size:
         (length,) = _LENGTH.unpack_from(buffer)
         if length > MAX_FRAME_BYTES:
@@ -60,15 +60,15 @@ def _words(data: bytes) -> list[Any]:
 
 
 def nonce() -> str:
-    """A question that was never asked before."""
+    """Return a random question that was never used before."""
     return secrets.token_hex(16)
 
 
 def proof(key: str, side: str, question: str) -> str:
-    """The answer to a question that takes the key; each side's answers differ, so that none can be sent back."""
+    """Return the answer to a question, which requires the key; each side's answers differ, so none can be sent back."""
     return hmac.new(key.encode(), f"{side} {question}".encode(), hashlib.sha256).hexdigest()
 
 
 def proves(given: object, key: str, side: str, question: str) -> bool:
-    """Whether that is the proof, compared in constant time."""
+    """Return whether `given` is the proof, compared in constant time."""
     return isinstance(given, str) and hmac.compare_digest(given.encode(), proof(key, side, question).encode())

@@ -1,7 +1,7 @@
-"""The server of an embedded bus: a thread that lets other processes of this machine publish and subscribe.
+"""The server of an embedded bus: a thread through which other processes of this machine publish and subscribe.
 
-The exhibition pays an append for a message that a client wants; the thread encodes and sends it. A client that reads
-too slowly loses the oldest messages, one that sends nonsense is disconnected, and one that is dead is forgotten.
+A message for a client costs the exhibition one append; the thread encodes and sends it. A client that reads too slowly
+loses the oldest messages, one that sends invalid data is disconnected, and a dead one is removed.
 """
 
 import logging
@@ -35,23 +35,23 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_CLIENTS = 32
-"""Connections at a time; a further one is closed at once."""
+"""Connections at a time; further ones are closed at once."""
 MAX_SUBSCRIPTIONS = 1_000
-"""Of one client."""
+"""Subscriptions of one client."""
 MAX_CLIENT_MESSAGES = 20_000
-"""Messages that wait for one client; then the oldest are dropped."""
+"""Messages that wait for one client; one more drops the oldest."""
 MAX_UNSENT_BYTES = 32 * 1024 * 1024
-"""Frames that wait for one client [bytes]; then the oldest are dropped."""
+"""Frames that wait for one client [bytes]; more drop the oldest."""
 PROOF_TIMEOUT = 5.0
-"""How long a client may take to show that it knows the key [s]."""
+"""How long a client may take to prove that it has the key [s]."""
 FLUSH_MARK = "lumen.door.mark"
-"""The key of a message that only says that everything published before it has arrived."""
+"""The key of a message which marks that everything published before it has arrived."""
 
 _log = logging.getLogger(__name__)
 
 
 class ClientConnection:
-    """A process that has connected: what it subscribed to, and what waits for it."""
+    """A connected process: its subscriptions, and what waits to be sent to it."""
 
     def __init__(self, wire: socket.socket) -> None:
         self.wire, self.question, self.known = wire, nonce(), False
@@ -62,7 +62,7 @@ class ClientConnection:
         self.read, self.unsent, self.bytes, self.sent = bytearray(), deque[bytes](), 0, 0
 
     def send(self, data: bytes) -> None:
-        """Put it behind what waits; where that is too much, the oldest that is not partly sent is dropped."""
+        """Queue a frame; above the limit, drop the oldest frame that is not partly sent."""
         self.unsent.append(data)
         self.bytes += len(data)
         while self.bytes > MAX_UNSENT_BYTES and len(self.unsent) > 2:
@@ -71,7 +71,7 @@ class ClientConnection:
             self.unsent.appendleft(begun)
 
     def flush(self) -> None:
-        """Send what the wire takes now. Raises OSError where it is broken."""
+        """Send as much as the socket accepts now. Raises OSError if the connection is broken."""
         while self.unsent:
             first = self.unsent[0]
             try:
@@ -85,9 +85,9 @@ class ClientConnection:
 
 
 class LocalBusServer:
-    """Listens in `folder` until closed, and lets everybody who knows the key onto the bus.
+    """A server that listens in `folder` until closed, and connects every process that has the key to the bus.
 
-    `address` is where. Raises OSError where nothing can listen there.
+    `address` is where it listens. Raises OSError if that is impossible.
     """
 
     def __init__(self, bus: Bus, folder: Path) -> None:
@@ -108,7 +108,7 @@ class LocalBusServer:
         self._thread.start()
 
     def close(self) -> None:
-        """Disconnect everybody and end; harmless when repeated."""
+        """Disconnect all clients and end; harmless when repeated."""
         if self._ending:
             return
         self._ending = True
@@ -158,14 +158,14 @@ class LocalBusServer:
             return
         except OSError:
             self._disconnect(client)
-        except Exception as error:  # whatever a frame can cause costs the client that sent it, and never the thread
+        except Exception as error:  # any error that a frame causes disconnects its sender, but never ends the thread
             _log.warning(
                 "a process was disconnected because it sent an invalid message to the exhibition: %s", str(error)[:200]
             )
             self._disconnect(client)
 
     def _take(self, client: ClientConnection, words: list[Any]) -> None:
-        """Do what a client asks for; a ValueError or TypeError says that it makes no sense."""
+        """Handle a client's frame. Raises ValueError or TypeError if it is invalid."""
         match words:
             case ["proof", given, question] if not client.known and proves(
                 given, self.address.key, CLIENT, client.question
@@ -235,12 +235,12 @@ class LocalBusServer:
             self._wake_up()
 
     def _wake_up(self) -> None:
-        """Let the thread see what there is to do; it is awake where the socket to it is full."""
+        """Wake the thread; it is awake already if the socket to it is full."""
         with suppress(OSError):
             self._wake.send(b"!")
 
     def _serve(self, client: ClientConnection) -> None:
-        """Send what has arrived for a client; forget one that is dead, or that never proved that it knows the key."""
+        """Send what has arrived for a client; remove one that is dead, or has not proved the key in time."""
         try:
             while client.arrived:
                 number, message = client.arrived.popleft()
