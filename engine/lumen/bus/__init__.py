@@ -7,7 +7,7 @@
     validated.py      any bus, with every body checked against the schema of its route
     checked_bus.py    the bus of an installed package, whose faults name the package
 
-What crosses a bus:
+Data on a bus:
 
     bodies.py         JSON data as bytes and back, and what bodies and keys may be
     identities.py     ids of messages, and what others say theirs are

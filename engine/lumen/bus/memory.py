@@ -58,7 +58,7 @@ def _match(pattern: tuple[str, ...], key: tuple[str, ...]) -> bool:
 
 
 HANDLER_TIMEOUT = 5.0
-"""How long closing waits for a subscriber that is still working [s]."""
+"""Longest wait of closing for a subscriber that is still working [s]."""
 MAX_CACHED_KEYS = 4_096
 """Keys whose listeners are cached."""
 MAX_QUEUED_MESSAGES = 100_000
@@ -182,7 +182,7 @@ class MemoryBus(Bus):
 
     @property
     def dropped(self) -> Mapping[str, int]:
-        """How many messages were dropped under each key."""
+        """Number of dropped messages, by key."""
         return self._hub.drops.counts
 
     def carry(self, routes: Mapping[str, Route]) -> None:

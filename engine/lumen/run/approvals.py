@@ -1,6 +1,6 @@
-"""Events that wait for a person's GO because they would take a transition marked `approve: operator`.
+"""Events that wait for a person's GO because they would trigger a transition marked `approve: operator`.
 
-The chart does not know about the wait: the pure step function predicts whether an event would take a marked transition.
+The chart does not know about the wait: the pure step function predicts whether an event would trigger one.
 With GO the event happens unchanged, and the journal records it then.
 """
 
@@ -79,7 +79,7 @@ class Approvals:
         return -inf if self._released else min((held.until for held in self.waiting), default=inf)
 
     def use(self, machine: MachineDefinition, snapshot: Snapshot | None = None) -> None:
-        """Switch to a machine. With a snapshot, drop waiting events that take no marked transition there."""
+        """Switch to a machine. With a snapshot, drop waiting events that trigger no marked transition there."""
         self.marked = marked_transitions(machine)
         self._passing.clear()
         if snapshot:
@@ -103,7 +103,7 @@ class Approvals:
         return True
 
     def look(self, machine: MachineDefinition, snapshot: Snapshot, why: str = LEFT) -> None:
-        """Drop the waiting events that would no longer take a marked transition, with `why` as the reason."""
+        """Drop the waiting events that would no longer trigger a marked transition, with `why` as the reason."""
         kept = []
         for held in self.waiting:
             found = _marked_by(machine, snapshot, held.event)
@@ -114,7 +114,7 @@ class Approvals:
         self.waiting = tuple(kept)
 
     def decide(self, id: str, by: str, *, go: bool) -> bool:
-        """Let the event with an id go or stay (the oldest for an empty id); return False if there is none."""
+        """Let the event with an id go or stay (the oldest for an empty id); return False without such an event."""
         held = next((held for held in self.waiting if id in ("", held.id)), None)
         if held is None:
             return False
@@ -151,7 +151,7 @@ class Approvals:
         self._tell("waits", held, "")
 
     def _end(self, held: HeldEvent, why: str, cause: Cause | None) -> None:
-        """Stop holding an event: release it with `cause`, or drop it if there is none."""
+        """Stop holding an event: release it with `cause`, or drop it if that is None."""
         self.waiting = tuple(other for other in self.waiting if other is not held)
         if cause:
             self._passing.append(cause)
@@ -167,7 +167,7 @@ def _marked_by(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> 
 
 
 def _marked(machine: MachineDefinition, taken: Step) -> MarkedTransition | None:
-    """Return the first marked transition that a step has taken, None if there is none."""
+    """Return the first marked transition that a step has taken, or None."""
     return next(_all_marked(machine, taken), None)
 
 

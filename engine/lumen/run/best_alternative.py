@@ -22,7 +22,7 @@ _COMPARES = frozenset(("heard", "lookup"))
 
 
 def best_alternative(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Event:
-    """Return a `heard` event with the first `result` that takes a transition depending on phrases.
+    """Return a `heard` event with the first `result` that triggers a transition depending on phrases.
 
     Return the event unchanged if it has no alternatives, or none of them takes such a transition. The steps are only
     tried.

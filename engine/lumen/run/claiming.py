@@ -13,7 +13,7 @@ from lumen.ports import BlockableBus, Bus
 from lumen.run.presence import PRESENCE_ROUTE, Presence, unique_parts, where_it_runs
 
 CLAIM_DURATION = 0.8
-"""How long a process waits for objections to its claim [s]."""
+"""Time that a process waits for objections to its claim [s]."""
 CLAIM_INTERVAL = 0.02
 """Pause between two looks for objections [s]."""
 

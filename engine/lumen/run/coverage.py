@@ -21,7 +21,7 @@ class Gap(NamedTuple):
 
 @dataclass
 class Coverage:
-    """What a number of runs entered and took, for each behaviour that ran."""
+    """States and transitions that a number of runs went through, for each behaviour that ran."""
 
     project: Project
     entered: dict[str, set[str]] = field(default_factory=dict)
@@ -42,13 +42,13 @@ class Coverage:
 
     @property
     def states(self) -> tuple[int, int]:
-        """How many states were entered, and how many there are, in the behaviours that ran."""
+        """Number of entered states, and of all states, in the behaviours that ran."""
         wanted = [(b, s.name) for b in self.entered for s in _states(self.project.behaviors[b])]
         return sum(name in self.entered[b] for b, name in wanted), len(wanted)
 
     @property
     def transitions(self) -> tuple[int, int]:
-        """How many transitions were taken, and how many there are, in the behaviours that ran."""
+        """Number of taken transitions, and of all transitions, in the behaviours that ran."""
         wanted = [(b, t.where) for b in self.entered for t in _transitions(self.project.behaviors[b])]
         return sum(where in self.taken[b] for b, where in wanted), len(wanted)
 

@@ -34,7 +34,7 @@ class UnderWay(NamedTuple):
     since: float
     """When it began [s]."""
     seconds: float | None = None
-    """How long it takes [s], None if unknown."""
+    """Its duration [s], None if unknown."""
     language: str = ""
     """The language of a text."""
 
@@ -70,7 +70,7 @@ class Doings(Observer):
 
     @property
     def saying(self) -> UnderWay | None:
-        """What is said now. A text whose end is not reported counts for at most its expected duration."""
+        """The text that is said now. One whose end is not reported counts for at most its expected duration."""
         for id, said in tuple(self._speaking.items()):
             if said.seconds is None or self._now() - said.since < said.seconds:
                 return said
@@ -84,7 +84,7 @@ class Doings(Observer):
 
     @property
     def commands(self) -> int:
-        """How many commands are unfinished."""
+        """Number of unfinished commands."""
         return len(self._speaking) + len(self._moving) + len(self._others)
 
     def look(self) -> None:

@@ -144,7 +144,7 @@ def _need_methods(driver: str, kind: type) -> None:
 
 
 def _line_of(error: BaseException, kind: type) -> str:
-    """Return the class's own last line in an error's traceback, as ` (FILE:LINE)`; empty if there is none."""
+    """Return the class's own last line in an error's traceback, as ` (FILE:LINE)`, or an empty string."""
     lines = [
         f"{frame.f_code.co_filename}:{line}"
         for frame, line in walk_tb(error.__traceback__)

@@ -24,7 +24,7 @@ def why(step: Step) -> str:
 
 
 def reason_of(event: Event) -> str:
-    """Return the reason in an error's data, empty if there is none."""
+    """Return the reason in an error's data, or an empty string."""
     return str(event.data.get("reason", "")) if isinstance(event.data, Mapping) else ""
 
 

@@ -21,7 +21,7 @@ from lumen.run.visitor import SPEECH_ROUTE
 
 HEAD = "# yaml-language-server: $schema=../../schemas/story.schema.json"
 ROBOT_TIMEOUT = "2min"
-"""How long the story waits for a robot's command to end."""
+"""Time that the story waits for a robot's command to end."""
 
 
 @dataclass(frozen=True)
@@ -40,18 +40,18 @@ class Explored:
 
     behavior: str
     configurations: int
-    """How many configurations were reached."""
+    """Number of configurations that were reached."""
     steps: int
-    """How many steps were taken."""
+    """Number of steps that were taken."""
     waiting: int
-    """How many reached configurations were not explored, because of the bound."""
+    """Number of reached configurations that were not explored, because of the bound."""
     kept: tuple[str, ...]
     """Properties that hold in every reached configuration."""
     findings: tuple[ExploredFinding, ...]
     unseen: tuple[Gap, ...]
     """States and transitions that were not reached."""
     took: float
-    """How long it took [s]."""
+    """Duration [s]."""
     known: bool = False
     """Whether it is the kept result of an earlier exploration."""
 

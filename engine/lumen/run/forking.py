@@ -123,6 +123,6 @@ def _read(file: Path) -> Sequence[RecordedEntry]:
 
 
 def _after(entries: Sequence[RecordedEntry], moment: float) -> int | None:
-    """Return the position of the first entry at or after a moment [s since 1970]; None if there is none."""
+    """Return the position of the first entry at or after a moment [s since 1970], or None."""
     clock = JournalClock()
     return next((entry.position for entry in entries if clock.of(entry) >= moment), None)

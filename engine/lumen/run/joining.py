@@ -22,7 +22,7 @@ from lumen.run.reaching import reach_exhibition
 from lumen.upkeep.arguments import need_text
 
 REACH_TIMEOUT = 30.0
-"""How long to wait until the bus of an exhibition can be reached [s]."""
+"""Longest wait until the bus of an exhibition can be reached [s]."""
 REACH_PAUSE = 0.2
 """Pause between two attempts [s]."""
 

@@ -18,7 +18,7 @@ MAX_ENTRIES = 500
 MAX_PAGE_BYTES = 500_000
 """Size of a page's lines [bytes]; a longer line gets a page of its own."""
 PATIENCE = 5.0
-"""How long to wait until a new journal knows its first position [s]."""
+"""Longest wait until a new journal knows its first position [s]."""
 
 
 def journal_page(writer: JournalWriter, position: int, most: int = MAX_ENTRIES) -> dict[str, Any]:
@@ -65,7 +65,7 @@ def _kept(folder: Path, position: int, most: int) -> tuple[list[bytes], list[Pos
 
 
 def _epoch_after(lines: Sequence[bytes]) -> float | None:
-    """Return the date of time 0 after these entries [s since 1970]: the last that is recorded, None if none is."""
+    """Return the date of time 0 after these entries [s since 1970]: the last recorded one, or None."""
     clock = JournalClock()
     for line in reversed(lines):
         if b'"epoch"' in line:

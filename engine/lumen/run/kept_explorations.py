@@ -1,4 +1,4 @@
-"""Results of explorations, kept under `.lumen/explored/` by everything they depend on, so that none is repeated."""
+"""Results of explorations, kept under `.lumen/explored/` by everything they depend on, to avoid repetitions."""
 
 import json
 from collections.abc import Mapping
@@ -28,7 +28,7 @@ class KeptExplorations:
         self._content = [project.hash, repr(project.body.name), list(project.languages), engine()]
 
     def recall(self, behavior: str, bound: int, home: str) -> Explored | None:
-        """Return the earlier result for the same files, software and options; None if there is none."""
+        """Return the earlier result for the same files, software and options, or None."""
         try:
             return _from_json(self._home.read_json(self._name(behavior, bound, home)))
         except (KeyError, TypeError, ValueError, AttributeError):

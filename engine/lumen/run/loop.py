@@ -41,7 +41,7 @@ _STILL = Live(STILL_STYLE)
 class LifeDirector:
     """A director of the robot's life: it sends the style of the active states.
 
-    It takes no part in the steps, so journals do not contain it.
+    It has no influence on the steps, so journals do not contain it.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -123,7 +123,7 @@ class Rescuer(Protocol):
     """A handler of faults that may switch to another bundle."""
 
     def rescue(self, error: Exception) -> Sequence[Command] | None:
-        """Switch to another bundle, and return the commands for that; return None to let the fault end the run."""
+        """Switch to another bundle, and return the commands for that; with None the fault ends the run."""
         ...
 
 
@@ -188,7 +188,7 @@ class BehaviorLoop:
         self._perform(first, self._last)
 
     def resume(self, resumption: Resumption) -> None:
-        """Subscribe, and continue from where the behaviour was before the engine was away."""
+        """Subscribe, and continue from the behaviour's state before the engine was away."""
         self._last = self.clock.now()
         self._listen(self.project)
         self.runtime.apply(self.project, resumption.snapshot, "resume", resumption.commands)
@@ -240,7 +240,7 @@ class BehaviorLoop:
 
     @property
     def waiting(self) -> int:
-        """How many events wait for the next tick."""
+        """Number of events that wait for the next tick."""
         return len(self._events) + len(self.performer.events) + len(self.inbox)
 
     def take(self, step: Step) -> None:

@@ -19,7 +19,7 @@ PLAYERS = (("aplay", "-q"), ("paplay",), ("afplay",), ("pw-play",))
 
 
 def player_here() -> tuple[str, ...] | None:
-    """Return the command that plays sounds on this machine, None if there is none."""
+    """Return the command that plays sounds on this machine, or None."""
     return next((player for player in PLAYERS if shutil.which(player[0])), None)
 
 

@@ -23,7 +23,7 @@ MAX_WAITING_MESSAGES = 1_000
 MAX_REASONS = 50
 """Different troubles that are reported until the module works again."""
 KEEP_DAYS = 30.0
-"""How long a module keeps data about people by default [days]."""
+"""Time for which a module keeps data about people by default [days]."""
 DAY = 86_400.0
 """Seconds in a day [s]."""
 
@@ -71,7 +71,7 @@ class Module:
 
     @property
     def refused(self) -> int:
-        """How many messages it refused, if it counts them."""
+        """Number of messages that it refused, if it counts them."""
         return 0
 
     @property

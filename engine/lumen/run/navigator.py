@@ -48,7 +48,7 @@ class _Way:
 
 
 class Navigator:
-    """A guide of the robot to places; it also reports where the robot is, by `arrived`, `left` and `doubtful`.
+    """A guide of the robot to places; it also reports the robot's place, by `arrived`, `left` and `doubtful`.
 
     `begin` starts a walk of the robot, which is answered like any command. If a place is moved during the walk, the
     robot walks to its new position; if it is removed, the walk fails.
@@ -66,7 +66,7 @@ class Navigator:
         self._ways.append(_Way(id, name, now))
 
     def cancel(self, id: str) -> bool:
-        """Cancel the walk to a place with an id; return False if there is none."""
+        """Cancel the walk to a place with an id; return False without such a walk."""
         meant = [way for way in self._ways if way.id == id]
         for way in meant:
             way.cancelled = True

@@ -37,7 +37,7 @@ class PresentMoment(NamedTuple):
     waiting: tuple[HeldEvent, ...]
     autonomy: Autonomy
     model: str | None
-    """Whether the language model is `on` or `off`, None if there is none."""
+    """Whether the language model is `on` or `off`, None without a model."""
     events: int
     """Events that wait for the next tick."""
     commands: int

@@ -109,7 +109,7 @@ class Presence:
         self._state, self._next = HERE, 0.0
 
     def find(self, part: str) -> Peer | None:
-        """Return the live process that has a part, None if there is none; the oldest of several."""
+        """Return the live process that has a part, or None; the oldest of several."""
         peers = (peer for peer in self._peers.values() if part in peer.parts and peer.state == HERE)
         found = filter(self.alive, peers)
         return min(found, key=lambda p: p.since, default=None)
@@ -222,5 +222,5 @@ class Presence:
 
 
 def where_it_runs(peer: Peer) -> str:
-    """Return where a process runs, as `process 4711 on stand`."""
+    """Return a process's location, as `process 4711 on stand`."""
     return f"process {str(peer.said.get('process', '?'))[:20]} on {str(peer.said.get('host', '?'))[:60]}"

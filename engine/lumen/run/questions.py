@@ -62,7 +62,7 @@ class Questions:
         self._bus, self._today, self._offers = bus, today, offers
         self.visit, self._home = 0, ""
         self.silenced = ""
-        """Who silenced the module, else empty; while set, it is not asked, and its answers are ignored."""
+        """The person who silenced the module, else empty; while set, it is not asked, and its answers are ignored."""
         self._fillers: Mapping[str, str] = {}
         self._patience = FILLER_AFTER
         self._open: dict[str, OpenQuestion] = {}
@@ -90,7 +90,7 @@ class Questions:
         self.visit += bool(self._home) and self._home in step.entered
 
     def ask(self, project: Project, id: str, asked: Ask, now: float, origin: MessageOrigin) -> list[Event]:
-        """Search for an answer; return the events that are known at once: the answer, or that there is none."""
+        """Search for an answer; return the events that are known at once: the answer, or an error."""
         retriever = self._passages(project, asked.language)
         if found := retriever.answer(asked.question, self._weights):
             said = {

@@ -92,7 +92,7 @@ def whole_fields(project: Project) -> frozenset[RouteField]:
 
 
 def _schema(project: Project, field: RouteField) -> Mapping[str, Any]:
-    """Return the schema of a message field, empty if there is none."""
+    """Return the schema of a message field, or an empty one."""
     route, *path = field
     row = project.routes.get(route)
     schema = schema_at(project.messages.get(row.schema) if row else None, path)

@@ -72,8 +72,9 @@ def rehearse(
 
     The recording robot does not publish joints and pictures, which no behaviour uses, and skips ticks in which nothing
     happens. `observers` watch the run; `hooks` are called at each tick with its time [s]. The story fails if the
-    behaviour does not come to rest, or if the engine logs an error; warnings are added to the trace, which is complete
-    with `whole`. With `real_skills` the recording robot runs the code of skills.
+    behaviour does not come to rest, if the engine logs an error, or after a LumenError, which is not raised; warnings
+    are added to the trace, which is complete with `whole` and else has the last lines before a failure. With
+    `real_skills` the recording robot runs the code of skills.
     """
     setup = chosen or set_up("recording", project, "max", story, real_skills=real_skills)
     trace = RehearsalTrace(setup.clock.now, lambda: services.project.machine, None if whole else REMEMBERED)

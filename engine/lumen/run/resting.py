@@ -8,7 +8,7 @@ from lumen.ports import Bus
 from lumen.run.reload.requests import COMMAND, command_key
 
 STOP_TIMEOUT = 10.0
-"""How long the robot may take to rest, even with a foot in the air [s]."""
+"""Longest time that the robot needs to rest, even with a foot in the air [s]."""
 TAKEN = "command finished"
 """A robot's answer after it has executed a command."""
 

@@ -31,7 +31,7 @@ class Resumption(NamedTuple):
 
     snapshot: Snapshot
     away: float
-    """How long the engine was away [s]."""
+    """Time for which the engine was away [s]."""
     commands: tuple[Command, ...] = ()
     """Commands to perform first."""
     lost: tuple[str, ...] = ()

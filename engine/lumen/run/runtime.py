@@ -63,7 +63,7 @@ class Runtime:
         self._observe, self._rescue, self._dropped = observe, rescue, dropped
         self._snapshot: Snapshot | None = None
         self.recorder: InputRecorder | None = None
-        """Records what is needed to take the steps again, None for no journal."""
+        """Records what is needed to replay the steps, None for no journal."""
         self.approvals = Approvals()
         """Holds back events that a person must approve."""
         self.steps = 0

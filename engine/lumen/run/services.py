@@ -57,13 +57,13 @@ class Services:
         self._places: dict[Part, int] = {}
 
     def __getitem__(self, kind: type[T]) -> T:
-        """Return the part or service of a kind. Raises LookupError if there is none."""
+        """Return the part or service of a kind. Raises LookupError if it is missing."""
         if (found := self.get(kind)) is None:
             raise LookupError(f"this process has no {kind.__name__}")
         return found
 
     def get(self, kind: type[T]) -> T | None:
-        """Return the part or service of a kind, None if there is none."""
+        """Return the part or service of a kind, or None."""
         parts = (part.own if isinstance(part, AddedPart) else part for part in self.node.parts)
         return next((one for one in (*self._provided, *parts) if isinstance(one, kind)), None)
 

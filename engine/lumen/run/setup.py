@@ -31,7 +31,7 @@ class Setup:
     robot: Robot
     clock: Clock
     hall: Hall | None
-    """The simulated world around it, None if there is none."""
+    """The simulated world around it, None in the real world."""
     blind: str = ""
     """Why its camera has no images, and what to do about it; empty if it has."""
     remote: bool = False

@@ -1,4 +1,4 @@
-"""What an exhibition needs to resume after a crash: the behaviour's snapshot, and the exact files that ran."""
+"""The data that an exhibition needs to resume after a crash: the behaviour's snapshot, and the exact files that ran."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ SNAPSHOT_FILE, ALIVE_FILE = "snapshot.json", "alive.json"
 LAST_GOOD_FILE = "good.json"
 SNAPSHOT_VERSION = 1
 SNAPSHOT_SPACING = 0.02
-"""Least time between two snapshots [s]: a simulation may take a hundred steps in it."""
+"""Least time between two snapshots [s]: a simulation may run a hundred steps in it."""
 
 
 class StoredSnapshot(NamedTuple):
@@ -94,7 +94,7 @@ class SnapshotStore:
         self._wrote(self._home.write_json(ALIVE_FILE, {"time": time.time(), "told": True}))
 
     def kept(self) -> StoredSnapshot | None:
-        """Return the snapshot of a run that did not end by itself, None if there is none that can be read."""
+        """Return the snapshot of a run that did not end by itself, None if it is missing or unreadable."""
         try:
             data = self._home.read_json(SNAPSHOT_FILE)
             if data["version"] != SNAPSHOT_VERSION:
@@ -147,7 +147,7 @@ class SnapshotStore:
         self._wrote(self._home.write_json(LAST_GOOD_FILE, {"version": SNAPSHOT_VERSION, "bundle": hash}))
 
     def good(self) -> str:
-        """Return the hash of the last good bundle, empty if there is none."""
+        """Return the hash of the last good bundle, or an empty string."""
         try:
             data = self._home.read_json(LAST_GOOD_FILE)
             return str(data["bundle"]) if data["version"] == SNAPSHOT_VERSION else ""

@@ -1,4 +1,4 @@
-"""The player of a story: it performs its actions, waits for its expectations, and reports where it failed."""
+"""The player of a story: it performs its actions, waits for its expectations, and reports the step that failed."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -45,7 +45,7 @@ from lumen.statechart.nesting import active_names, entered_names
 from lumen.statechart.property_monitor import Violation, monitors
 
 QUESTION_WITHIN = 30.0
-"""How long `answers` waits for a question [s]."""
+"""Longest wait of `answers` for a question [s]."""
 
 
 def answered(bus: Bus, project: Project, id: str, answer: AnswerQuestion, waited: float) -> UnmetExpectation | None:
@@ -73,16 +73,16 @@ class StoryFailure(NamedTuple):
     where: NodePath
     """Place of the step in the file."""
     expected: str
-    """What was expected, in words."""
+    """The expectation, in words."""
     was: str
-    """What happened instead, in words."""
+    """The event or state instead, in words."""
 
     def __str__(self) -> str:
         return f"step {self.step} of `{self.story}`: {self.what}"
 
     @property
     def what(self) -> str:
-        """What was expected and what happened, in one sentence."""
+        """The expectation and the actual outcome, in one sentence."""
         return f"expected {self.expected}, but {self.was}" if self.expected else self.was
 
 

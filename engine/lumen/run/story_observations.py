@@ -1,4 +1,4 @@
-"""What was observed while a story plays, and the expectations that it does not meet."""
+"""Observations while a story plays, and the expectations that they do not meet."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ from lumen.language.stories import Expect, Happen, SetSkills, Story
 
 
 class UnmetExpectation(NamedTuple):
-    """What was expected, and what happened instead, in words."""
+    """An expectation, and what happened instead, in words."""
 
     expected: str
     was: str

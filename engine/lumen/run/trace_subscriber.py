@@ -19,7 +19,7 @@ from lumen.run.troubles import RunTrouble
 from lumen.upkeep.threads import MessageGuard
 
 REQUEST_TTL = 5.0
-"""How long a request may wait for the brain [s]."""
+"""Longest time that a request may wait for the brain [s]."""
 MAX_PENDING_TRACES = 10_000
 """Messages that may wait for a tick; one more drops the oldest."""
 

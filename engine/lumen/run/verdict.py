@@ -34,7 +34,7 @@ class Verdict:
     name: str
     rehearsals: tuple[Rehearsal, ...] = ()
     coverage: Coverage | None = None
-    """What the stories covered, None if that is not measured."""
+    """Coverage of the stories, None if that is not measured."""
     wanted: float = 0.0
     """Least coverage [%]."""
     explored: Explored | None = None
@@ -48,7 +48,7 @@ class Verdict:
 
     @property
     def failed(self) -> int:
-        """How many stories failed."""
+        """Number of failed stories."""
         return sum(r.failed is not None for r in self.rehearsals)
 
     @property

@@ -22,11 +22,11 @@ SHORT_QUIET_FRACTION = 0.2
 MAX_READ_PERIOD = 1.0
 """Longest time between two readings of the files [s]."""
 HINT_DEBOUNCE = 10
-"""How long the operating system's notifications are collected [ms]."""
+"""Time for which the operating system's notifications are collected [ms]."""
 EARLY = 5.0
 """Time after a watcher's start when the checker is prepared [s]: before, the exhibition is busy."""
 SWITCH_INTERVAL = 0.001
-"""How long a thread may block the others of an exhibition [s]: a stop passes through four of them."""
+"""Longest time that a thread may block the others [s]: a stop passes through four of them."""
 
 _log = logging.getLogger(__name__)
 WatchedFiles = Mapping[str, bytes]

@@ -20,7 +20,7 @@ class CacheFolder:
         self._folder, self._most = _own() / kind, most
 
     def read(self, name: str) -> bytes | None:
-        """Return the content under a name, None if there is none."""
+        """Return the content under a name, or None."""
         try:
             content = (self._folder / name).read_bytes() if self._private() else None
         except OSError:

@@ -13,7 +13,7 @@ RARELY = 100_000
 
 @contextmanager
 def gc_paused() -> Iterator[None]:
-    """Pause garbage collection, for imports and short work: it would take a tenth of the time and find nothing."""
+    """Pause garbage collection, for imports and short work: it would use a tenth of the time and find nothing."""
     before = gc.isenabled()
     gc.disable()
     try:
@@ -32,7 +32,7 @@ class GcScheduler:
     """A scheduler of full collections, called after each tick, when the most time is left until the next.
 
     Objects that exist when it is made are never searched again, and Python begins no full collection itself, at any
-    moment and on any thread: one of all that was imported and loaded takes a tick and more, one of later objects some
+    moment and on any thread: one of all that was imported and loaded lasts a tick and more, one of later objects some
     milliseconds. `close` restores the usual settings.
     """
 

@@ -43,7 +43,7 @@ MAX_CLIENT_MESSAGES = 20_000
 MAX_UNSENT_BYTES = 32 * 1024 * 1024
 """Frames that wait for one client [bytes]; more drop the oldest."""
 PROOF_TIMEOUT = 5.0
-"""How long a client may take to prove that it has the key [s]."""
+"""Longest time for a client to prove that it has the key [s]."""
 FLUSH_MARK = "lumen.door.mark"
 """The key of a message which marks that everything published before it has arrived."""
 
@@ -87,7 +87,7 @@ class ClientConnection:
 class LocalBusServer:
     """A server that listens in `folder` until closed, and connects every process that has the key to the bus.
 
-    `address` is where it listens. Raises OSError if that is impossible.
+    `address` is its own. Raises OSError if that is impossible.
     """
 
     def __init__(self, bus: Bus, folder: Path) -> None:

@@ -24,7 +24,7 @@ from lumen.run.snapshot_store import SNAPSHOT_FILE
 DRAFT_AGE = 5.0
 """Age from which an unfinished draft of a file counts as left behind by a crash [s]."""
 PATIENCE = 5.0
-"""How long to wait until a running exhibition has forgotten what it remembers [s]."""
+"""Longest wait until a running exhibition has forgotten what it remembers [s]."""
 
 
 def forget_in(folder: Path, name: str, found: Forgetting) -> None:

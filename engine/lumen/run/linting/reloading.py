@@ -1,4 +1,4 @@
-"""What a reload would refuse, move or forget, added to the findings of a project."""
+"""Findings about what a reload of a project would refuse, move or forget."""
 
 from collections.abc import Callable
 from dataclasses import replace

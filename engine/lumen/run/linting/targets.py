@@ -109,7 +109,7 @@ def _owner(path: str, whole: bool) -> tuple[Path, set[str]]:
 
 
 def _root(path: Path) -> Path | None:
-    """Return the nearest project above a file or folder, None if there is none."""
+    """Return the nearest project above a file or folder, or None."""
     return project_above(path.absolute().parent)
 
 

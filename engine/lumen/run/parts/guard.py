@@ -28,7 +28,7 @@ class BrainGuard:
         clock: Callable[[], float],
     ) -> None:
         self.follows = ""
-        """Session of the followed brain, empty if there is none."""
+        """Session of the followed brain, or an empty string."""
         self._robot, self._presence, self._notice, self._tell, self._clock = robot, presence, notice, tell, clock
         self._last: float | None = None
         self._resting = False

@@ -59,7 +59,7 @@ class HostedRobotPart(RobotPart):
 
     @property
     def follows(self) -> str:
-        """The session of the brain that it obeys, empty if there is none."""
+        """The session of the brain that it obeys, or an empty string."""
         return self._guard.follows if self._guard else ""
 
     def stopped(self) -> bool:

@@ -1,4 +1,4 @@
-"""What this machine knows about a robot that does not answer: how its last run ended, and who had stopped it."""
+"""Local records about a robot that does not answer: the end of its last run, and who had stopped it."""
 
 from pathlib import Path
 from typing import Any

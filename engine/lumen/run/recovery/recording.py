@@ -1,4 +1,4 @@
-"""The journal of inputs of an exhibition that begins: where it is written, and which files it needs."""
+"""The journal of inputs of an exhibition that begins: its folder, and the files that it needs."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from lumen.run.snapshot_store import SnapshotStore
 from lumen.upkeep.private_folder import private_folder
 
 REHEARSED = JournalRetention(keep=7.0, size=50.0)
-"""How much is kept of runs by stories and programs."""
+"""Limits for kept runs by stories and programs."""
 
 
 def record_inputs(
@@ -36,7 +36,7 @@ def record_inputs(
 
 
 def _files(project: Project, *, rehearsed: bool) -> JournalFolder | None:
-    """Return where the journal is written, None if it is not kept."""
+    """Return the folder of the journal, None if it is not kept."""
     retention = wanted = project.section(JournalRetention)
     folder = home_of(Path(project.root), project.one_of_several) / JOURNAL_FOLDER
     if rehearsed:

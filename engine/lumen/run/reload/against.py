@@ -1,4 +1,4 @@
-"""What a reload from another version of a project would refuse, move or forget, as findings in the new files."""
+"""Findings about what a reload from another version of a project would refuse, move or forget."""
 
 from collections.abc import Callable, Iterator
 

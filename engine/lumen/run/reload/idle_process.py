@@ -12,7 +12,7 @@ from lumen.run.reload.delta import DeltaDecoder
 from lumen.upkeep.judge_process import JudgeProcess
 
 LINGER = 10.0
-"""How long the process is kept [s]."""
+"""Time for which the process is kept [s]."""
 
 
 class IdleProcess(NamedTuple):
@@ -24,7 +24,7 @@ class IdleProcess(NamedTuple):
 
 _turn = threading.Lock()
 _idle: list[tuple[IdleProcess, threading.Timer]] = []
-"""The kept process and the timer that will end it; empty if there is none."""
+"""At most one kept process, with the timer that will end it."""
 
 
 def keep(idle: IdleProcess) -> None:

@@ -25,7 +25,7 @@ class MigrationOutcome:
     """The innermost active states afterwards."""
     verdict: MigrationVerdict
     count: int = 1
-    """How many configurations have this outcome."""
+    """Number of configurations with this outcome."""
 
 
 @dataclass(frozen=True)

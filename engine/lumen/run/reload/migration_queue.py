@@ -54,11 +54,11 @@ class StagedBundle:
     changes: tuple[Change, ...]
     validation: Validation | None = None
     who: str = "files"
-    """Who asked for it: `files`, `command` or `trial`."""
+    """The origin of the request: `files`, `command` or `trial`."""
     going: bool = False
     """Whether it will be activated as soon as possible."""
     now: bool = False
-    """Whether to activate it without waiting for what is under way."""
+    """Whether to activate it without waiting for current actions."""
     back: bool = False
     """Whether it ran before."""
     since: float = field(default_factory=time.monotonic)
@@ -66,7 +66,7 @@ class StagedBundle:
     asked: object = None
     """The last snapshot from which it could not continue."""
     told: str = ""
-    """What it was last reported to wait for."""
+    """The last reported reason for its delay."""
     objected: bool = False
     """Whether it was refused because recorded visits would change."""
     trial: bool = False
@@ -97,7 +97,7 @@ class MigrationQueue:
         self._restore = restore
         self._behavior, self._notifier, self._records, self._applied = behavior, notifier, records, applied
         self.revision = 0
-        """How often another bundle became active."""
+        """Number of bundles that became active."""
         self.staged: StagedBundle | None = None
         self._trial: Trial | None = None
         self._tried: StagedBundle | None = None

@@ -25,7 +25,7 @@ class ReloadReport:
     verdict: str
     """`unchanged`, `staged`, `waiting`, `applied`, `refused`, `rolled back`, `dry run` or `status`."""
     who: str
-    """Who asked: `files`, `command`, `trial`, `probation`, or the `start` of a run with other files than the last."""
+    """The origin: `files`, `command`, `trial`, `probation`, or the `start` of a run with files unlike the last."""
     before: str = ""
     """Hash of the bundle before."""
     after: str = ""

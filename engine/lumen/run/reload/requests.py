@@ -34,7 +34,7 @@ class ReloadRequest:
     verb: str
     """One of `REQUESTS`."""
     now: bool
-    """Whether not to wait for what is under way."""
+    """Whether not to wait for current actions."""
     answer: Callable[[Any], None]
     """Sends a body to the sender."""
     between: bool = False
@@ -42,7 +42,7 @@ class ReloadRequest:
 
 
 def request_from(message: Message, bus: Bus) -> ReloadRequest:
-    """Return the request in a message. Raises UsageError, with advice, if there is none."""
+    """Return the request in a message. Raises UsageError, with advice, for anything else."""
     body = message.body
     if not isinstance(body, dict) or not isinstance(verb := body.get("command"), str):
         raise UsageError(f'send a body such as {{"command": "reload"}}, with one of the commands {", ".join(REQUESTS)}')

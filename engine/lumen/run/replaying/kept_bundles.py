@@ -38,6 +38,6 @@ class KeptBundles:
         return as_robot(files, self.robot) if files else None
 
     def machine(self, hash: str, behavior: str) -> MachineDefinition | None:
-        """Return the machine of `project`, None if there is none."""
+        """Return the machine of `project`, or None."""
         project = self.project(hash, behavior)
         return project.machine if project else None

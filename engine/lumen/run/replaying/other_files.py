@@ -110,7 +110,7 @@ _KNOWN = {row.command for row in COMMANDS}
 def with_machines(
     entries: Iterable[RecordedEntry], bundles: KeptBundles
 ) -> Iterator[tuple[RecordedEntry, MachineDefinition | None]]:
-    """Each entry with the machine that ran then, None where that was not kept."""
+    """Yield each entry with the machine that ran then, None if that was not kept."""
     machine: MachineDefinition | None = None
     for entry in entries:
         if isinstance(entry, JournalJump):

@@ -20,13 +20,13 @@ class ReplayDifference(NamedTuple):
     at: float
     """When it happened [s since 1970]."""
     was: str
-    """What was recorded."""
+    """The recorded effect."""
     now: str
-    """What the replay gives."""
+    """The effect in the replay."""
     how: str = "differs"
     """`differs`, or with other files `says something else` or `ends elsewhere`."""
     place: str = ""
-    """File and line of the text that is said now, empty if there is none."""
+    """File and line of the text that is said now, or an empty string."""
 
     def to_json(self) -> dict[str, Any]:
         """Return it as JSON data."""

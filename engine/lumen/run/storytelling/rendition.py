@@ -18,7 +18,7 @@ from lumen.statechart.nesting import active_names, entered_names
 
 @dataclass
 class TickNotes:
-    """What was observed in one tick."""
+    """The observations in one tick."""
 
     at: float
     """Time of the tick [s]."""

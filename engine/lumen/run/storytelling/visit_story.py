@@ -25,7 +25,7 @@ USUAL_WITHIN = 30.0
 LEAD = 2.0
 """Longest time without events before a visit [s]."""
 TRIES = 20
-"""How many unmet expectations are left out before the story is given up."""
+"""Number of unmet expectations that are left out before the story is given up."""
 
 Renamed = Callable[[Any], Any]
 """A function that replaces names in data."""
@@ -66,7 +66,7 @@ def visit_story(
 ) -> VisitStory:
     """Return the story of a visit that was recorded with the files of `old`, as it runs with those of `project`.
 
-    `renamed` replaces names in what was said. Raises UsageError if no story can be made.
+    `renamed` replaces names in the recorded words. Raises UsageError if no story can be made.
     """
     home = visit.home
     if home is None or home.snapshot is None or not visit.inputs:

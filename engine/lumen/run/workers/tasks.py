@@ -32,7 +32,7 @@ class TaskHead(NamedTuple):
     kit: str
     """Name of the kit."""
     folder: str = ""
-    """Where the kit is unpacked; empty for the worker's own folder."""
+    """Folder for the unpacked kit; empty for the worker's own."""
 
 
 def do_task(head: TaskHead, packed: bytes | str, task: tuple[Any, ...]) -> Any:

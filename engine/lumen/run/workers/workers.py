@@ -65,7 +65,7 @@ class Workers:
 
     @contextmanager
     def _opened(self, packed: bytes, tasks: int, folder: Any) -> Iterator[tuple[Executor, Any, str, Any]]:
-        """Yield an executor, the kit for its tasks, where they unpack it, and the errors of lost workers."""
+        """Yield an executor, the kit for its tasks, their folder for it, and the errors of lost workers."""
         if self.address:
             with cluster(self.address, packed) as (executor, blob):
                 yield executor, blob, "", lost_in_cluster()
