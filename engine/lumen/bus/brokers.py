@@ -20,12 +20,15 @@ class Probe(Protocol):
     """A connection for questions about a broker, which no other program notices."""
 
     product: str
+    """Name of the broker's software."""
     version: str
+    """Its version."""
     address: object
     """Host, port and virtual host as text, without a password."""
     place: str
     """Host and port."""
     user: str
+    """Name of the user of the connection."""
 
     def taking(self) -> str:
         """Return why the broker accepts no messages; empty if it does."""
@@ -58,6 +61,7 @@ class StreamEntry(NamedTuple):
     offset: int
     """Its offset, -1 if the message is not from a stream."""
     key: str
+    """The routing key under which it was sent."""
     body: Any
     """JSON data, None if it can't be read."""
     id: str = ""

@@ -169,7 +169,9 @@ class _Listening:
     pattern: str
     handler: MessageHandler
     undo: Callable[[], None]
+    """Ends the subscription."""
     alias: "_Listening | None" = None
+    """The subscription under the alias of the pattern, None without an alias."""
 
 
 def by_key(project: Project) -> dict[str, Route]:

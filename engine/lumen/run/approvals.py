@@ -34,12 +34,15 @@ class MarkedTransition(NamedTuple):
 
 
 class HeldEvent(NamedTuple):
-    """An event that has waited under an id for a marked transition, since a time [s]."""
+    """An event that waits for GO."""
 
     id: str
+    """Its id, such as `a1`."""
     event: Event
     marked: MarkedTransition
+    """The transition that it would trigger."""
     since: float
+    """When it began to wait [s]."""
 
     @property
     def until(self) -> float:
@@ -92,6 +95,7 @@ class Approvals:
         """
         if self.autonomy == "alone" or event.sendid or ".command." in event.name:
             return False
+        # compared by identity: an equal cause may belong to another event
         if any(event.cause is cause for cause in self._passing):
             self._passing = [cause for cause in self._passing if cause is not event.cause]
             return False

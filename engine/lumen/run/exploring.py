@@ -26,12 +26,14 @@ ROBOT_TIMEOUT = "2min"
 
 @dataclass(frozen=True)
 class ExploredFinding:
-    """A finding with its place, and the YAML of a story that leads there."""
+    """A finding of the exploration."""
 
     kind: str
     place: Place
+    """Its file, line and column."""
     message: str
     story: str
+    """The YAML of a story that leads to it."""
 
 
 @dataclass(frozen=True)

@@ -86,6 +86,7 @@ class House:
                 node.pass_over(ticks)
 
     def _end(self, name: str) -> None:
+        """Close a robot's exhibition and remove it; report an error in that as a loss."""
         try:
             self._going[name].close()
         except LumenError as error:

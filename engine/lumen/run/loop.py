@@ -351,6 +351,7 @@ class BehaviorLoop:
             happened = [clock_set, *happened]
         happened = [*happened, *self.runtime.approvals.tick(now)]
         own = [caused(event) for event in (*heard, *(event._replace(at=now) for event in happened))]
+        # a stable sort: only the causes move, to the front
         own.sort(key=lambda event: event.name not in CAUSES)
         heard_of = [*self.performer.questions.drain(now), *self.board.drain(self.runtime.snapshot, now)]
         return [*own, *heard_of, *self.inbox.drain(now)]

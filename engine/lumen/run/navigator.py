@@ -41,6 +41,7 @@ class _Way:
     left: int = 0
     """Walks that may still follow."""
     cancelled: bool = False
+    """Whether it was cancelled, and ends with its current walk."""
     seen: float | None = None
     """Time of the last reading [s]."""
     fresh: int = 0

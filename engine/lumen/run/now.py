@@ -25,6 +25,7 @@ class PresentMoment(NamedTuple):
 
     project: Project
     snapshot: Snapshot
+    """The behaviour's snapshot."""
     at: float
     """The exhibition's time [s]."""
     position: int
@@ -32,10 +33,15 @@ class PresentMoment(NamedTuple):
     since: dict[str, float]
     """When each active state became active [s], by name."""
     saying: UnderWay | None
+    """The text that is said, if any."""
     motion: UnderWay | None
+    """The motion under way, if any."""
     heard: Spoken | None
+    """The visitor's last words, if any."""
     waiting: tuple[HeldEvent, ...]
+    """Events that wait for GO."""
     autonomy: Autonomy
+    """`ask` or `alone`."""
     model: str | None
     """Whether the language model is `on` or `off`, None without a model."""
     events: int
@@ -43,6 +49,7 @@ class PresentMoment(NamedTuple):
     commands: int
     """Unfinished commands."""
     status: Callable[[], Status]
+    """Returns the data of `lumen status`."""
 
 
 def moment(

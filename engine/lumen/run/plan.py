@@ -19,6 +19,7 @@ class Plan:
     """One robot's exhibition in this process: all of it, or the `roles` of one process of several."""
 
     project: Project
+    """The bundle to run."""
     setup: Setup | None = None
     """The robot, None if another process has it."""
     bus: str | Bus = "memory://"

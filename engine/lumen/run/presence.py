@@ -57,7 +57,9 @@ class Peer:
     """Another process."""
 
     session: str
+    """Its id, new at each start."""
     parts: tuple[str, ...]
+    """The parts that it has."""
     since: float
     """When it was first noticed [s, monotonic]."""
     heard: float

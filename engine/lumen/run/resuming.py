@@ -30,6 +30,7 @@ class Resumption(NamedTuple):
     """How a behaviour resumes."""
 
     snapshot: Snapshot
+    """The snapshot to continue from."""
     away: float
     """Time for which the engine was away [s]."""
     commands: tuple[Command, ...] = ()

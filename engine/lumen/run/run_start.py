@@ -31,9 +31,13 @@ class RunFailure:
     text: str
     """A description, with only a place and a code from the files."""
     root: Path
+    """Folder of the project."""
     name: str
+    """Name of the project."""
     robot: str
+    """Names of the robots that ended, separated by commas."""
     parts: tuple[str, ...]
+    """The parts that the process had."""
     settings: Settings | None
     """The settings that could be read, None if none could."""
     last_good: Callable[[], Project | None]
@@ -95,12 +99,15 @@ class Failures:
 
 @dataclass(frozen=True, slots=True)
 class BegunRun:
-    """The homes and projects of a run's robots, by name; the name is empty if the project has one robot."""
+    """The homes and projects of a run's robots."""
 
     root: Path
     directories: Mapping[str, RunDirectory]
+    """Homes by robot; the name is empty if the project has one robot."""
     projects: Mapping[str, Project]
+    """Bundles by robot."""
     failures: Failures
+    """Reports errors that end the run."""
 
 
 @contextmanager

@@ -20,6 +20,7 @@ class LastReload(NamedTuple):
     at: datetime
     """When it was reported (UTC)."""
     verdict: str
+    """A verdict of `ReloadReport`."""
     bundle: str
     """Hash of the bundle."""
     text: str

@@ -28,6 +28,7 @@ class StoryObservations:
     states: frozenset[str] = frozenset()
     """Names of the active states."""
     context: dict[str, object] = field(default_factory=dict)
+    """The behaviour's context."""
     place: str = ""
     """The robot's place, empty if it is at none."""
     said: list[str] = field(default_factory=list)

@@ -32,7 +32,9 @@ class Verdict:
     """The result of `lumen test`."""
 
     name: str
+    """Name of the project."""
     rehearsals: tuple[Rehearsal, ...] = ()
+    """Results of the stories."""
     coverage: Coverage | None = None
     """Coverage of the stories, None if that is not measured."""
     wanted: float = 0.0
@@ -44,7 +46,9 @@ class Verdict:
     trials: tuple[QuestionTrial, ...] = ()
     """Results of the exhibition's questions, which never fail the test."""
     sayings: tuple[JudgedSaying, ...] = ()
+    """Results of the sayings."""
     examples: tuple[JudgedExample, ...] = ()
+    """Results of the functions' examples."""
 
     @property
     def failed(self) -> int:

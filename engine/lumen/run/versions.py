@@ -21,12 +21,15 @@ LIVE = "live"
 
 
 class Version(NamedTuple):
-    """A project in one version, with the current `snapshot` if it runs now."""
+    """A project in one version."""
 
     name: str
+    """The name that was given, or the project's folder."""
     project: Project
     files: Mapping[str, bytes]
+    """Contents of its files, by path."""
     snapshot: Snapshot | None = None
+    """The current snapshot if it runs now, else None."""
 
 
 def version(name: str | None, here: Path | None = None, robot: str = "") -> Version:

@@ -37,6 +37,7 @@ class SavedFiles(NamedTuple):
     """Files that have settled after a change."""
 
     files: WatchedFiles
+    """Contents of all files of the project, by path."""
     changed: tuple[str, ...]
     """Paths of the files that differ from those checked before."""
     seen: float
@@ -58,14 +59,16 @@ class FileWatcher(Generic[T]):
     """A watcher that checks the project's files when their content has changed and settled, or on request.
 
     Notifications of the operating system only speed this up: the content decides, and is read at least once a second.
-    `files` are the present files, `hash` that of the running bundle if it differs. `judge` checks a new content, and
-    its return values go to `results`. `leisure` is then called with the result and a function that returns whether
-    something more urgent waits. `done` is called after a result; `noticed` after a change, before it settles; `early`
-    once, EARLY after the start, with the running files. Without `hints` only requests are served. Files are read as for
-    `robot`.
+    Each result of `judge` goes to `results`.
 
-    With `good`, a single changed file whose last line is unchanged is checked at once: if `good` is true for the
-    result, a part of the quiet period is enough (docs/decisions/080).
+    - `files` are the present files, `hash` is that of the running bundle if it differs, and files are read as for
+      `robot`.
+    - `leisure` is called with a result and a function that returns whether something more urgent waits.
+    - `done` is called after a result, and `noticed` after a change, before it settles.
+    - `early` is called once, EARLY after the start, with the running files.
+    - Without `hints` only requests are served.
+    - With `good`, a single changed file whose last line is unchanged is checked at once: if `good` is true for the
+      result, a part of the quiet period is enough (docs/decisions/080).
     """
 
     def __init__(

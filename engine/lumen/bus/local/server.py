@@ -65,6 +65,7 @@ class ClientConnection:
         """Queue a frame; above the limit, drop the oldest frame that is not partly sent."""
         self.unsent.append(data)
         self.bytes += len(data)
+        # the first frame may be partly sent, and the last is the newest: drop those between
         while self.bytes > MAX_UNSENT_BYTES and len(self.unsent) > 2:
             begun = self.unsent.popleft()
             self.bytes -= len(self.unsent.popleft())
@@ -87,7 +88,7 @@ class ClientConnection:
 class LocalBusServer:
     """A server that listens in `folder` until closed, and connects every process that has the key to the bus.
 
-    `address` is its own. Raises OSError if that is impossible.
+    `address` has what clients need to connect. Raises OSError if nothing can listen in the folder.
     """
 
     def __init__(self, bus: Bus, folder: Path) -> None:

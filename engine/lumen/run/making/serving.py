@@ -90,7 +90,7 @@ def records(services: Services) -> RecordsPart:
 
 
 def recovered(services: Services) -> Resumption | FreshStart:
-    """Resume the previous run with its operator's decisions, or begin a new one; notify all parts which it is."""
+    """Resume the previous run with its operator's decisions, or begin a new one; notify all parts of the result."""
     directory, options = directory_of(services), services.plan.options
     if directory is None:
         return FreshStart()

@@ -24,6 +24,7 @@ class MigrationOutcome:
     after: tuple[str, ...]
     """The innermost active states afterwards."""
     verdict: MigrationVerdict
+    """The plan, delay or refusal itself."""
     count: int = 1
     """Number of configurations with this outcome."""
 

@@ -52,7 +52,9 @@ class StagedBundle:
 
     project: Project
     changes: tuple[Change, ...]
+    """Its changes from the bundle that runs."""
     validation: Validation | None = None
+    """The result of its check, None for a bundle that ran before."""
     who: str = "files"
     """The origin of the request: `files`, `command` or `trial`."""
     going: bool = False

@@ -31,13 +31,19 @@ class ReloadReport:
     after: str = ""
     """Hash of the bundle that it is about."""
     revision: int = 0
+    """Number of bundles that became active in this run."""
     changes: tuple[Change, ...] = ()
+    """Changes from `before` to `after`."""
     validation: Validation | None = None
+    """The result of checking the files, None if they were not checked."""
     waiting_for: str = ""
     """The state that must be left first."""
     reason: str = ""
+    """Why the verdict was given, empty if that is clear."""
     hint: str = ""
+    """What a person can do about it."""
     notes: tuple[str, ...] = ()
+    """Further sentences for people."""
     back: bool = False
     """Whether the files ran before."""
     took: dict[str, float] = field(default_factory=dict)

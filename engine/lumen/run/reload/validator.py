@@ -33,8 +33,11 @@ class Validation:
     """The result of checking saved files: a bundle, or what is wrong with them."""
 
     saved: SavedFiles
+    """The files that were checked."""
     hash: str
+    """Their hash, empty if the check failed before it was known."""
     project: Project | None = None
+    """Their bundle, None if they have errors."""
     diagnostics: tuple[Diagnostic, ...] = ()
     """Findings of lint."""
     running: Project | None = None

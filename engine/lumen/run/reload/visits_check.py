@@ -24,6 +24,7 @@ class VisitsCheck:
     """The result of playing recorded visits with saved files, the newest first."""
 
     report: ReplayReport = field(default_factory=ReplayReport)
+    """Counts and differences."""
     mode: CheckMode = "warn"
     """Whether differences are only reported (`warn`), or the files refused for them."""
     budget: float = 0.0

@@ -49,6 +49,7 @@ class ReplayReport:
     lost: int = 0
     """Lost entries."""
     differ: list[ReplayDifference] = field(default_factory=list)
+    """The first difference of each visit."""
     unknown: dict[str, int] = field(default_factory=dict)
     """Entries that could not be compared, by the reason."""
 
@@ -97,6 +98,7 @@ class TakenAgain(NamedTuple):
     unknown: str = ""
     """Why it can't be compared, else empty."""
     differs: bool = False
+    """Whether the replayed step differs from the recorded one."""
     was: str = ""
     """The recorded step in words, empty without a difference."""
     now: str = ""

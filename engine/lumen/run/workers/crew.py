@@ -37,6 +37,7 @@ class Staff(NamedTuple):
     """An executor with its workers."""
 
     executor: Executor
+    """Runs the tasks."""
     head: TaskHead
     """The data that comes with each task."""
     blob: Any
