@@ -171,7 +171,7 @@ def decode(data: bytes, content_type: str = JSON, content_encoding: str = "") ->
         raise ValueError(f"it is nested deeper than {MAX_BODY_DEPTH} levels") from error
     except BadMessageError as error:
         raise ValueError(str(error)) from error
-    except ValueError as error:  # Python reads 4,300 digits
+    except ValueError as error:  # Python's limit is 4,300 digits
         raise ValueError("it contains an integer with thousands of digits") from error
 
 

@@ -105,7 +105,7 @@ class AnsweringThread:
             self._drops.add(message.key, f"{MAX_WAITING_QUESTIONS} questions are already waiting for an answer")
 
     def close(self) -> None:
-        """Answer the questions that wait, and end the thread; give up after 5 s."""
+        """Answer the questions that wait, and end the thread; wait at most 10 s for that."""
         if self._thread.started:
             with suppress(queue.Full):
                 self._waiting.put(None, timeout=5.0)

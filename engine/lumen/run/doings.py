@@ -49,7 +49,7 @@ class Spoken(NamedTuple):
 class Doings(Observer):
     """An observer that records the current activity.
 
-    `project`, `snapshot` and `now` return the bundle, where the behaviour is, and the time [s]. A command that waits
+    `project`, `snapshot` and `now` return the bundle, the snapshot, and the time [s]. A command that waits
     for another of its kind counts from the end of that one.
     """
 

@@ -111,7 +111,7 @@ def _module_of(file: Path) -> ModuleType:
         return sys.modules[name]
     spec = spec_from_file_location(name, file)
     assert spec
-    assert spec.loader  # its name ends in .py
+    assert spec.loader  # always set for a file that ends in .py
     found = sys.modules[name] = module_from_spec(spec)
     try:
         spec.loader.exec_module(found)

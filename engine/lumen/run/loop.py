@@ -104,19 +104,19 @@ class Observer:
     """A base class of observers, which are called for everything that happens and change nothing."""
 
     def stepped(self, step: Step) -> None:
-        """The behaviour took a step."""
+        """Called after each step of the behaviour."""
 
     def performing(self, command: Command, now: float) -> None:
-        """A command is about to be performed."""
+        """Called before a command is performed."""
 
     def refused(self, command: Start, reason: str) -> None:
-        """A command of the behaviour is not performed because a person keeps the robot still."""
+        """Called if a command of the behaviour is not performed because a person keeps the robot still."""
 
     def answered(self, event: Event) -> None:
-        """The robot answered a command or noticed something; the behaviour has not received the event yet."""
+        """Called when the robot answered a command or noticed something, before the behaviour gets the event."""
 
     def troubled(self, trouble: RunTrouble) -> None:
-        """A trouble occurred: the run no longer counts as successful."""
+        """Called when a trouble occurs: the run no longer counts as successful."""
 
 
 class Rescuer(Protocol):
@@ -405,7 +405,7 @@ class BehaviorLoop:
 def _ours(event: Event) -> bool:
     """Return whether an event is for the behaviour.
 
-    Answers are, if the id is one of its own commands (c1, d2@quiz, …). Cues of a motion are for the loop, recordings
+    Of the answers, those to its own commands are (c1, d2@quiz, …). Cues of a motion are for the loop, and recordings
     for modules.
     """
     if event.name in (CUE, RECORDED):

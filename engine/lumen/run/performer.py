@@ -59,7 +59,7 @@ class Performer:
     ) -> None:
         self._robot, self._bus, self._track = robot, bus, track
         self.events: list[Event] = []
-        """Answers for the next tick: of commands that end at once, lack a part of the body, or may not begin."""
+        """Answers for the next tick: of commands that end immediately, lack a part of the body, or may not begin."""
         self.navigator = Navigator(robot, self._begin)
         """Splits walks to places into single walks."""
         self.questions = questions or Questions(bus)

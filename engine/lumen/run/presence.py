@@ -29,7 +29,7 @@ LOST_AFTER = 4.0
 PRESENCE_TTL = 2.0
 """Lifetime of a sign of life on the bus [s]."""
 MAX_PEERS = 100
-"""Processes from which those silent for LOST_AFTER are forgotten, to bound the memory."""
+"""Number of known processes at which those silent for LOST_AFTER are forgotten, to bound the memory."""
 
 ASKS, HERE, LEAVES = "asks", "here", "leaves"
 """States of a process in its signs of life."""
@@ -73,7 +73,7 @@ class Peer:
 class Presence:
     """This process among those of one robot's exhibition.
 
-    Until `settle` it asks who is there, and all others answer at once. `more` returns further fields of its signs of
+    Until `settle` its signs of life ask the others to answer at once. `more` returns further fields of its signs of
     life.
     """
 

@@ -179,7 +179,7 @@ class Questions:
         self._came.append((message, time()))
 
     def _passages(self, project: Project, language: str) -> "Retriever":
-        from lumen.retrieval.retriever import Retriever  # with numpy: only who asks waits for it
+        from lumen.retrieval.retriever import Retriever  # imports numpy, which only questions need
         from lumen.retrieval.trials import weights_of
 
         today = self._today()

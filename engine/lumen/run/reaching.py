@@ -38,7 +38,7 @@ def reach_exhibition(project: str | None, bus: str | None, robot: str = "") -> R
     """Connect to the exhibition of a project (default: the one here or above); `bus` may be its bus's address.
 
     Of several robots it is that of `robot`; by default the first that runs here, else the first. Raises BusError, with
-    advice, if none is found.
+    advice, if no exhibition is found.
     """
     root = running_project(project)
     wanted = one_robot(root, robot)

@@ -30,7 +30,8 @@ def answer_from_journal(
 ) -> dict[str, Any]:
     """Return an answer from the last run that began before `at` (ISO 8601).
 
-    Raises UsageError, with advice, if there is none; `why` is the reason in it why no running exhibition was asked.
+    `why` is the reason why no running exhibition was asked. Raises UsageError, with that reason or advice, if the
+    journal has no answer.
     """
     root = running_project(project)
     robot = one_robot(root, robot)

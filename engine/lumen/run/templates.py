@@ -158,8 +158,8 @@ def _module(name: str, root: Path) -> Written:
     _write(root, {f"{name}.py": MODULE.format(name=name)})
     main.write_text(text, "utf-8")
     settings = main_settings(root)
-    assert settings is not None  # it was readable before
-    if name not in settings.modules:  # written in a way that is not known here
+    assert settings is not None  # it could be read before the change
+    if name not in settings.modules:  # `modules` is written in an unusual way
         raise UsageError(f"wrote {name}.py; now add this line to `modules:` of {MAIN_FILE}: {entry}")
     steps = (
         (f"{name}.py", "what the module does"),

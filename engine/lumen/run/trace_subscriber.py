@@ -32,19 +32,19 @@ class TraceListener(Protocol):
     def see(
         self, states: frozenset[str], entered: tuple[str, ...], context: Mapping[str, Any], place: str = ""
     ) -> None:
-        """The states, those just entered, the context and the robot's place have changed."""
+        """Called when the states, those just entered, the context or the robot's place change."""
         ...
 
     def performing(self, command: Command, now: float) -> None:
-        """A command is about to be performed."""
+        """Called before a command is performed."""
         ...
 
     def answered(self, event: Event) -> None:
-        """The robot answered a command or noticed something."""
+        """Called when the robot answered a command or noticed something."""
         ...
 
     def troubled(self, trouble: RunTrouble) -> None:
-        """A trouble occurred."""
+        """Called when a trouble occurs."""
         ...
 
 

@@ -81,7 +81,7 @@ def checked(root: Path, files: Mapping[str, bytes], *, kept: bool = False) -> tu
     """Return all findings in these files; with `kept`, earlier ones of the same files may be reused."""
     if kept:
         return known_or_checked(root, files)
-    from lumen.lint import check_files  # not where everything is known
+    from lumen.lint import check_files  # slow to import, and not needed if findings are kept
 
     return check_files(root, files)[1]
 

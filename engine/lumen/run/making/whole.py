@@ -82,7 +82,7 @@ def brain(services: Services) -> BrainPart:
     """Make the part that steps the behaviour."""
 
     def recover() -> Resumption | FreshStart:
-        from lumen.run.making.serving import recovered  # rehearsals have no run before
+        from lumen.run.making.serving import recovered  # not needed by rehearsals, which resume nothing
 
         return recovered(services)
 

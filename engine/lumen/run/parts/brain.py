@@ -14,7 +14,7 @@ from lumen.run.presence import BRAIN, Presence
 from lumen.run.resuming import FreshStart, Resumption
 
 RUN_BEFORE, ENGINE = "the run before", "the engine"
-"""Names of the ones who ask for rest when no person does."""
+"""Values of `by` for a rest that no person requested."""
 
 
 class BrainPart(Part):

@@ -15,8 +15,8 @@ BRAIN_TIMEOUT = 5.0
 class BrainGuard:
     """A watch over the brain that the robot follows.
 
-    When a brain comes back or replaces it, `notice` gets `brain.lost` with the time without one. A robot whose own
-    process was paused for so long that its brain lost it rests first.
+    When a brain comes back or replaces it, `notice` gets `brain.lost` with the time without one. If the robot's own
+    process was paused for so long that its brain lost it, the robot rests first.
     """
 
     def __init__(

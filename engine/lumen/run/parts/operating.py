@@ -165,7 +165,7 @@ class OperatorPart(Part, Observer):
             elif request in (WHY, WHY_NOT):
                 self._answering.ask(message)
             elif request is FORK:
-                from lumen.run.forking import forked  # with all that judges files
+                from lumen.run.forking import forked  # imports the whole check of files
 
                 running = self._behavior.loop.runtime.project
                 self._answering.answer(message, partial(forked, self._journal, running, message.body))

@@ -61,7 +61,7 @@ class BundleFollower(Part):
             self._wanted.put(body["after"])
 
     def _run(self) -> None:
-        from lumen.lint import check_files  # with all the rules, of which one process alone needs none
+        from lumen.lint import check_files  # imports all rules, which a single process does not need here
 
         missed = ""
         while (wanted := self._latest()) is not None:

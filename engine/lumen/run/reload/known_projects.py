@@ -20,8 +20,8 @@ from lumen.project.project_folders import MODELS
 from lumen.run.reload.delta import Delta, DeltaDecoder
 from lumen.upkeep.cache_folder import CacheFolder
 
-"""The folder of which lint asks which files there are, beside those that it reads."""
 _LEVEL = 1
+"""Compression level of zlib: the fastest."""
 
 
 def recall(root: Path, files: Mapping[str, bytes]) -> Project | None:

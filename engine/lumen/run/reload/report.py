@@ -41,7 +41,7 @@ class ReloadReport:
     reason: str = ""
     """Why the verdict was given, empty if that is clear."""
     hint: str = ""
-    """What a person can do about it."""
+    """Advice for people, empty if there is nothing to do."""
     notes: tuple[str, ...] = ()
     """Further sentences for people."""
     back: bool = False

@@ -26,7 +26,7 @@ class EnoughError(Exception):
 
 def failure(project: Project, story: str, seconds: float) -> "Rehearsal | None":
     """Return how a story fails with a project; None if it does not, or not within `seconds` of real time."""
-    from lumen.run.rehearsal import rehearse  # half of what this process imports, for stories only
+    from lumen.run.rehearsal import rehearse  # half of this process's imports, only needed for stories
 
     until = time.perf_counter() + seconds
 

@@ -28,7 +28,7 @@ class ChosenVisit(NamedTuple):
 def chosen_visit(journal: ChosenJournal, bundles: KeptBundles, at: str | None) -> ChosenVisit:
     """Return the visit that was under way at a time of day (`14:03` means any time in that minute), or the last visit.
 
-    Raises UsageError if there is none, with the nearest one, and if a visitor in it was forgotten.
+    Raises UsageError if there was none, which names the nearest, and if a visitor in it was forgotten.
     """
     entries, clock = list(journal.entries()), JournalClock()
     for entry in entries:
