@@ -1,4 +1,4 @@
-"""Steadies the robot on its feet: with its ankles all the time, with hips and arms when it falls backwards."""
+"""Balance on two feet: by the ankles at all times, by hips and arms against a backward fall."""
 
 import numpy as np
 
@@ -13,39 +13,42 @@ from lumen.motion.gait.legs import sign as outward
 from lumen.motion.gait.parameters import scale_of
 
 BALANCE_GAIN = 0.05
-"""Ankle angle for each unit of the torso's turning speed [rad per rad/s]: the toes press where it falls to."""
+"""The ankles' correction for each unit of the torso's rate [rad per rad/s]: the toes press on the side of the fall."""
 
 MAX_TRIM = 0.15
 _SMOOTHING = 0.3
 
 HIP_SAG, _SAG_SMOOTHING = 0.02, 0.8
-"""How far the hip of a leg that bears alone gives way [rad]: its servo lags by 2 N m, and its gear has play."""
+"""How far the hip of a leg that supports the robot alone sags [rad]: its servo lags under load and its gear has play.
+"""
 
 LEAN, LEAN_RATE, LEAN_GAIN = 0.12, 0.1, 5.0
-"""How far ankles and hips lean forward at most [rad], how fast [rad/s], and that for each metre [rad/s per m]; the last
-on legs as long as those that paces were found with."""
+"""The greatest forward lean by ankles and hips [rad], its greatest rate [rad/s], and its rate per metre of error [rad/s
+per m]; the last for legs as long as those that the paces were tuned with.
+"""
 
 STANDING_AHEAD = 0.005
-"""So much farther ahead than in a walk the weight is wanted while the robot stands [m], on such legs."""
+"""How much farther ahead than in a walk the weight should be in standing [m], for such legs."""
 
 HEEL_MARGIN = 0.01
-"""The DCM is falling backwards nearer than this to the heels' edge [m], on such legs."""
+"""The robot falls backwards if its DCM is nearer than this to the heels' edge [m], for such legs."""
 
 ARM_SWING, HIP_STRETCH = 3.0, 0.3
 """How far arms swing up and back, and hips stretch, against a fall [rad]."""
 
 ARM_SPEED, HIP_SPEED = 8.2, 6.0
-"""How fast they do [rad/s] where the joints can."""
+"""The speeds of that movement [rad/s], if the joints reach them."""
 
 ARM_RETURN_TIME, HIP_RETURN_TIME = 1.0, 0.6
-"""How long they take back [s], slowly: what they gave they take again."""
+"""The time in which arms and hips return [s]: slowly, because the return pushes the robot backwards again."""
 
 
 class BalanceController:
-    """Trims the joints' goals by what gyrometer, encoders and inertial unit feel.
+    """Corrects the joints' goals by the gyrometer, encoders and inertial unit.
 
-    `lifted` is the foot in the air, `walking` whether a walk shifts the weight itself; both for one trim. `catching` is
-    whether steps catch a fall; `falling` has to feel before each trim. A walk has the weight `ahead` of the ankles [m].
+    `lifted` is the foot in the air, and `walking` is whether a walk shifts the weight itself; both hold for one `trim`.
+    `catching` is whether steps catch a fall. Call `falling.feel` before each `trim`. A walk keeps the weight `ahead` of
+    the ankles [m].
     """
 
     def __init__(self, motors: Motors, falling: FallingSense, legs: LegGeometry, roles: Roles, ahead: float) -> None:
@@ -72,9 +75,10 @@ class BalanceController:
         self.walking = self.catching = False
 
     def trim(self, gyro: tuple[float, float], *, standing: bool) -> JointVector:
-        """What to add to the joints' goals [rad] while the torso rolls and pitches like this [rad/s].
+        """Return what to add to the joints' goals [rad] while the torso rolls and pitches at these rates [rad/s].
 
-        Valid until called again. A robot that is not `standing` on its feet has nothing to lean or to catch.
+        The array is valid until the next call. Leaning and catching apply only to a robot that is `standing` on its
+        feet.
         """
         for axis, rate in enumerate(gyro):
             felt = self._felt[axis] = _SMOOTHING * self._felt[axis] + (1 - _SMOOTHING) * rate
@@ -87,17 +91,17 @@ class BalanceController:
         return self._trim
 
     def _bear(self) -> None:
-        """Raise the hip that the leg in the air hangs from, as far as the bearing one gives way: it lands level."""
+        """Raise the hip of the leg in the air by as much as the supporting hip sags, so that the foot lands level."""
         for side, i, sign in self._rolls:
             bears = float(self.lifted is not None and self.lifted != side)
             borne = self._borne[side] = _SAG_SMOOTHING * self._borne[side] + (1 - _SAG_SMOOTHING) * bears
             self._trim[i] = outward(side) * sign * HIP_SAG * borne
 
     def _catch(self, standing: bool) -> None:
-        """Carry the weight over the middle of the soles; swing arms and hips backwards where the robot falls there.
+        """Keep the weight over the middle of the soles; swing arms and hips back if the robot falls backwards.
 
-        What turns backwards pushes the rest forward, over the feet: a NAO's heels end 45 mm behind its ankles, which a
-        push of 2 N s from the front carries the DCM beyond.
+        Parts that turn backwards push the rest forward, over the feet. NAO's heels end 45 mm behind its ankles; a push
+        of 2 N s from the front moves the DCM beyond them.
         """
         over = standing and self._falling.behind_heels > -self._heel_margin
         rate = self._lean_gain * (self._ahead - self._falling.ahead) if standing else -LEAN_RATE
@@ -114,5 +118,5 @@ class BalanceController:
 
 
 def _toward(over: bool, part: float, rate: float, back: float) -> float:
-    """The part (0..1) of a movement against a fall, a control period later."""
+    """Return the share (0..1) of a movement against a fall, one control period later."""
     return min(1.0, part + rate * CONTROL_PERIOD) if over else max(0.0, part - CONTROL_PERIOD / back)

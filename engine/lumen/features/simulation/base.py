@@ -1,4 +1,4 @@
-"""What a simulated robot stands on and moves about with: a base is made for the kind that its body has."""
+"""The interface of bases: what a simulated robot stands on and moves with, made for the kind that its body has."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,10 +21,11 @@ from lumen.robot.executor import Activity
 
 @dataclass(frozen=True)
 class BaseRequest:
-    """A request for the base of a robot; `models` is the folder of its MJCF. Only its world and motors move it."""
+    """What a base is made from. Only the base may move its world and motors."""
 
     world: World
     models: Path
+    """The folder of the robot's MJCF."""
     motors: Motors
     sensors: BodySensors
     imperfections: Imperfections
@@ -32,44 +33,45 @@ class BaseRequest:
     stage: Stage | None
     """The ground on which the robot may go; None if nothing bounds it."""
     free: Callable[[str], bool]
-    """Whether nothing else moves a joint, and it has power."""
+    """Return whether no command moves a joint and the joint has power."""
     hot: Callable[[], bool]
-    """Whether the motors should be spared."""
+    """Return whether the motors should be spared."""
 
     @property
     def body(self) -> Body:
+        """The robot's body."""
         return self.world.body
 
 
 class RobotBase(Protocol):
-    """Walks or drives, keeps the robot upright as far as it can, and knows where it believes to be."""
+    """Walks or drives, keeps the robot upright as far as possible, and estimates its position."""
 
     @property
     def whereabouts(self) -> Whereabouts | None:
-        """Where the robot believes to be; None for one that never moves from its place."""
+        """The robot's estimate of its position; None if it never moves from its place."""
 
     @property
     def catching(self) -> bool:
-        """Whether a fall is being caught."""
+        """Whether the base is catching a fall."""
 
     @property
     def soles(self) -> Soles:
-        """Its soles, for what a film draws beneath them."""
+        """The robot's soles, under which a film draws shadows."""
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
-        """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""
+        """Begin a walk and return its activity. Raises RobotError, and moves nothing, if it must not begin."""
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
-        """What to add to the joints' goals [rad] in this control period.
+        """Return what to add to the joints' goals [rad] in this control period. Called only while the motors are on.
 
-        `upright` is whether the robot means to be on its feet, `standing` whether it is. For periods with motors on.
+        `upright` is whether the robot intends to be on its feet, `standing` whether it is.
         """
 
     def relax(self) -> None:
-        """The motors are off in this control period."""
+        """Spend a control period with the motors off."""
 
     def lose(self, posture: str) -> None:
-        """The robot is down, in that posture or on its way from it; or it has fallen, where that is empty."""
+        """Note that the robot is down, in that posture or leaving it; an empty posture means that it has fallen."""
 
     def keep(self, heading: float) -> None:
-        """The robot stands, heading there as the gyrometer feels it [rad]."""
+        """Note that the robot stands, with this heading by the gyrometer [rad]."""

@@ -1,4 +1,4 @@
-"""A robot on two legs: they walk, balance, and step to where it falls."""
+"""A base with two legs: the robot walks, balances and steps to catch a fall."""
 
 from lumen.features.simulation.balance import BalanceController
 from lumen.features.simulation.base import BaseRequest
@@ -17,7 +17,7 @@ from lumen.robot.executor import Activity
 
 
 class Biped:
-    """Two legs under a body. Raises RobotModelError if it can't walk on them."""
+    """Two legs under a torso. Raises RobotModelError if the robot can't walk on them."""
 
     def __init__(self, request: BaseRequest) -> None:
         body, motors, sensors, prefix = request.body, request.motors, request.sensors, request.world.prefix
@@ -55,30 +55,37 @@ class Biped:
 
     @property
     def whereabouts(self) -> Whereabouts:
+        """Return the robot's estimate of its position and how far it may be wrong."""
         return self.odometry.whereabouts
 
     @property
     def catching(self) -> bool:
+        """Return whether the robot is taking steps to catch a fall."""
         return self.catcher.active
 
     @property
     def soles(self) -> Soles:
+        """Return the half length and half width of each sole [m], by its site."""
         toe, heel, outer, inner = self.odometry.legs.sole_size
         return dict.fromkeys(self._soles, ((toe + heel) / 2, (outer + inner) / 2))
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
+        """Begin to walk, or change the speed of the present walk."""
         return self.walker.begin(command, now)
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
+        """Return the balance's corrections to the joints' goals [rad]; advance the catching of a fall."""
         self.falling.feel()
         self.catcher.advance(now, standing=standing)
         return self.balance.trim(self._sensors.gyro if upright else (0.0, 0.0), standing=standing)
 
     def relax(self) -> None:
-        """Legs have no brakes."""
+        """Do nothing: legs have no brakes."""
 
     def lose(self, posture: str) -> None:
+        """Widen the estimate of the position: the robot is down, or has fallen if `posture` is empty."""
         self.odometry.lose(posture)
 
     def keep(self, heading: float) -> None:
+        """Tell the odometry that the robot stands with this heading [rad]."""
         self.odometry.keep(heading)

@@ -13,25 +13,32 @@ from lumen.motion.gait.parameters import scale_of, time_scale_of
 from lumen.motion.gait.swing import smooth
 
 STEP_TIME, STEP_BACK_TIME = 0.17, 0.2
-"""How long such a step takes [s], forward or aside, and backwards, on legs as long as those it was found with."""
+"""The duration of a step forward or to the side, and of one backwards [s], for legs as long as those that it was tuned
+with.
+"""
 
 STEP_HEIGHT = 0.03
-"""How high a foot is lifted that steps forward or aside [m], on such legs."""
+"""The height to which a foot is lifted that steps forward or to the side [m], for such legs."""
 
 TOES_PRESS, NEAR_TOES = 0.2, 0.05
-"""How far the bearing ankle presses its toes down on the way [rad]: all of it where the DCM comes to the feet's front
-edge, nothing where it stays farther behind it than this [m]: else that sole tips, and the body with it, while the foot
-is in the air. Nothing, too, where it is as far beyond the edge: pressed toes make a fall harder that must be."""
+"""The most that the supporting ankle presses its toes down during the step [rad], and a distance [m]. It presses fully
+while the DCM is at the feet's front edge, and not at all if the DCM is farther behind the edge than that distance: the
+sole would tip, and the body with it, while the other foot is in the air. It does not press either if the DCM is as far
+beyond the edge: pressed toes would only make a certain fall harder.
+"""
 
 KNEE_LIFT, LIFTS_EARLY = 0.25, 0.7
-"""How far the knee of a foot that steps back bends on the way [rad], and how early: below 1 before half of it."""
+"""How far the knee of a foot that steps back bends [rad], and the exponent of time: below 1 it bends most before
+halfway.
+"""
 
 KNEE_GIVES, GIVES_LATE = 0.8, 0.15
-"""How far the other knee gives when a foot steps back [rad], and from which part of the way on."""
+"""How far the other knee yields when a foot steps back [rad], and from which share of the step on."""
 
 UPRIGHT_GAIN, UPRIGHT_LEAN = 0.8, 0.45
-"""The bearing hip brings the torso by that much of what it is away from this lean forward [rad]: thighs go back
-hardly at all (0.48 rad), so that only a torso that leans forward lets a foot step back."""
+"""The gain and the target of the torso's forward lean [rad], held by the supporting hip. Thighs hardly move backwards
+(0.48 rad), so a foot can step back only if the torso leans forward.
+"""
 
 _LANDS, _LOOK_AHEAD = 0.9, 0.02
 
@@ -40,9 +47,9 @@ _HIP, _KNEE, _ANKLE = 2, 3, 4
 
 
 class CatchStep:
-    """Brings `side` to where the body falls; `sent` is what was last sent to the motors.
+    """A step of the foot `side` to where the body falls; `sent` are the angles last sent to the motors.
 
-    `falling` has to feel before each `advance`.
+    Call `falling.feel` before each `advance`.
     """
 
     def __init__(
@@ -65,7 +72,7 @@ class CatchStep:
         self._start = falling.soles[self._swings] - falling.soles[self._rests]
 
     def advance(self, now: float, measured: Mapping[str, float]) -> dict[str, float]:
-        """The legs' joints [rad] that are wanted next; `measured` is where they are."""
+        """Return the next angles of the legs' joints [rad]; `measured` are the present ones."""
         gone = now - self._begin
         part = min(1.0, (gone + _LOOK_AHEAD) / self._seconds)
         falling, left = self._falling, max(self._seconds - gone, 0.0)
@@ -82,11 +89,11 @@ class CatchStep:
         return joints
 
     def over(self, now: float) -> bool:
-        """Whether the foot should have landed."""
+        """Return whether the foot should have landed."""
         return now - self._begin >= self._seconds
 
     def _step_back(self, part: float, goal: CapturePoint, measured: Mapping[str, float]) -> dict[str, float]:
-        """Knee first, from joint to joint; the torso is brought forward and the body lowered meanwhile."""
+        """Step back, bending the knee first; meanwhile lean the torso forward and lower the body."""
         side, bears, sent = self.side, self.bears, self._sent
         end, way = self._level(np.array([*goal, 0.0])), min(1.0, part / _LANDS)
         joints = {**sent, **{n: sent[n] + way * (angle - sent[n]) for n, angle in end.items()}}
@@ -105,10 +112,10 @@ class CatchStep:
         return joints
 
     def _turn(self, joints: dict[str, float], side: Side, role: int, by: float) -> None:
-        """Turn one joint of a leg by that much more [rad]."""
+        """Add to the angle of one joint of a leg [rad]."""
         joints[self._legs.names[side][role]] += self._legs.signs[side][role] * by
 
     def _level(self, place: CapturePoint) -> dict[str, float]:
-        """The joints of the leg that swings with its sole at that place, seen from the other one."""
+        """Return the swinging leg's angles with its sole level at that place, seen from the other sole."""
         sole = self._falling.soles[self._rests] + place
         return hold_level(self._legs, self.side, self._falling.axes, sole, self._sent)

@@ -1,4 +1,4 @@
-"""Catches a fall that ankles, hips and arms can't: by steps, after which the robot goes on with what it did."""
+"""Steps that catch a fall which ankles, hips and arms can't stop; then the robot continues what it did."""
 
 from collections.abc import Callable, Mapping
 
@@ -13,28 +13,30 @@ from lumen.motion.gait.parameters import scale_of, time_scale_of
 from lumen.motion.gait.swing import smooth
 
 BEYOND_TOES, BEYOND_HEELS = -0.01, -0.008
-"""The DCM is that far beyond the feet's edge where a step helps [m], on legs as long as those
-it was found with; aside no foot can cross the other."""
+"""A step begins when the DCM is this far beyond the feet's front or rear edge [m], for legs as long as those that it
+was tuned with. Sideways there is no step, since a foot can't cross the other.
+"""
 
 ASIDE = 0.008
-"""A fall over the heels is caught where it goes aside by so much, too [m]: straight back both feet stay loaded, and
-arms and hips help more than a foot that does not leave the ground."""
+"""A backward fall is caught only if the DCM is also this far to the side [m]. In a straight backward fall both feet
+stay loaded, and arms and hips help more than a foot that does not leave the ground.
+"""
 
 BRACE_TIME, CALM_TIME, RETURN_TIME = 0.5, 0.3, 1.0
-"""How long the legs take to bring the body between the feet, to rest there, and to go back to what they did [s]."""
+"""How long the legs take to bring the body between the feet, to rest there, and to return to their earlier task [s]."""
 
 NEXT_STEP = 0.2
-"""So long after a step no other one begins [s]."""
+"""The pause after a step before the next may begin [s]."""
 
 MOST_STEPS = 4
-"""A fall that so many steps did not catch is not caught."""
+"""The number of steps after which a fall is not caught any more."""
 
 
 class FallCatcher:
-    """Takes the legs while it catches a fall; what they are wanted to do meanwhile is not lost.
+    """Controls the legs while it catches a fall; their goals are kept for afterwards.
 
-    One step or several to where the body falls, a rest with bent legs, and steps until the feet are side by side again.
-    A walk goes on from there; anything else has its legs back slowly.
+    It takes one or more steps towards the fall, rests with bent legs, and steps until the feet are side by side again.
+    A walk then continues from there; for any other activity the legs return slowly.
     """
 
     def __init__(
@@ -67,7 +69,7 @@ class FallCatcher:
         return self._does is not None
 
     def advance(self, now: float, *, standing: bool) -> None:
-        """Live until `now` [s]; a robot that is not `standing` on its feet has nothing to catch."""
+        """Advance to `now` [s]; a robot that is not `standing` on its feet catches nothing."""
         if not standing:
             self._does = None
             return
@@ -87,7 +89,7 @@ class FallCatcher:
         )
 
     def _measured(self) -> dict[str, float]:
-        """Where the legs' joints are [rad]."""
+        """Return the measured angles of the legs' joints [rad]."""
         angles, index = self._sensors.angles, self._motors.index
         return {name: float(angles[index[name]]) for name in self._names}
 
@@ -95,7 +97,7 @@ class FallCatcher:
         return {name: float(self._motors.command[self._motors.index[name]]) for name in self._names}
 
     def _set_out(self, now: float) -> None:
-        """Step with the foot that is in the air already, or the one farther from where the body falls."""
+        """Step with the foot that is already in the air, or else the one farther from the DCM."""
         far = self._falling.far
         side: Side = self._balance.lifted or ("L" if far[0] > far[1] else "R")
         if not self._steps:
@@ -118,7 +120,7 @@ class FallCatcher:
             self._does = self._brace
 
     def _brace(self, now: float) -> None:
-        """Bring the body between the feet; where it falls on, step again."""
+        """Bring the body between the feet; step again if it still falls."""
         assert self._gait
         gone = now - self._since
         if gone > NEXT_STEP * self._slow and max(self._falling.beyond) > 0.0 and self._steps < MOST_STEPS:
@@ -148,7 +150,7 @@ class FallCatcher:
             self._motors.aim(self._legs)
 
     def _return(self, now: float) -> None:
-        """Back to what the legs are wanted to do."""
+        """Return the legs to their goals."""
         part = smooth((now - self._since) / RETURN_TIME)
         wanted = self._motors.wanted(self._names)
         self._legs = {name: angle + part * (wanted[name] - angle) for name, angle in self._landed.items()}

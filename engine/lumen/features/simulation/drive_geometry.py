@@ -1,4 +1,4 @@
-"""What a body's driven wheels measure, read from its MJCF, and how hard it may speed up and brake and not tip over."""
+"""Dimensions and limits of a body's driven wheels, read from its MJCF."""
 
 from typing import NamedTuple
 
@@ -11,10 +11,10 @@ from lumen.features.simulation.world import World
 from lumen.motion.gait.pendulum import GRAVITY
 
 TIPPING_SHARE = 0.25
-"""That part of what would tip the robot over, and of what its motors could, is what it speeds up or brakes with."""
+"""The share of the acceleration that would tip the robot over, or that its motors could reach, that it uses."""
 
 ON_THE_GROUND = 0.01
-"""What is no higher than this above the wheels' lowest points carries the robot [m]."""
+"""Geoms up to this height above the wheels' lowest points carry the robot [m]."""
 
 
 _ROUND = [
@@ -23,26 +23,30 @@ _ROUND = [
 
 
 class DriveGeometry(NamedTuple):
-    """Two wheels side by side: their joints' places in MuJoCo's `qpos`, motors, and which way they roll ahead.
-
-    `radius` of a wheel and `track` between them [m], `fastest` it rolls [m/s]; `acceleration` [m/s^2] along and `spin`
-    [rad/s^2] around. `ahead` is where the wheels' middle is in front of the robot's own place, `reach` how far what
-    carries the robot reaches from there [m].
-    """
+    """Two wheels side by side."""
 
     angles: NDArray[np.intp]
+    """The indexes of the wheels' joints in MuJoCo's `qpos`, left first."""
     motors: NDArray[np.intp]
+    """The wheels' actuators."""
     signs: NDArray[np.float64]
+    """1 for a wheel that rolls ahead with a positive angle, else -1."""
     radius: float
+    """A wheel's radius [m]."""
     track: float
+    """The distance between the wheels [m]."""
     fastest: float
+    """The greatest speed of rolling [m/s]."""
     acceleration: float
+    """The acceleration and deceleration along the way [m/s^2]."""
     spin: float
+    """The angular acceleration [rad/s^2]."""
     reach: float
+    """The greatest distance of what carries the robot from the wheels' middle [m]."""
 
 
 def read_drive(world: World) -> DriveGeometry:
-    """The wheels of a robot that stands in its world. Raises RobotModelError for such as it can't drive on."""
+    """Return the wheels of a robot in its world. Raises RobotModelError if the robot can't drive on them."""
     model, data, base = world.model, world.data, world.body.roles.base
     torso = data.body(world.torso)
     axes, names = torso.xmat.reshape(3, 3), (base.left, base.right)
@@ -83,13 +87,13 @@ def read_drive(world: World) -> DriveGeometry:
 
 
 def _motor(model: mujoco.MjModel, joint: int) -> int:
-    """The actuator that turns a joint."""
+    """Return the actuator that turns a joint."""
     turned = (model.actuator_trntype == mujoco.mjtTrn.mjTRN_JOINT) & (model.actuator_trnid[:, 0] == joint)
     return int(np.flatnonzero(turned)[0])
 
 
 def _radius(model: mujoco.MjModel, link: int) -> float:
-    """Of the largest round geom of a link that touches [m], 0 without one."""
+    """Return the radius of the largest round geom of a link that can touch something [m], 0 without one."""
     geoms = np.arange(model.body_geomadr[link], model.body_geomadr[link] + model.body_geomnum[link])
     solid = (model.geom_contype[geoms] | model.geom_conaffinity[geoms]).astype(bool)
     radii = model.geom_size[geoms[solid & np.isin(model.geom_type[geoms], _ROUND)], 0]
@@ -97,7 +101,7 @@ def _radius(model: mujoco.MjModel, link: int) -> float:
 
 
 def _carried(world: World, radius: float, axle: float) -> NDArray[np.float64]:
-    """The places (points, 2) [m] in the torso's frame of what carries the robot: wheels, and casters as low as they."""
+    """Return the places (points, 2) [m] in the torso's frame of wheels and of casters that reach as low."""
     model, data, torso = world.model, world.data, world.data.body(world.torso)
     own = (model.geom_contype | model.geom_conaffinity) & (
         model.body_rootid[model.geom_bodyid] == model.body_rootid[world.torso]
@@ -113,7 +117,7 @@ def _carried(world: World, radius: float, axle: float) -> NDArray[np.float64]:
 
 
 def _mass(world: World) -> tuple[float, NDArray[np.float64]]:
-    """Of the whole robot [kg], and where its centre is in the torso's frame (3,) [m]."""
+    """Return the mass of the whole robot [kg] and its centre in the torso's frame (3,) [m]."""
     root, torso = int(world.model.body_rootid[world.torso]), world.data.body(world.torso)
     centre: NDArray[np.float64] = torso.xmat.reshape(3, 3).T @ (world.data.subtree_com[root] - torso.xpos)
     return float(world.model.body_subtreemass[root]), centre

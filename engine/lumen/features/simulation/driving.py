@@ -1,4 +1,4 @@
-"""Driving on two wheels side by side, to a place or on and on: what turns the wheels, and when they brake."""
+"""Driving on two wheels side by side, to a place or continuously: the wheels' speeds and when to brake."""
 
 from collections.abc import Callable
 from math import atan2, copysign, hypot, sqrt
@@ -14,28 +14,29 @@ from lumen.features.simulation.world import CONTROL_PERIOD, World
 from lumen.motion.gait import Pose, Velocity
 
 NEAR, FACING = 0.008, 0.015
-"""So near to where it should be [m], [rad] the robot need not drive or turn on."""
+"""The tolerances of position [m] and angle [rad] within which the robot neither drives nor turns."""
 
 BACKS_UP = 0.6
-"""A place behind it that is no farther than this [m] the robot reaches backwards."""
+"""The robot reaches a place behind it in reverse if it is no farther than this [m]."""
 
 STEERING, CREEPING, CREEPING_TURN = 2.0, 0.03, 0.1
-"""How fast it turns back to its way [1/s], and how slowly it drives [m/s] and turns [rad/s] at the end of one."""
+"""The rate of steering back to the path [1/s], and the least speeds before the end of a drive [m/s] and a turn [rad/s].
+"""
 
 BRAKES_EARLY = 0.85
-"""The part of the speed from which the robot could just brake: motors follow late."""
+"""The share of the greatest braking speed that is used: motors react late."""
 
 MOTORS_LATE = 0.06
-"""How long wheels go on at the speed they had [s]."""
+"""How long the wheels keep their speed before a command acts [s]."""
 
 STUCK_TIME = 3.0
-"""A robot that has not moved for so long [s] is held by something."""
+"""A robot that has not moved for this long is stuck [s]."""
 
 
 class Drive:
-    """Turns the wheels, never faster or sooner than the base allows; a period in which nobody steers brakes.
+    """Turns the wheels within the base's limits of speed and acceleration; without a call of `steer` it brakes.
 
-    `limit` is how fast it goes straight ahead and around at most; `share` of that is left where motors are hot.
+    `limit` is the greatest speed straight ahead and around; hot motors halve it.
     """
 
     def __init__(self, world: World, geometry: DriveGeometry, limit: Velocity, hot: Callable[[], bool]) -> None:
@@ -45,20 +46,21 @@ class Drive:
 
     @property
     def limit(self) -> Velocity:
-        """How fast the robot goes straight ahead [m/s] or around [rad/s] at most: half as fast with hot motors."""
+        """The greatest speeds straight ahead [m/s] and around [rad/s]: halved while motors are hot."""
         part = 0.5 if self._hot() else 1.0
         return Velocity(part * self._limit.x, 0.0, part * self._limit.theta)
 
     @property
     def still(self) -> bool:
+        """Whether the robot neither drives nor turns."""
         return self.speed == 0.0 and self.turning == 0.0
 
     def steer(self, speed: float, turning: float) -> None:
-        """Go ahead [m/s] and around to the left [rad/s] like this in this period, as far as the base can by then."""
+        """Request this speed ahead [m/s] and around to the left [rad/s] for the next control period."""
         self._wanted = speed, turning
 
     def turn_wheels(self) -> None:
-        """Tell the motors how fast to turn in this control period."""
+        """Move the speeds towards the requested ones and send them to the motors."""
         geometry, most = self.geometry, self.limit
         (speed, turning), self._wanted = self._wanted, (0.0, 0.0)
         self.speed = _toward(self.speed, min(max(speed, -most.x), most.x), geometry.acceleration)
@@ -69,14 +71,14 @@ class Drive:
         self._world.data.ctrl[geometry.motors] = geometry.signs * rolling / geometry.radius
 
     def halt(self) -> None:
-        """Brake at once, as hard as the motors can."""
+        """Stop the wheels at once, as hard as the motors can."""
         self.speed = self.turning = 0.0
         self._wanted = 0.0, 0.0
         self._world.data.ctrl[self.geometry.motors] = 0.0
 
 
 class DriveActivity:
-    """A drive under way. What gets in the way ends it, as `cancel` does: by braking."""
+    """A drive in progress. An obstacle or the stage's edge ends it as `cancel` does: by braking."""
 
     def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, now: float) -> None:
         self.drive, self.odometry, self._hazards = drive, odometry, hazards
@@ -86,6 +88,9 @@ class DriveActivity:
         self._cancelled = False
 
     def advance(self, now: float) -> bool:
+        """Steer until the end; True once the robot has arrived or stopped. Raises RobotFailedError if a hazard stopped
+        it.
+        """
         self._now = now
         if not self._cancelled and now >= self._look:
             self._look += HAZARD_CHECK_PERIOD
@@ -100,14 +105,15 @@ class DriveActivity:
         return True
 
     def cancel(self) -> None:
+        """Brake; the drive ends when the robot is still."""
         self._cancelled = True
 
     def _go(self, now: float) -> bool:
-        """Steer in this period; true at the end of the way."""
+        """Steer in this period; return True at the end of the drive."""
         raise NotImplementedError
 
     def _leaves(self) -> str:
-        """Why the robot must not go on where it would come to if it braked now; empty where it may."""
+        """Return why the robot must not reach the place where braking now would stop it; empty if it may."""
         speed, here = self.drive.speed, self.odometry.here
         late = HAZARD_CHECK_PERIOD + MOTORS_LATE
         comes = speed * late + speed * abs(speed) / (2 * self.drive.geometry.acceleration)
@@ -119,14 +125,14 @@ class DriveActivity:
 
 
 class DriveOn(DriveActivity):
-    """On and on at a speed, which `wanted` may change under way."""
+    """A drive at a constant speed, which `change` can alter on the way."""
 
     def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, wanted: Velocity, now: float) -> None:
         super().__init__(drive, odometry, hazards, now)
         self._wanted = wanted
 
     def change(self, wanted: Velocity, now: float) -> bool:
-        """Go on at that speed; false for a drive that ends, or did not live until now."""
+        """Continue at that speed; return False if the drive is ending or was not advanced to `now`."""
         alive = self._now == now and not self._cancelled
         if alive:
             self._wanted = wanted
@@ -138,7 +144,9 @@ class DriveOn(DriveActivity):
 
 
 class DriveTo(DriveActivity):
-    """To a place: turn towards it, drive there, turn as wanted; a near place behind is reached backwards."""
+    """A drive to a place: turn towards it, drive there, then turn to the goal's heading; backwards to a near place
+    behind.
+    """
 
     def __init__(self, drive: Drive, odometry: WheelOdometry, hazards: Hazards, goal: Pose, now: float) -> None:
         super().__init__(drive, odometry, hazards, now)
@@ -165,14 +173,14 @@ class DriveTo(DriveActivity):
         return True
 
     def _face(self, seen: Pose) -> bool:
-        """Turn towards the goal, or the back to it."""
+        """Turn the front, or the back, towards the goal."""
         bearing = atan2(-seen.y, -seen.x) if self._back else atan2(seen.y, seen.x)
         if self._round(bearing):
             self._phase = self._approach
         return False
 
     def _approach(self, seen: Pose) -> bool:
-        """Drive there; what is left aside is steered at while there is way enough."""
+        """Drive to the goal; correct sideways errors while enough distance remains."""
         ahead = -1.0 if self._back else 1.0
         left, drive = ahead * seen.x, self.drive
         if left < NEAR:
@@ -185,11 +193,11 @@ class DriveTo(DriveActivity):
         return False
 
     def _turn(self, seen: Pose) -> bool:
-        """Turn as the goal does."""
+        """Turn to the goal's heading."""
         return self._round(seen.theta)
 
     def _round(self, angle: float) -> bool:
-        """Turn by that angle [rad]; true once that is done."""
+        """Turn by that angle [rad]; return True when done."""
         drive = self.drive
         if abs(angle) < FACING:
             return drive.still
@@ -198,11 +206,11 @@ class DriveTo(DriveActivity):
 
 
 def _braking(left: float, most: float, rate: float, least: float) -> float:
-    """How fast one may still be where so much of a way is left, to come to rest at its end."""
+    """Return the greatest speed from which the robot can still stop within `left`, between `least` and `most`."""
     return min(most, max(least, BRAKES_EARLY * sqrt(2 * rate * left)))
 
 
 def _toward(speed: float, wanted: float, rate: float) -> float:
-    """A speed a control period later."""
+    """Return the speed one control period later, at most `rate` nearer to `wanted` per second."""
     step = rate * CONTROL_PERIOD
     return min(max(wanted, speed - step), speed + step)

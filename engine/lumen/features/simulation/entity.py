@@ -1,4 +1,4 @@
-"""The NAO, or another biped, as a building block of dm_control's composer, for worlds and tasks of others."""
+"""The NAO, or another biped, as a dm_control composer entity for your own worlds and tasks."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,13 +19,13 @@ from lumen.language.roles import SIDES
 
 
 class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
-    """The robot alone, a legged Walker: body, motors, sensors and cameras; no controller, no hall.
+    """The robot alone, a legged Walker: body, motors, sensors and cameras; no controller and no hall.
 
-    `body` and `models` are those of a project (`project.body`, the folder of its MJCF), `name` tells several apart.
-    Attach it with `nao.create_root_joints(arena.attach(nao))`, or its `mjcf_model` to a world of plain MJCF. An action
-    is an angle for each of the `actuators` [rad], an opening for hands (0..1). A task that begins an episode with
-    `reinitialize_pose` begins in the posture Stand, or as `initializer` has it. Raises RobotError where the model can't
-    be used.
+    `body` and `models` come from a project (`project.body`, the folder of its MJCF); `name` distinguishes several
+    robots. Attach it with `nao.create_root_joints(arena.attach(nao))`, or attach its `mjcf_model` to plain MJCF. An
+    action is an angle for each of the `actuators` [rad], an opening for hands (0..1). A task that begins an episode
+    with `reinitialize_pose` begins in the posture Stand, or as `initializer` decides. Raises RobotError if the model is
+    unusable.
     """
 
     def _build(
@@ -39,7 +39,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         self.body, self._models, self._taken = body, Path(models), dict[str, base.WalkerPose]()
         self._mjcf_root = alone(body, Path(models))
         self._mjcf_root.model = name
-        # No sensor of NAO's: dm_control's tasks reward by it.
+        # NAO has no velocimeter, but dm_control's tasks compute rewards from it.
         self._mjcf_root.sensor.add("velocimeter", name="velocimeter", site=self._where_it_feels())
         self._prev_action = np.zeros(self.action_spec.shape)
 
@@ -48,6 +48,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def mjcf_model(self) -> mjcf.RootElement:
+        """The root of the robot's MJCF."""
         return self._mjcf_root
 
     @property
@@ -57,20 +58,24 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def observable_joints(self) -> list[mjcf.Element]:
+        """The joints of `joints_pos` and `joints_vel`: all of them."""
         return self.joints
 
     @property
     def actuators(self) -> list[mjcf.Element]:
-        """The motors, which take angles [rad] and openings, in the body's order; a joint that shares one has none."""
+        """The motors in the body's order, controlled by angles [rad] and openings; a joint that shares a motor has
+        none.
+        """
         return self._named("actuator", [name for name in self.body.joints if name not in self.body.shared])
 
     @property
     def root_body(self) -> mjcf.Element:
+        """The torso."""
         return self._mjcf_root.find("body", self.body.roles.torso)
 
     @property
     def end_effectors(self) -> list[mjcf.Element]:
-        """Hands and feet."""
+        """The hands and feet."""
         roles = self.body.roles
         ends = [
             list(limbs[side].values())[-1].joint
@@ -82,12 +87,13 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
 
     @property
     def ground_contact_geoms(self) -> list[mjcf.Element]:
-        """The soles: what of the feet has a name."""
+        """The soles: the named geoms of the feet."""
         soles = self._named("site", list(self.body.roles.soles.values()))
         return [geom for site in soles for geom in site.parent.geom if geom.name]
 
     @property
     def egocentric_camera(self) -> mjcf.Element:
+        """The camera that the robot sees with."""
         return self._mjcf_root.find("camera", self.body.roles.eyes.camera)
 
     @property
@@ -96,7 +102,9 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         return self.pose("Stand")
 
     def take(self, physics: mjcf.Physics, posture: str) -> None:
-        """Be in that posture at once, upright, soles on the ground, and tell the motors to stay: for a beginning."""
+        """Put the robot upright into that posture, soles on the ground, and make the motors hold it; use it to begin an
+        episode.
+        """
         qpos, xpos, xquat = self.pose(posture)
         self.configure_joints(physics, qpos)
         self.set_pose(physics, position=xpos, quaternion=xquat)
@@ -104,26 +112,30 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         physics.bind(self.actuators).ctrl = self.action_of(posture)
 
     def action_of(self, posture: str) -> np.ndarray:
-        """What the motors are told in that posture, in the order of `actuators`."""
+        """Return the action that holds that posture, in the order of `actuators`."""
         angles = self.body.postures[posture]
         return np.array([angle for name, angle in angles.items() if name not in self.body.shared])
 
     def apply_action(self, physics: mjcf.Physics, action: np.ndarray, random_state: np.random.RandomState) -> None:
+        """Send the action to the motors and remember it."""
         super().apply_action(physics, action, random_state)
         self._prev_action[:] = action
 
     @property
     def prev_action(self) -> np.ndarray:
+        """The action of the last step."""
         return self._prev_action
 
     def aliveness(self, physics: mjcf.Physics) -> float:
-        """0 upright, -1 upside down."""
+        """Return 0 for an upright torso, -1 for one upside down."""
         return (float(physics.bind(self.root_body).xmat[-1]) - 1.0) / 2.0
 
     def pose(self, posture: str) -> base.WalkerPose:
-        """Where every joint of the model is in that posture, thumbs with their hands, and the torso over the ground."""
+        """Return the angles of all joints of the model in that posture, coupled ones included, and the torso's
+        position.
+        """
         if posture not in self._taken:
-            root = alone(self.body, self._models)  # ours may stand in a world by now
+            root = alone(self.body, self._models)  # self may be attached to a world by now
             physics, joints = mjcf.Physics.from_mjcf_model(root), root.find_all("joint")
             angles = self.body.postures[posture]
             led = {equal.joint1.name: equal.joint2.name for equal in root.find_all("equality") if equal.tag == "joint"}
@@ -135,7 +147,7 @@ class Nao(legacy_base.Walker):  # type: ignore[misc]  # dm_control has no types
         return self._taken[posture]
 
     def _where_it_feels(self) -> mjcf.Element:
-        """The site of the gyrometer."""
+        """Return the gyrometer's site."""
         return self._mjcf_root.find("sensor", self.body.roles.sensors.gyro).site
 
     def _named(self, kind: str, names: Sequence[str]) -> list[mjcf.Element]:

@@ -1,4 +1,4 @@
-"""Where the robot falls to, by what it measures of itself."""
+"""The direction in which the robot is falling, estimated from its own sensors."""
 
 from math import hypot, sqrt
 
@@ -14,16 +14,17 @@ from lumen.motion.gait.pendulum import GRAVITY
 
 _SMOOTHING = 0.65
 _LOWEST = 0.15
-"""The centre of mass is never taken for lower than this [m], above legs as long as those that paces were found with."""
+"""The least height of the centre of mass that is assumed [m], for legs as long as those that the paces were tuned with.
+"""
 
 
 class FallingSense:
     """The centre of mass and its divergent component of motion (DCM), as seen from the feet.
 
-    Level with the ground: forward along the torso's heading, left, up [m]. From encoders, the inertial unit and the
-    published masses alone: what the robot carries, and how it was built, it does not know. The DCM is where the weight
-    would have to rest for the body to come to a halt there: the capture point of Pratt and others, "Capture point: a
-    step toward humanoid push recovery", 2006. The first row of what has two is of the left foot.
+    Axes are level with the ground: forward along the torso's heading, left, up [m]. The sources are encoders, the
+    inertial unit and the published masses; a load or differences in build are unknown to it. The DCM is the point where
+    the weight would have to rest for the body to come to a halt there: the capture point of Pratt and others, "Capture
+    point: a step toward humanoid push recovery", 2006. In arrays with two rows the first is the left foot's.
     """
 
     def __init__(self, sensors: BodySensors, mass_model: MassModel, legs: LegGeometry) -> None:
@@ -35,7 +36,7 @@ class FallingSense:
         self._speed = np.zeros((2, 3))
         self._felt = False
         self.axes: NDArray[np.float64] = np.eye(3)
-        """Forward, left and up in the torso's frame, Shape (3, 3)."""
+        """The forward, left and up axes in the torso's frame, Shape (3, 3)."""
         self.soles: NDArray[np.float64] = np.zeros((2, 3))
         """Both soles, seen from the torso."""
         self.mass: NDArray[np.float64] = np.zeros((2, 3))
@@ -43,21 +44,23 @@ class FallingSense:
         self.dcm: NDArray[np.float64] = np.zeros((2, 2))
         """The DCM on the ground, seen from each sole."""
         self.omega = 6.0
-        """How fast the body falls [1/s]: what the DCM is away from where it rests grows by that."""
+        """The rate at which the DCM's distance from its resting point grows [1/s]."""
 
     @property
     def ahead(self) -> float:
-        """How far the centre of mass is in front of the ankles [m]."""
+        """The distance of the centre of mass in front of the ankles [m]."""
         return self._ahead
 
     @property
     def behind_heels(self) -> float:
-        """How far the DCM is behind the rear edge of the feet [m], negative above them."""
+        """The distance of the DCM behind the rear edge of the feet [m], negative above them."""
         return -self._sole[1] - max(self._left[0], self._right[0])
 
     @property
     def beyond(self) -> tuple[float, float, float, float]:
-        """How far the DCM is beyond front, rear, left and right edge of both feet together [m], negative inside."""
+        """The distances of the DCM beyond the front, rear, left and right edge of both feet together [m], negative
+        inside.
+        """
         toe, heel, outer, inner = self._sole
         (left_x, left_y), (right_x, right_y) = self._left, self._right
         ahead, behind = toe - min(left_x, right_x), -heel - max(left_x, right_x)
@@ -65,16 +68,16 @@ class FallingSense:
 
     @property
     def aside(self) -> float:
-        """How far the DCM is to the left of the middle between the feet [m]."""
+        """The distance of the DCM to the left of the middle between the feet [m]."""
         return (self._left[1] + self._right[1]) / 2
 
     @property
     def far(self) -> tuple[float, float]:
-        """How far the DCM is from left and right ankle [m]."""
+        """The distances of the DCM from the left and the right ankle [m]."""
         return hypot(*self._left), hypot(*self._right)
 
     def feel(self) -> None:
-        """Take note of this control period."""
+        """Update the estimate; call it once in each control period."""
         x, y, z = self._sensors.up
         level = hypot(y, z)
         self.axes = np.array(((level, -x * y / level, -x * z / level), (0.0, z / level, -y / level), (x, y, z)))

@@ -1,4 +1,4 @@
-"""A robot that is built in where it stands."""
+"""A base that is mounted in its place."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from lumen.robot.executor import Activity
 
 
 class Fixed:
-    """Holds the robot: it neither walks nor falls, and its joints are all that moves."""
+    """Holds the robot: it neither walks nor falls; only its joints move."""
 
     whereabouts = None
     catching = False
@@ -21,16 +21,18 @@ class Fixed:
         self._nothing = np.zeros(len(request.body.joints))
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
+        """Raise RobotRefusedError: the robot can't walk."""
         raise RobotRefusedError("the robot can't walk: it has neither legs nor wheels")
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
+        """Return no corrections: the base needs no balance."""
         return self._nothing
 
     def relax(self) -> None:
-        """Nothing moves it."""
+        """Do nothing: the base has no motors."""
 
     def lose(self, posture: str) -> None:
-        """It is where it is."""
+        """Do nothing: the robot's place is certain."""
 
     def keep(self, heading: float) -> None:
-        """It is where it is."""
+        """Do nothing: the robot's place is certain."""

@@ -1,4 +1,4 @@
-"""The force sensors under the feet: four in each, as NAO's `FSR`."""
+"""The force sensors under the feet: four in each, like NAO's `FSR`."""
 
 from collections.abc import Iterable, Mapping
 from itertools import compress
@@ -10,14 +10,14 @@ from lumen.features.simulation.physics import mujoco
 from lumen.language.roles import Roles
 
 NEWTONS_PER_KILOGRAM = 9.81
-"""ALMemory counts these forces in kilograms: newtons divided by this."""
+"""Newtons per kilogram: ALMemory gives these forces in kilograms."""
 
 SENSED_FEET = {"left": "LFoot", "right": "RFoot"}
-"""The feet as ALMemory calls them, by side."""
+"""ALMemory's names of the feet, by side."""
 
 
 class ForceSensors:
-    """Weighs what presses against each quarter of the soles, where the model has a touch sensor at its site."""
+    """Measures the force on each quarter of the soles at which the model has a touch sensor."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData, roles: Roles, prefix: str = ROBOT_PREFIX) -> None:
         touch = np.flatnonzero(model.sensor_type == mujoco.mjtSensor.mjSENS_TOUCH)
@@ -32,7 +32,9 @@ class ForceSensors:
         self._feet = {foot: [name.startswith(foot) for name in self._places] for foot in SENSED_FEET.values()}
 
     def weigh(self) -> Mapping[str, float]:
-        """What each sensor feels [kg] by ALMemory's name (`LFoot/FSR/FrontLeft`), and each foot's `TotalWeight`."""
+        """Return the force at each sensor [kg] by ALMemory's name (`LFoot/FSR/FrontLeft`), and each foot's
+        `TotalWeight`.
+        """
         if not self._places:
             return {}
         felt = [newtons / NEWTONS_PER_KILOGRAM for newtons in self._data.sensordata.take(self._addresses).tolist()]
@@ -43,7 +45,7 @@ class ForceSensors:
 
 
 def _corners(model: mujoco.MjModel, names: Iterable[str], prefix: str) -> list[tuple[str, int]]:
-    """Where each of these sites is under its sole (`FrontLeft`), and its number."""
+    """Return each site's corner of the sole (`FrontLeft`) and its id."""
     sites = [model.site(f"{prefix}/{name}").id for name in names]
     middle = model.site_pos[sites].mean(axis=0)
     ahead = ["Front" if x > middle[0] else "Rear" for x in model.site_pos[sites, 0]]

@@ -1,4 +1,4 @@
-"""Which OpenGL draws without a screen; chosen when this is imported, best before mujoco is."""
+"""Chooses the OpenGL library for drawing without a screen when imported, best before mujoco is."""
 
 import ctypes
 import importlib
@@ -24,12 +24,12 @@ def _loads(library: str) -> bool:
 
 
 def _there(backend: str) -> bool:
-    """Whether its libraries load: for EGL all of them, for OSMesa any version."""
+    """Return whether the backend's libraries load: for EGL all of them, for OSMesa any version."""
     return (all if backend == "egl" else any)(_loads(library) for library in _LIBRARIES[backend])
 
 
 def choose() -> str:
-    """`egl` where its libraries load, else `osmesa`, else `disable`: physics without pictures."""
+    """Return `egl` if its libraries load, else `osmesa`, else `disable`: physics without pictures."""
     return next((backend for backend in _LIBRARIES if _there(backend)), "disable")
 
 
@@ -77,7 +77,7 @@ BACKEND, _WHY = _settle()
 
 
 def missing() -> str | None:
-    """Why nothing can be drawn and what to do about it; None where it can."""
+    """Return why nothing can be drawn and what to do about it; None if drawing works."""
     if _WHY:
         return _WHY
     if BACKEND in _OFF:

@@ -1,4 +1,4 @@
-"""What forbids a step: something near ahead, or a hand on a button."""
+"""What forbids a step: an obstacle ahead, or a hand on a button."""
 
 from collections.abc import Mapping
 
@@ -7,11 +7,11 @@ from lumen.robot.hazards import danger
 
 
 class Hazards:
-    """Looks at the sonars, where there are any, and at which tactile sensors are `pressed`, now."""
+    """Checks the sonars, if there are any, and the tactile sensors in `pressed`, which is updated elsewhere."""
 
     def __init__(self, sonars: Sonars | None, pressed: Mapping[str, bool]) -> None:
         self._sonars, self._pressed = sonars, pressed
 
     def danger(self) -> str:
-        """Why the robot must not walk now; empty where nothing is in the way."""
+        """Return why the robot must not walk now; empty if nothing is in the way."""
         return danger(self._pressed, self._sonars.measure() if self._sonars else ())

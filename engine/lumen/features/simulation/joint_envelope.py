@@ -1,4 +1,4 @@
-"""What a body allows its joints: the envelope that no command can leave."""
+"""A body's limits for its joints, which no command can exceed."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,7 +7,7 @@ from lumen.language.robots import Body
 from lumen.motion.limits import coupled_range
 
 JointVector = NDArray[np.float64]
-"""[rad; hands 0..1], Shape (joints,), in the order of `body.joints`."""
+"""A value for each joint in the order of `body.joints`, Shape (joints,) [rad; hands 0..1]."""
 
 
 class JointEnvelope:
@@ -23,10 +23,10 @@ class JointEnvelope:
         self._coupled = [(names.index(c.joint), names.index(c.on), c) for c in body.coupled]
 
     def step(self, last: JointVector, goal: JointVector, dt: float) -> JointVector:
-        """The next command on the way from the last one to `goal`, `dt` [s] later.
+        """Return the command that follows `last` on the way to `goal`, `dt` [s] later.
 
-        Every joint stays inside its limits and below its greatest speed, whatever the goal is; where a joint can't
-        follow a coupled limit in time, the joint that narrows it waits.
+        Every joint stays inside its limits and below its greatest speed, whatever the goal is. If a joint can't follow
+        a coupled limit in time, the joint that narrows the limit waits.
         """
         reach = self.speed * dt
         result: JointVector = np.maximum(np.minimum(goal, last + reach), last - reach)

@@ -1,4 +1,4 @@
-"""From one posture to another, safely."""
+"""A safe movement from one posture to another."""
 
 from collections.abc import Callable, Mapping
 
@@ -6,20 +6,21 @@ from lumen.features.simulation.motors import Motors
 from lumen.robot.joint_ways import way_duration
 
 MIN_TRANSITION_TIME, MAX_TRANSITION_TIME = 0.6, 2.0
-"""How long a change of posture takes [s] at speed 1 and when slow: between these it never fell."""
+"""The duration of a change of posture [s] at speed 1 and at the slowest; within these the robot never fell."""
 
 _HALT = 0.4
 
 
 def duration(speed: float) -> float:
-    """How long a change of posture takes [s] at that fraction of the greatest speed."""
+    """Return the duration of a change of posture [s] at that share of the greatest speed."""
     return min(MAX_TRANSITION_TIME, MIN_TRANSITION_TIME / speed)
 
 
 class JointTransition:
-    """All of `targets` together along a smoothstep, `seconds` long or as much longer as the slowest joint needs.
+    """Moves all joints of `targets` together along a smoothstep, for `seconds` or as much longer as the slowest joint
+    needs.
 
-    `after` is called once when it has arrived; a cancelled one halts on its way within 0.4 s.
+    `after` is called once at the end. A cancelled transition comes to a halt within 0.4 s.
     """
 
     def __init__(
@@ -38,6 +39,7 @@ class JointTransition:
         self._halt: tuple[float, float, float] | None = None
 
     def advance(self, now: float) -> bool:
+        """Move the goals on to `now` [s]; return True at the end."""
         self._now = now
         if self._halt:
             return self._come_to_rest(now, *self._halt)
@@ -48,11 +50,12 @@ class JointTransition:
         return u >= 1.0
 
     def cancel(self) -> None:
+        """Begin to slow down."""
         u = min(1.0, (self._now - self._begin) / self._seconds)
         self._halt = self._now, u * u * (3 - 2 * u), 6 * u * (1 - u) / self._seconds
 
     def _come_to_rest(self, now: float, since: float, done: float, rate: float) -> bool:
-        """Slow down evenly from `rate` [1/s], having gone the part `done` of the way."""
+        """Slow down evenly from `rate` [1/s], starting at the share `done` of the way."""
         t = min(now - since, _HALT)
         self._go(min(1.0, done + rate * t * (1 - t / (2 * _HALT))))
         return t >= _HALT

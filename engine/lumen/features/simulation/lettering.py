@@ -1,4 +1,4 @@
-"""What is written into the pictures of a film: subtitles and a title, drawn by Pillow and laid over the pixels."""
+"""Subtitles and a title for the pictures of a film, drawn with Pillow over the pixels."""
 
 import unicodedata
 from functools import lru_cache
@@ -12,16 +12,16 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 FONTS = ("DejaVuSans.ttf", "NotoSans-Regular.ttf", "LiberationSans-Regular.ttf", "Arial.ttf", "arial.ttf")
-"""Looked for where the system keeps its fonts; without any of them Pillow's own writes, which has no accents."""
+"""Fonts to look for among the system's; without any, Pillow's own font is used, which has no accents."""
 
 SUBTITLE_HEIGHT, TITLE_HEIGHT = 0.05, 0.1
-"""Of a line, as a part of the picture's height."""
+"""The height of a line, as a share of the picture's height."""
 
 MAX_LINES = 2
-"""Lines of a subtitle: of more the robot beneath them is not seen, and what comes is read before it is said."""
+"""The most lines of a subtitle: more would hide the robot and be read before they are spoken."""
 
 SUBTITLE_WIDTH = 0.72
-"""The part of the picture's width that a line of subtitles may take."""
+"""The greatest width of a line of subtitles, as a share of the picture's width."""
 
 CLAUSE_ENDS = ".,;:!?…"
 ROBOT_COLOUR, VISITOR_COLOUR = (255, 255, 255), (255, 221, 130)
@@ -32,14 +32,14 @@ Colour = tuple[int, int, int]
 
 
 class Overlay(NamedTuple):
-    """Letters and what is behind them: RGBA of shape (height, width, 4), and where its upper left corner lies [px]."""
+    """Letters on a background: RGBA, Shape (height, width, 4), and the position of its upper left corner [px]."""
 
     pixels: NDArray[np.uint8]
     left: int
     top: int
 
     def lay_on(self, picture: NDArray[np.uint8], opacity: float = 1.0) -> None:
-        """Blend it into a picture (height, width, 3)."""
+        """Blend it into a picture, Shape (height, width, 3), in place."""
         height, width = self.pixels.shape[:2]
         part = picture[self.top : self.top + height, self.left : self.left + width]
         alpha = self.pixels[:, :, 3:].astype(np.uint16) * round(256 * opacity) // 256
@@ -48,7 +48,7 @@ class Overlay(NamedTuple):
 
 @lru_cache(maxsize=64)
 def subtitle_pages(text: str, width: int, height: int) -> tuple[str, ...]:
-    """A text as subtitles that follow each other, each of MAX_LINES at most; one ends with a clause, if it can."""
+    """Return the text as successive subtitles of at most MAX_LINES lines, split at the end of a clause if possible."""
     font, plain = _font(round(height * SUBTITLE_HEIGHT * 0.78))
 
     def fits(words: list[str]) -> bool:
@@ -68,7 +68,7 @@ def subtitle_pages(text: str, width: int, height: int) -> tuple[str, ...]:
 
 @lru_cache(maxsize=64)
 def subtitle(text: str, colour: Colour, width: int, height: int) -> Overlay:
-    """A text in lines at the bottom of a picture of that size [px]."""
+    """Return the text in lines at the bottom of a picture of that size [px]."""
     font, plain = _font(round(height * SUBTITLE_HEIGHT * 0.78))
     lines = _wrapped(_written(text, plain), font, round(width * SUBTITLE_WIDTH))
     return _drawn(lines, font, colour, width, round(height * 0.94))
@@ -76,7 +76,7 @@ def subtitle(text: str, colour: Colour, width: int, height: int) -> Overlay:
 
 @lru_cache(maxsize=8)
 def title(text: str, width: int, height: int) -> Overlay:
-    """A title in the lower third of a picture of that size [px]."""
+    """Return a title in the lower third of a picture of that size [px]."""
     font, plain = _font(round(height * TITLE_HEIGHT * 0.78))
     lines = _wrapped(_written(text, plain), font, round(width * 0.86))
     return _drawn(lines, font, ROBOT_COLOUR, width, round(height * 0.88))
@@ -97,7 +97,7 @@ def _drawn(lines: list[str], font: Font, colour: Colour, width: int, bottom: int
 
 
 def _wrapped(text: str, font: Font, most: int) -> list[str]:
-    """The words in lines of at most so many pixels, about as long as each other."""
+    """Return the words in lines of similar length, each at most `most` pixels wide."""
     words = text.split()
     text = " ".join(words)
     for count in range(1, 9):
@@ -123,7 +123,7 @@ def _filled(words: list[str], font: Font, most: float) -> list[str]:
 
 @lru_cache(maxsize=4)
 def _font(size: int) -> tuple[Font, bool]:
-    """A font of that height [px], and whether it has only what ASCII has."""
+    """Return a font of that height [px], and whether it is limited to ASCII."""
     for name in FONTS:
         try:
             return ImageFont.truetype(name, size, layout_engine=ImageFont.Layout.BASIC), False
@@ -133,7 +133,7 @@ def _font(size: int) -> tuple[Font, bool]:
 
 
 def _written(text: str, plain: bool) -> str:
-    """The text as a font can write it: without accents where it has none."""
+    """Return the text without unprintable characters, and without accents if the font is `plain`."""
     text = "".join(c for c in text if c.isprintable() or c.isspace())
     if not plain:
         return text

@@ -1,4 +1,4 @@
-"""Where a robot's links are for given joint angles, and what they look like: computed, not simulated."""
+"""Places and shapes of a robot's links for given joint angles: computed, not simulated."""
 
 from collections.abc import Iterator, Mapping
 from math import cos, sin
@@ -15,11 +15,11 @@ from lumen.robot.links import FLOOR, LinkFrame, LinkShape
 
 LinkNumbers = NDArray[np.float64]
 SEEN_GROUP = 2
-"""The geoms that one sees."""
+"""The group of visible geoms."""
 
 
 class LinkFrames:
-    """The links of a body whose MJCF is in `models`. Raises RobotModelError where it can't be built."""
+    """The links of a body whose MJCF is in `models`. Raises RobotModelError if it can't be built."""
 
     def __init__(self, body: Body, models: Path) -> None:
         self._model = mjcf.Physics.from_mjcf_model(alone(body, models)).model.ptr
@@ -29,7 +29,7 @@ class LinkFrames:
         self._names = [self._model.body(number).name for number in range(self._model.nbody)]
 
     def frames(self, joints: Joints) -> Iterator[LinkFrame]:
-        """Each link in its parent's frame, the first one in the hall's: its lowest point is on the floor."""
+        """Yield each link in its parent's frame; the first is in the hall's, its lowest point on the floor."""
         model, data = self._model, self._data
         for name, angle in zip(joints.names, joints.angles, strict=True):
             if (place := self._places.get(name)) is not None:
@@ -50,7 +50,7 @@ class LinkFrames:
             yield LinkFrame(self._names[number], parent, positions[number], rotations[number])
 
     def shapes(self) -> Iterator[LinkShape]:
-        """What one sees of them."""
+        """Yield the visible shapes of the links."""
         model, none = self._model, np.zeros((0, 3))
         for number in np.flatnonzero(model.geom_group == SEEN_GROUP):
             kind = mujoco.mjtGeom(model.geom_type[number]).name.removeprefix("mjGEOM_").lower()
@@ -68,7 +68,7 @@ class LinkFrames:
             yield LinkShape(link, kind, *pose, model.geom_size[number], colour, vertices, faces)
 
     def _follow(self) -> None:
-        """Turn the joints that follow another one: fingers, and the second hip."""
+        """Set the joints that follow another joint: fingers, and the second hip yaw."""
         model, data = self._model, self._data
         for number in np.flatnonzero(model.eq_type == mujoco.mjtEq.mjEQ_JOINT):
             one, other = model.eq_obj1id[number], model.eq_obj2id[number]
@@ -77,7 +77,7 @@ class LinkFrames:
                 data.qpos[model.jnt_qposadr[one]] = np.polyval(model.eq_data[number][4::-1], turned)
 
     def _lowest(self) -> float:
-        """How low the robot reaches [m]."""
+        """Return the height of the robot's lowest point [m]."""
         model, data = self._model, self._data
         axes = data.geom_xmat.reshape(-1, 3, 3)[:, 2, :]
         centre, half = model.geom_aabb[:, :3], model.geom_aabb[:, 3:]
@@ -85,7 +85,7 @@ class LinkFrames:
 
 
 def _rotation(inertial: Mapping[str, float], theta: float) -> LinkNumbers:
-    """How the torso is turned: as far as it feels that it leans, and as far as it believes to have turned."""
+    """Return the torso's rotation: turned by `theta` [rad], then tilted by the inertial unit's angles."""
     turned = np.array([1.0, 0.0, 0.0, 0.0])
     for angle, axis in ((theta, 3), (inertial.get("AngleY", 0.0), 2), (inertial.get("AngleX", 0.0), 1)):
         other = np.zeros(4)
@@ -95,7 +95,7 @@ def _rotation(inertial: Mapping[str, float], theta: float) -> LinkNumbers:
 
 
 def _product(one: LinkNumbers, other: LinkNumbers) -> LinkNumbers:
-    """Quaternions (w, x, y, z), one after the other."""
+    """Return the product of quaternions (w, x, y, z): first `other`, then `one`."""
     a, b = one[..., :1], other[..., :1]
     u, v = one[..., 1:], other[..., 1:]
     return np.concatenate((a * b - (u * v).sum(-1, keepdims=True), a * v + b * u + np.cross(u, v)), axis=-1)

@@ -1,4 +1,4 @@
-"""What the robot knows of its own weight: its published masses, whatever it carries today."""
+"""The robot's own model of its weight: the published masses, without any load."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -14,7 +14,7 @@ from lumen.project.packaged_models import mjcf_path
 
 
 class MassModel:
-    """The robot's model without a world, to compute with: nothing of it moves or is seen."""
+    """The robot's model without a world, for computing centres of mass."""
 
     def __init__(self, body: Body, models: Path) -> None:
         try:
@@ -38,7 +38,8 @@ class MassModel:
         self._soles = np.array([self.model.site(name).id for name in soles], np.intp)
 
     def pose(self, angles: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The centre of mass (3,) and the points of both soles below the ankles (2, 3) [m], in the torso's frame.
+        """Return the centre of mass (3,) and the points of both soles below the ankles (2, 3) [m], in the torso's
+        frame.
 
         `angles` are those of all joints in the body's order [rad].
         """
@@ -50,7 +51,7 @@ class MassModel:
         )
 
     def centre_of_mass(self, angles: Mapping[str, float]) -> NDArray[np.float64]:
-        """Where it is (3,) [m] in the torso's frame; joints that are not named [rad] stay as they were last."""
+        """Return the centre of mass (3,) [m] in the torso's frame; joints not in `angles` [rad] keep their last value."""
         for name, angle in angles.items():
             self._data.qpos[self._places[name]] = angle
         mujoco.mj_kinematics(self.model, self._data)
@@ -58,7 +59,7 @@ class MassModel:
         return self._seen(self._data.subtree_com[self._whole])
 
     def _seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points of the world, Shape (..., 3), in the torso's frame [m]."""
+        """Return points of the world, Shape (..., 3), in the torso's frame [m]."""
         if self._torso_is_world:
             return points.copy()
         seen: NDArray[np.float64] = (points - self._data.xpos[self._torso]) @ self._data.xmat[self._torso].reshape(3, 3)

@@ -13,16 +13,17 @@ from lumen.language.robots import Body
 from lumen.project.packaged_models import mjcf_path
 
 _GEAR_INERTIA, _GEAR_DAMPING = 0.01, 0.01
-"""Of the gears' last wheel [kg m^2], [N m s/rad]; chosen: with less the robot rattles where it rests."""
+"""Armature [kg m^2] and damping [N m s/rad] of the play's joint. Chosen: with smaller values the robot rattles at rest.
+"""
 
 _STIFFNESS, _HARDNESS = (0.005, 1.0), (0.99, 0.999, 0.001)
-"""How hard teeth meet: `solreflimit`, `solimplimit`."""
+"""The stiffness of the ends of the gears' play: `solreflimit`, `solimplimit`."""
 
 
 def loosen(robot: mjcf.RootElement, body: Body) -> None:
-    """Give each joint that turns a second one behind it, which no motor turns, free within the gear's play.
+    """Add backlash: give each turning joint a second joint behind it that no motor drives, free within the gear's play.
 
-    The first one is the motor's: its servo, friction and inertia end there. The link hangs behind the second.
+    The first joint keeps the motor's servo, friction and inertia. The link hangs on the second.
     """
     for name in body.joints:
         if name not in (*body.hands, *body.slides):
@@ -45,10 +46,10 @@ def loosen(robot: mjcf.RootElement, body: Body) -> None:
 
 
 def add_servos(robot: mjcf.RootElement, body: Body) -> None:
-    """Give joints without a servo of their name one, in place of other motors that drive them.
+    """Give each joint without a position servo of its name one, which replaces other motors of the joint.
 
-    It gives all the joint's `effort` where it is `body.give` [rad] off, and is damped critically (MuJoCo's `dampratio`,
-    from the masses in the zero posture). A joint that the model lacks, or whose effort nobody says, gets none.
+    A servo reaches the joint's full `effort` at an error of `body.give` [rad] and is critically damped (MuJoCo's
+    `dampratio`, with the masses in the zero posture). Joints that the model lacks, or without a known effort, get none.
     """
     if not body.give:
         return
@@ -80,11 +81,10 @@ def _serves(motor: mjcf.Element, name: str) -> bool:
 def load(
     body: Body, models: Path, hall: str, variation: Variation | None = None, *, backlash: bool = False
 ) -> mjcf.RootElement:
-    """The hall with the robot on its stage; `hall` is in `models`, or an absolute path.
+    """Return the hall with the robot on its stage; `hall` is relative to `models`, or absolute.
 
-    The robot is free to fall, unless its base is fixed: then it is part of what it stands on.
-
-    Raises RobotError where a file is no MJCF, or lacks what the simulation needs of it: all of that is listed.
+    The robot can fall, unless its base is fixed: then it is part of what it is mounted on. Raises RobotError if a file
+    is not MJCF or lacks elements that the simulation needs; the error lists all of them.
     """
     world = read_hall(models, hall)
     place(world, hall, body, models, world.find("site", STAGE_SITE), backlash=backlash)
@@ -94,7 +94,7 @@ def load(
 
 
 def read_hall(models: Path, hall: str) -> mjcf.RootElement:
-    """The hall without a robot; raises RobotError as `load` does."""
+    """Return the hall without a robot. Raises RobotError as `load` does."""
     world = _read(models / hall)
     _complain(hall, lacks_of_hall(world))
     return world
@@ -110,7 +110,7 @@ def place(
     backlash: bool,
     prefix: str = ROBOT_PREFIX,
 ) -> None:
-    """Put a robot into a world, where the site is; raises RobotError as `load` does."""
+    """Attach a robot to a world at `site`. Raises RobotError as `load` does."""
     robot = alone(body, models)
     robot.model = prefix
     if backlash:
@@ -125,7 +125,9 @@ def place(
 
 
 def alone(body: Body, models: Path) -> mjcf.RootElement:
-    """The robot without a world and without a free joint, to be attached to one; raises RobotError as `load` does."""
+    """Return the robot without a world and without a free joint, ready to be attached. Raises RobotError as `load`
+    does.
+    """
     if not body.mjcf:
         raise RobotModelError(f"{body.name} has no MJCF: run it with --robot naoqi or --robot recording")
     _complain("the description of the robot's body", lacks_of_body(body))
@@ -138,15 +140,15 @@ def alone(body: Body, models: Path) -> mjcf.RootElement:
 
 
 def compile_world(world: mjcf.RootElement) -> mujoco.MjModel:
-    """The world as MuJoCo has it; raises RobotError where it can't be built."""
+    """Compile the world with MuJoCo. Raises RobotError if MuJoCo can't build it."""
     try:
         return mjcf.Physics.from_mjcf_model(world).model.ptr
-    except Exception as error:  # the compiler raises whatever it stumbles over
+    except Exception as error:  # The compiler raises exceptions of many types.
         raise RobotModelError(f"MuJoCo cannot build the robot in its hall: {_plain(error)}") from error
 
 
 def _plain(error: Exception) -> str:
-    """What the compiler says, without dm_control's advice, its names of files and the lines of its own XML."""
+    """Return the compiler's message without dm_control's advice, hashes in file names and lines of the generated XML."""
     reason = " ".join(str(error).split()).rpartition("Error: ")[2]
     return re.sub(r"-[0-9a-f]{40}(?=\.)|, id \d+, line \d+", "", reason)
 
@@ -161,13 +163,13 @@ def _read(path: Path) -> mjcf.RootElement:
         raise RobotModelError(f"there is no model {path.name} in {path.parent.name}/")
     try:
         return mjcf.from_path(str(path))
-    except Exception as error:  # the parser raises whatever it stumbles over
+    except Exception as error:  # The parser raises exceptions of many types.
         reason = " ".join(str(error).split())
         raise RobotModelError(f"{path.name} is not MJCF: {reason}") from error
 
 
 def _differ(robot: mjcf.RootElement, body: Body) -> None:
-    """Give the robot the links and the camera of this body: several are written in one MJCF."""
+    """Set the links' inertias and the camera's field of view to this body's: several bodies share one MJCF."""
     for name, link in body.links.items():
         inertial = robot.find("body", name).inertial
         inertial.mass, inertial.pos, inertial.fullinertia = link.mass, link.centre, link.inertia

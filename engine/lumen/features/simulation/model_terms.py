@@ -1,20 +1,22 @@
-"""What the simulation calls the robot and its place in the hall, and how one robot differs from the next."""
+"""Names of the robot's elements and its place in the hall's model, and the variations between robots."""
 
 from dataclasses import dataclass
 
 ROBOT_PREFIX = "nao"
-"""What the names of the robot's elements begin with in the hall: `nao/` and its own name."""
+"""The prefix of the robot's elements in the hall: `nao/` and their own names."""
 
 STAGE_SITE = "stage"
-"""The site of the hall where the robot stands."""
+"""The site of the hall that the robot is placed on."""
 
 PLAY_SUFFIX = "Play"
-"""What the name of a joint's play in its gears ends with: `LKneePitchPlay`."""
+"""The suffix of the joint that models a joint's play: `LKneePitchPlay`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """How this robot and its hall differ from the model: factors of all masses and of the ground's friction."""
+    """A robot and hall that differ from the model."""
 
     mass: float = 1.0
+    """The factor of all masses."""
     friction: float = 1.0
+    """The factor of the ground's friction."""

@@ -1,4 +1,4 @@
-"""What a NAO feels and sees, as observables of dm_control's composer."""
+"""Observables of dm_control's composer for NAO's sensors."""
 
 import lumen.features.simulation.physics  # noqa: F401  # first: names what is not installed
 
@@ -13,17 +13,17 @@ from lumen.language.roles import SIDES
 
 
 def sole_sensors(body: Body) -> tuple[str, ...]:
-    """The sites of the force sensors under the soles, those of the left one first."""
+    """Return the names of the sites of the force sensors under the soles, the left sole's first."""
     force = body.roles.sensors.force
     return tuple(name for side in SIDES for name in force.get(side, ()))
 
 
 class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
-    """What a NAO, or another biped, feels and sees, besides what any Walker has: `joints_pos` and `joints_vel` are in
-    the body's order. What it has no sensor for is left out.
+    """The observables of a NAO or another biped besides those of any Walker; `joints_pos` and `joints_vel` are in the
+    body's order. Observables of missing sensors are left out.
 
-    Without noise: `lumen.features.simulation.imperfections` has what encoders and gyrometer of a real one add, as the
-    `corruptor` of an observable.
+    They have no noise: `lumen.features.simulation.imperfections` has the errors of real encoders and gyrometers, to be
+    used as the `corruptor` of an observable.
     """
 
     def __init__(self, entity: composer.Entity) -> None:
@@ -39,7 +39,7 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
 
     @composer.observable
     def tilt(self) -> observable.Generic:
-        """Roll and pitch of the torso, as the inertial unit's AngleX and AngleY [rad]."""
+        """The torso's roll and pitch, like the inertial unit's AngleX and AngleY [rad]."""
 
         def angles(physics: mjcf.Physics) -> np.ndarray:
             forward, left, up = physics.bind(self._entity.root_body).xmat[6:]
@@ -49,17 +49,17 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
 
     @composer.observable
     def camera_top(self) -> observable.Observable:
-        """What the robot sees with: uint8 of (height, width, 3)."""
+        """The image of the camera that the robot sees with: uint8, Shape (height, width, 3)."""
         return self._camera(0)
 
     @composer.observable
     def camera_bottom(self) -> observable.Observable:
-        """The other camera, where the model has one."""
+        """The image of the other camera, if the model has one."""
         return self._camera(1)
 
     @property
     def dynamic_sensors(self) -> list[observable.Observable]:
-        """Forces: those under its soles."""
+        """The observables of forces: those under the soles."""
         own = [self.soles] if "soles" in self._observables else []
         return [*own, *self._collect_from_attachments("dynamic_sensors")]
 
@@ -68,7 +68,7 @@ class NaoObservables(legacy_base.WalkerObservables):  # type: ignore[misc]
         return [touch[name] for name in sole_sensors(self._entity.body) if name in touch]
 
     def _cameras(self) -> list[mjcf.Element]:
-        """Those of the model, the one that the robot sees with first."""
+        """Return the model's cameras, the one that the robot sees with first."""
         eye = self._entity.body.roles.eyes.camera
         return sorted(self._entity.mjcf_model.find_all("camera"), key=lambda camera: camera.name != eye)
 

@@ -1,4 +1,4 @@
-"""Where the robot believes its feet to be, from where it began: by its encoders, never by looking."""
+"""The robot's estimate of its feet's places since its start, from encoders alone."""
 
 from collections.abc import Iterable, Mapping
 
@@ -14,8 +14,9 @@ _FEET = {"L": "left", "R": "right"}
 
 
 DRIFT_AFTER_SITTING, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_FALL = 0.1, 0.25, 0.6
-"""How far the robot may have moved when it stands again [m], after sitting, after lying on its back, and after lying on
-its belly or falling. Six robots of any weight on any floor were off by 0.05, 0.13 and 0.47 m at most."""
+"""How far the robot may have moved when it stands again [m]: after sitting, after lying on its back, and after lying on
+its belly or falling. Six robots of various weights on various floors were off by at most 0.05, 0.13 and 0.47 m.
+"""
 
 
 DRIFT_AFTER_CATCH = 0.1
@@ -25,8 +26,8 @@ DRIFT_AFTER_CATCH = 0.1
 class Odometry:
     """Both soles in the frame of the robot's start. `stage`, in the same frame, bounds where they may go.
 
-    `doubt` is how far from there the robot may really be [m] after it was down: nothing measures how it slid. What its
-    steps add to that is in its `whereabouts`.
+    `doubt` is how far the robot may really be from there [m] after it was down, since nothing measures how it slid. The
+    growing error of its steps is part of `whereabouts`.
     """
 
     def __init__(self, legs: LegGeometry, stage: Stage | None) -> None:
@@ -39,42 +40,42 @@ class Odometry:
 
     @property
     def whereabouts(self) -> Whereabouts:
-        """Where the robot believes to be, and how far that may be wrong."""
+        """The estimate of the robot's position and its possible error."""
         return self._reckoning.whereabouts
 
     def lose(self, posture: str) -> None:
-        """The robot is down, in that posture or on its way from it; or it has fallen, where that is empty."""
+        """Note that the robot is down, in that posture or leaving it; an empty posture means that it has fallen."""
         if not self._down:
             self._down, self._before = True, self.doubt
         self.doubt = self._reckoning.slid = max(self.doubt, self._before + drift_after(posture))
 
     def stumble(self, heading: float) -> None:
-        """The feet stand after steps that caught a fall, between them that heading [rad]; they may have slid."""
+        """Note that the feet stand, with that heading [rad], after steps that caught a fall; they may have slid."""
         between = middle(self.feet)
         right = Pose(between.x, between.y, heading)
         self.land({side: right.then(foot.seen_from(between)) for side, foot in self.feet.items()})
         self.doubt = self._reckoning.slid = self.doubt + DRIFT_AFTER_CATCH
 
     def keep(self, heading: float) -> None:
-        """The robot stands, heading there as the gyrometer feels it [rad]; what it has turned meanwhile counts."""
+        """Note that the robot stands with this heading by the gyrometer [rad]; turns since it was down are included."""
         if self._down:
             self._down, (x, y, theta) = False, self._here
             self._believe(Pose(x, y, wrap(theta + heading - self._heading)))
         self._heading = heading
 
     def feel(self, angles: Mapping[str, float]) -> Feet:
-        """Both feet, standing as the legs' angles [rad] say; the point between them is where it was."""
+        """Return both feet, standing with these angles of the legs [rad]; the point between them stays the same."""
         seen: Feet = {"L": Pose(), "R": self.legs.foot_from("L", angles)}
         between = middle(seen)
         self.feet = {side: self._here.then(foot.seen_from(between)) for side, foot in seen.items()}
         return self.feet
 
     def pass_by(self, feet: Feet) -> None:
-        """Believe that the robot has come there, on its way."""
+        """Set the estimate to the middle of these feet, while a walk is under way."""
         self._believe(middle(feet))
 
     def land(self, feet: Feet) -> None:
-        """Believe that the feet stand there."""
+        """Set the estimate to these feet, which stand."""
         self.feet = feet
         self._believe(middle(feet))
 
@@ -83,10 +84,10 @@ class Odometry:
         self._reckoning.follow(*here)
 
     def check(self, steps: Iterable[Footstep], drift: float = 0.0) -> None:
-        """Raises RobotError for a step farther beyond the stage than `drift` [m], or than the feet stand already.
+        """Raise RobotError if a step goes more than `drift` [m] beyond the stage, unless the feet are that far already.
 
-        In doubt, the stage is that much smaller on every side: wherever the robot really is, it stays on it. A stage
-        with no room left for that keeps the robot where it is.
+        With a doubtful position the stage is smaller by `doubt` on every side, so that the robot stays on it wherever
+        it really is. If no room is left, the robot stays where it is.
         """
         if self._stage is None:
             return
@@ -112,7 +113,7 @@ class Odometry:
 
 
 def drift_after(posture: str) -> float:
-    """How far a robot that was in that posture may be from where it was [m]; empty is after a fall."""
+    """Return how far a robot that was in that posture may have moved [m]; an empty posture means after a fall."""
     if posture == "LyingBack":
         return DRIFT_AFTER_LYING_BACK
     return DRIFT_AFTER_SITTING if posture and not lies(posture) else DRIFT_AFTER_FALL

@@ -1,4 +1,4 @@
-"""MuJoCo and dm_control, for all other files of this folder: they are imported here, after OpenGL is chosen.
+"""MuJoCo and dm_control, imported here for all other files of this folder, after OpenGL is chosen.
 
 Raises MissingExtraError if they are not installed.
 """

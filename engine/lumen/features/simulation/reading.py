@@ -1,4 +1,4 @@
-"""`imperfections:` of lumen.yaml, from its data to `Imperfections`."""
+"""The section `imperfections:` of lumen.yaml, read into `Imperfections`."""
 
 from collections.abc import Mapping
 from typing import Any

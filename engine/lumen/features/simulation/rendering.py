@@ -1,4 +1,4 @@
-"""Pictures of the simulated world, drawn by whichever thread asks for them."""
+"""Pictures of the simulated world, which any thread can draw."""
 
 import atexit
 import copy
@@ -18,9 +18,10 @@ HIDDEN = mujoco.mjNGROUP - 1
 
 
 class FrustumCulling:
-    """Hides geoms of one model that end outside of the cone around a camera's picture; planes have no end.
+    """Hides geoms of a model that are entirely outside the cone around a camera's picture; planes are never hidden.
 
-    It sets their group. The picture is the same where nothing casts shadows: most of a robot is behind its own eyes.
+    It changes the geoms' groups. Without shadows the picture stays the same. Most geoms of a robot are behind its own
+    cameras, so hiding them saves time.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -28,7 +29,7 @@ class FrustumCulling:
         self._planes = model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE
 
     def cull(self, data: mujoco.MjData, camera: str, aspect: float) -> None:
-        """Leave what this camera of the model may see, in a picture so many times as wide as high."""
+        """Show only what this camera of the model may see; `aspect` is the picture's width divided by its height."""
         model, eye = self._model, data.camera(camera)
         slope = tan(radians(model.camera(camera).fovy[0]) / 2) * hypot(1.0, aspect)
         away = data.geom_xpos - eye.xpos
@@ -39,25 +40,26 @@ class FrustumCulling:
 
 
 PixelArray = NDArray[np.uint8]
-"""Shape (height, width, 3), RGB."""
+"""An RGB image, Shape (height, width, 3)."""
 
 
 def available() -> str | None:
-    """Why nothing can be drawn and which package to install; None where it can."""
+    """Return why nothing can be drawn and which package to install; None if drawing works."""
     return gl.missing()
 
 
 @dataclass(frozen=True, slots=True)
 class RenderQuality:
-    """What a picture costs: size of the shadow map and antialiasing samples, 0 for none; dark spots under feet.
-
-    What is round has so many `sides` around and from top to bottom, or as many as the model says.
-    """
+    """The quality, and so the cost, of a picture."""
 
     shadows: int = 0
+    """The size of the shadow map [px], 0 for no shadows."""
     samples: int = 0
+    """The samples per pixel against aliasing, 0 for none."""
     contact: bool = False
+    """Whether to draw dark spots under the feet."""
     sides: tuple[int, int] | None = None
+    """The faces of round shapes, around and from top to bottom; None for as many as the model has."""
 
 
 CAMERA_QUALITY = RenderQuality(sides=(20, 12))
@@ -66,19 +68,26 @@ FILM_QUALITY = RenderQuality(shadows=2048, samples=4, contact=True)
 
 @dataclass(frozen=True, slots=True)
 class RenderState:
-    """All that a picture of this moment depends on, copied: drawing it later disturbs nobody."""
+    """A copy of everything that a picture of this moment depends on, so that it can be drawn later."""
 
     positions: NDArray[np.float64]
+    """MuJoCo's `qpos`."""
     visitor_place: NDArray[np.float64]
+    """The position of the visitor's body."""
     visitor_turn: NDArray[np.float64]
+    """The rotation of the visitor's body, a quaternion."""
     colours: NDArray[np.float32]
+    """The materials' colours."""
     sizes: NDArray[np.float64]
+    """The geoms' sizes."""
     places: NDArray[np.float64]
+    """The geoms' positions in their bodies."""
     bounds: NDArray[np.float64]
+    """The radii of the geoms' bounding spheres."""
 
     @classmethod
     def of(cls, model: mujoco.MjModel, data: mujoco.MjData) -> "RenderState":
-        """The scene as it is now; about 9 kB are copied."""
+        """Copy the present scene, about 9 kB."""
         return cls(
             data.qpos.copy(),
             data.mocap_pos.copy(),
@@ -91,7 +100,7 @@ class RenderState:
 
 
 class SceneRenderer:
-    """Draws scenes of one model; every thread that uses it gets its own OpenGL context, made at its first picture."""
+    """Draws scenes of one model; each thread that uses it gets an OpenGL context of its own, made at its first picture."""
 
     def __init__(self, model: mujoco.MjModel, quality: RenderQuality, soles: Soles = NO_SOLES) -> None:
         self._model, self._quality, self._soles = model, quality, soles
@@ -106,7 +115,9 @@ class SceneRenderer:
         *,
         field_of_view: float | None = None,
     ) -> PixelArray:
-        """The scene through a camera of the model, or one anywhere whose picture's height has that angle [deg]."""
+        """Return the scene as a camera of the model, or a free one, sees it; `field_of_view` is a free camera's height
+        [deg].
+        """
         cameras: dict[tuple[int, int], _Canvas] = self._local.__dict__.setdefault("canvases", {})
         canvas = cameras.get((width, height))
         if canvas is None:
@@ -114,13 +125,13 @@ class SceneRenderer:
         return canvas.draw(scene, camera, field_of_view)
 
     def close(self) -> None:
-        """Let go of this thread's contexts; those of other threads stay until the program ends."""
+        """Close the contexts of the calling thread; those of other threads stay until the program ends."""
         for canvas in self._local.__dict__.pop("canvases", {}).values():
             canvas.close()
 
 
 class _Canvas:
-    """A renderer with a model and a state of its own, for one thread and one size."""
+    """A renderer with a model and state of its own, for one thread and one size of picture."""
 
     def __init__(self, model: mujoco.MjModel, quality: RenderQuality, soles: Soles, width: int, height: int) -> None:
         self._model = copy.copy(model)
@@ -132,7 +143,7 @@ class _Canvas:
         self._model.vis.global_.offheight = max(height, self._model.vis.global_.offheight)
         self._data = mujoco.MjData(self._model)
         self._renderer = mujoco.Renderer(self._model, height, width, max_geom=2000)
-        atexit.register(self.close)  # after mujoco's own, and so before it: then OpenGL would be gone
+        atexit.register(self.close)  # after mujoco's own handler, so it runs before that one ends OpenGL
         self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = bool(quality.shadows)
         self._contact = ContactShadows(self._model, soles) if quality.contact else None
         self._culling, self._aspect = None if quality.shadows else FrustumCulling(self._model), width / height
@@ -140,6 +151,7 @@ class _Canvas:
     def draw(
         self, scene: RenderState, camera: str | mujoco.MjvCamera, field_of_view: float | None = None
     ) -> PixelArray:
+        """Return the image of `scene` through `camera`."""
         model, data = self._model, self._data
         if field_of_view is not None:
             model.vis.global_.fovy = field_of_view
@@ -159,5 +171,6 @@ class _Canvas:
         return pixels
 
     def close(self) -> None:
+        """Close the renderer."""
         atexit.unregister(self.close)
         self._renderer.close()

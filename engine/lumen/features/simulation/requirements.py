@@ -1,4 +1,4 @@
-"""What the simulation asks of a robot's and a hall's MJCF."""
+"""The elements that the simulation needs in the MJCF of a robot and a hall."""
 
 from collections.abc import Iterable, Iterator
 
@@ -7,15 +7,15 @@ from lumen.language.robots import Body
 from lumen.language.roles import LEG_ROLES, SIDES
 
 MAX_TIMESTEP = 0.01
-"""The longest timestep [s]: the joints get their goals as often."""
+"""The longest timestep [s]: that of the commands to the joints."""
 MIN_TIMESTEP = 0.0001
-"""The shortest [s]: with it no machine keeps real time any more."""
+"""The shortest timestep [s]: with a shorter one no computer keeps up with real time."""
 
 _HALL = (("site", "stage"), ("body", "visitor"), ("site", "visitor_face"))
 
 
 def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
-    """What a robot's MJCF does not have of all that its body and the roles of its parts name, in words."""
+    """Return, in words, what a robot's MJCF lacks of all elements that its body and the roles of its parts name."""
     roles, base = body.roles, body.roles.base
     driven = [name for name in body.joints if name not in body.shared]
     named = [
@@ -38,13 +38,13 @@ def lacks_of_robot(robot: mjcf.RootElement, body: Body) -> list[str]:
 
 
 def wheel_motor(robot: mjcf.RootElement, wheel: str) -> str:
-    """The velocity actuator that turns a wheel's joint, empty where there is none."""
+    """Return the velocity actuator that turns a wheel's joint, empty if there is none."""
     motors = (motor for motor in robot.find_all("actuator") if motor.tag == "velocity")
     return next((motor.name for motor in motors if motor.joint is not None and motor.joint.name == wheel), "")
 
 
 def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
-    """What a hall's MJCF does not have, in words."""
+    """Return, in words, what a hall's MJCF lacks."""
     found = list(_lacks(hall, _HALL))
     visitor = hall.find("body", "visitor")
     if visitor is not None and not visitor.mocap:
@@ -60,7 +60,7 @@ def lacks_of_hall(hall: mjcf.RootElement) -> list[str]:
 
 
 def lacks_of_body(body: Body) -> list[str]:
-    """What a body's description does not have, in words."""
+    """Return, in words, what the description of a body lacks."""
     roles = body.roles
     if not roles.torso:
         return ["the role `torso`"]

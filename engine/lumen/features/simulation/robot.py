@@ -1,4 +1,4 @@
-"""The simulated NAO behind the `Robot` seam, in a hall behind the `Hall` seam."""
+"""The simulated robot behind the `Robot` interface, in a hall behind the `Hall` interface."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property
@@ -48,7 +48,7 @@ from lumen.robot.skill_runner import SkillRunner
 
 
 class RobotCamera:
-    """Takes images, to be drawn later by another thread, and computes where a point appears in them."""
+    """The robot's camera: takes images that another thread draws later, and computes where points appear in them."""
 
     def __init__(self, world: World, camera: Camera) -> None:
         self._world, self._camera = world, camera
@@ -56,7 +56,7 @@ class RobotCamera:
         self._renderer = None if available() else SceneRenderer(world.model, CAMERA_QUALITY)
 
     def image(self, now: float) -> Image | None:
-        """The image of this moment; None where nothing can be drawn."""
+        """Return an image of this moment, drawn when its pixels are requested; None if nothing can be drawn."""
         if self._renderer is None:
             return None
         studio, camera, name = self._renderer, self._camera, self._name
@@ -68,33 +68,33 @@ class RobotCamera:
         return Image(now, pixels)
 
     def pixel(self, point: tuple[float, float, float]) -> tuple[float, float] | None:
-        """Where a point of the hall [m] appears [px]; None outside the image or behind."""
+        """Return where a point of the hall [m] appears in the image [px]; None if it is outside the image or behind."""
         view = self._world.data.camera(self._name)
         right, up, back = view.xmat.reshape(3, 3).T @ (point - view.xpos)
         return project((-float(back), -float(right), float(up)), self._camera)
 
     def close(self) -> None:
-        """Let go of this thread's OpenGL context."""
+        """Close this thread's OpenGL context."""
         if self._renderer:
             self._renderer.close()
 
 
 class AimController:
-    """Moves the goals of joints that no command owns; a later aim replaces an earlier one, joint by joint."""
+    """Moves the goals of joints that no command owns; for each joint a later aim replaces an earlier one."""
 
     def __init__(self, motors: Motors) -> None:
         self._motors = motors
         self._aims: dict[str, tuple[float, float]] = {}
 
     def aim(self, aim: Aim) -> None:
-        """Begin."""
+        """Begin to move these joints, each at the share `aim.speed` of its greatest speed."""
         speeds = self._motors.envelope.speed
         for name, angle in aim.angles.items():
             speed = float(speeds[self._motors.index[name]]) * aim.speed
             self._aims[name] = angle, speed
 
     def advance(self, dt: float, free: Callable[[str], bool]) -> None:
-        """Live `dt` [s]; an aim ends where it is reached, or where its joint is not free any more."""
+        """Advance by `dt` [s]; the aim of a joint ends when it is reached or when `free` no longer allows it."""
         moved = {}
         for name, (angle, speed) in list(self._aims.items()):
             if not free(name):
@@ -109,22 +109,22 @@ class AimController:
 
 
 _EMPTY = "battery-empty"
-"""The id of the rest that an empty battery takes."""
+"""The id of the `Rest` that an empty battery triggers."""
 
 STANDING_TILT = 0.3
-"""A torso that leans less than this means that the robot stands [rad]."""
+"""A torso that leans less than this counts as standing [rad]."""
 
 _CONDITION_EVERY = 10
-"""Control periods between two looks at battery and heat."""
+"""The number of control periods between two updates of battery and heat."""
 
 
 class SimulatedRobot(ExecutingRobot):
-    """A NAO that stands on its stage and lives when `advance` is called, by the thread that calls it.
+    """A robot under physics that stands on its stage; its time passes only in `advance`, in the caller's thread.
 
-    `models` is the folder of the MJCF files and `hall` the name of one. The same seed and the same calls give the same
-    run. `imperfections` are those of a NAO where none are given; `stage` bounds where its feet may go. In a `world`
-    that it shares, with one `figure` of a visitor, whoever steps that calls `act` and `feel`. Raises RobotError where
-    the models can't be used.
+    `models` is the folder of the MJCF files, `hall` the name of one of them. The same seed and calls give the same run.
+    Without `imperfections` it has those of a NAO; `stage` bounds its feet. If it shares a `world` and the visitor's
+    `figure` with others, the owner of the world calls `act` and `feel` instead of `advance`. Raises RobotError if the
+    models are unusable.
     """
 
     def __init__(
@@ -178,7 +178,7 @@ class SimulatedRobot(ExecutingRobot):
         self._until = 0.0
 
     def _made_base(self, models: Path, hazards: Hazards, lacking: Imperfections, stage: Stage | None) -> RobotBase:
-        """Make the base of this body. Raises LumenError with the name of the package if its row is faulty."""
+        """Make the base of this body. Raises LumenError, with the name of the package, if the base's row is faulty."""
         base = self.body.roles.base
         feature, simulate = owner("bases", base.kind), base.row.simulate
 
@@ -195,11 +195,12 @@ class SimulatedRobot(ExecutingRobot):
 
     @property
     def time(self) -> float:
-        """How long the robot has lived [s]."""
+        """The robot's time since its start [s]."""
         return self._ticks * CONTROL_PERIOD
 
     @property
     def fallen(self) -> bool:
+        """Whether the robot has fallen."""
         return self._skills.fallen
 
     @property
@@ -208,17 +209,17 @@ class SimulatedRobot(ExecutingRobot):
         return self._skills.awake
 
     def speak_with(self, voice: SpeechPlayback) -> None:
-        """Say texts with this voice from now on, as long as it takes."""
+        """Use this voice for texts; it decides how long they take."""
         self._skills.voice = voice
 
     def sound_with(self, playback: SoundPlayback) -> None:
-        """Play sound files with this from now on."""
+        """Use this player for sound files."""
         self._skills.sounds = playback
 
     def advance(self, dt: float) -> None:
-        """Live `dt` [s] of physics, in whole control periods: what is left over is lived next time.
+        """Advance by `dt` [s] in whole control periods; the remainder is kept for the next call.
 
-        Raises RobotError where the models let the simulation become unstable.
+        Raises RobotError if the models make the simulation unstable.
         """
         self._until += dt
         while self.time + CONTROL_PERIOD <= self._until + 1e-9:
@@ -227,6 +228,7 @@ class SimulatedRobot(ExecutingRobot):
             self.feel()
 
     def start(self, id: str, command: RobotCommand) -> None:
+        """Begin a command; `Aim` and `Live` have no end and no answer."""
         if isinstance(command, Live):
             self._life.live(command)
             return
@@ -239,10 +241,12 @@ class SimulatedRobot(ExecutingRobot):
             self._life.led(aim.angles, self.time)
 
     def poll(self) -> Sequence[Event]:
+        """Return the events since the last call."""
         events, self._events = self._events, []
         return events
 
     def read(self, sense: Sense) -> Reading | None:
+        """Return the present reading of a sense, None if the robot lacks it."""
         measure = self._senses.get(sense)
         return measure() if measure else None
 
@@ -278,26 +282,29 @@ class SimulatedRobot(ExecutingRobot):
         return Battery(self.time, condition.percentage, condition.plugged, condition.charging)
 
     def close(self) -> None:
+        """Release the camera and end the programs of skills."""
         self._skill_runner.close()
         if self._camera:
             self._camera.close()
 
     def place(self, visitor: Visitor | None) -> None:
+        """Put the visitor there, or remove it with None."""
         self.figure.place(visitor)
 
     def face(self) -> tuple[float, float] | None:
+        """Return where the visitor's face appears in the image [px]; None if it does not."""
         face = self.figure.face()
         return self._camera.pixel(face) if face and self._camera else None
 
     def touch(self, sensor: str, pressed: bool) -> None:
-        """Press or release a tactile sensor. Raises UsageError for one that the robot does not have."""
+        """Press or release a tactile sensor. Raises UsageError if the robot lacks it."""
         if sensor not in self._pressed:
             raise UsageError(f"no sensor `{sensor}`: {did_you_mean(sensor, self._pressed, 'there are')}")
         (self._held.add if pressed else self._held.discard)(sensor)
         self._feel_touch({sensor})
 
     def _feel_touch(self, touched: Collection[str] = ()) -> None:
-        """Notice which tactile sensors are pressed: `touched` by a hand, or by what stands in the hall."""
+        """Update the pressed tactile sensors and queue events of changes; `touched` are those that a hand touched."""
         now = self._held | self._tactile.pressed()
         for sensor, before in self._pressed.items():
             if before != (sensor in now):
@@ -308,6 +315,7 @@ class SimulatedRobot(ExecutingRobot):
                 self._events.append(Event("released" if before else "touched", {"sensor": sensor}, self.time, cause=by))
 
     def sound(self) -> None:
+        """Let the robot hear a sound from the visitor's face."""
         face = self.figure.face()
         if face is not None and self.body.camera:
             torso = self.world.data.body(f"{self.world.prefix}/{self.body.roles.torso}")
@@ -319,6 +327,7 @@ class SimulatedRobot(ExecutingRobot):
             self._life.heard(away["yaw"], away["pitch"], self.time)
 
     def plug(self, plugged: bool) -> None:
+        """Connect or disconnect the charger."""
         self.condition.plugged = plugged
 
     def _notice(self, event: Event) -> None:
@@ -333,7 +342,7 @@ class SimulatedRobot(ExecutingRobot):
         return activity
 
     def act(self) -> None:
-        """Move the motors for one control period, before its world steps."""
+        """Move the motors for one control period, before the world's step."""
         now = self.time
         self._events += [e for e in self._executor.advance(now) if not e.name.endswith(f".command.{_EMPTY}")]
         self._aiming.advance(CONTROL_PERIOD, self._free)
@@ -348,12 +357,14 @@ class SimulatedRobot(ExecutingRobot):
             self.motors.drive(trim, CONTROL_PERIOD)
 
     def feel(self) -> None:
-        """Notice what has become of it in that period, after its world has stepped."""
+        """Update the robot's condition after the world's step."""
         self._ticks += 1
         self._watch(self.time)
 
     def _live(self, now: float) -> None:
-        """Move a little what nothing else moves; a robot that is not on its feet moves its head at most."""
+        """Add small lifelike movements to joints that nothing else moves; only the head's if the robot is not on its
+        feet.
+        """
         owner = self._executor.owner
         free = {part for part in WHOLE_BODY if not (self.fallen or owner(part))}
         if not self._skills.upright:
@@ -364,11 +375,11 @@ class SimulatedRobot(ExecutingRobot):
         self.lights.wear_eyes(self._life.eyes(now))
 
     def _free(self, joint: str) -> bool:
-        """Whether no command owns that joint and it has power."""
+        """Return whether no command owns that joint and the motors are on."""
         return self.awake and not self._executor.owner(self._skills.part(joint))
 
     def _watch(self, now: float) -> None:
-        """Notice a fall; every now and then, battery and heat."""
+        """Detect a fall; update battery and heat every few periods."""
         tilt = self.world.tilt
         self._feel_touch()
         upright = self._skills.upright
@@ -391,13 +402,13 @@ class SimulatedRobot(ExecutingRobot):
             self._calm()
 
     def _calm(self) -> None:
-        """Live less where motors are warm, or the battery is low."""
+        """Reduce lifelike movements of warm motors, and of all if the battery is low."""
         for part, joints in self.body.parts.items():
             warmest = max((self.condition.temperatures[self.motors.index[joint]] for joint in joints), default=0.0)
             self._vigour[part] = vigour(float(warmest), self.condition.percentage)
 
     def _exhaust(self) -> None:
-        """With an empty battery, rest at once: what is left is enough for the way to Crouch."""
+        """Rest at once when the battery becomes empty: the remaining energy suffices to reach Crouch."""
         if self.condition.empty and self.awake and not self._exhausted:
             self._executor.start(_EMPTY, Rest())
         self._exhausted = self.condition.empty

@@ -1,4 +1,4 @@
-"""What the robot feels of itself: encoders and gyrometer, in what they fall short."""
+"""The robot's encoders and gyrometer, with their errors."""
 
 from math import atan2, exp, hypot
 
@@ -22,11 +22,10 @@ from lumen.motion.gait.poses import wrap
 
 
 class MeanRates:
-    """How fast its axes have turned [rad/s] on average, about themselves, in the control period that ends.
+    """The average rates [rad/s] at which the axes turned about themselves in the last control period.
 
-    A gyrometer filters, and so tells the mean. Who reads an instant of each period has a robot turn 3 % too slowly:
-    motors that are told where to go once in a period jerk with it. `axes` (9,) change with the world; without any
-    nothing ever turns.
+    A real gyrometer filters and so reports averages. An instantaneous rate per period would make the robot turn 3 % too
+    slowly, because motors jerk once in each period. `axes` (9,) change with the world; None always gives 0.
     """
 
     def __init__(self, axes: NDArray[np.float64] | None) -> None:
@@ -35,7 +34,7 @@ class MeanRates:
         self._begun = False
 
     def feel(self) -> tuple[float, float, float]:
-        """Roll to the right, pitch forward, turn to the left; nothing in the first period."""
+        """Return the rates of rolling right, pitching forward and turning left; 0 in the first period."""
         if self._axes is not None:
             self._before, self._now = self._now, self._before
             mujoco.mju_mat2Quat(self._now, self._axes)
@@ -47,16 +46,16 @@ class MeanRates:
 
 
 LEARNING_PERIODS = 1200
-"""How many control periods at rest count."""
+"""The time constant of the learned bias, in control periods at rest."""
 
 REST, REST_SPREAD = 10, 0.05
-"""At rest what it tells hardly changes: by so much at most [rad/s], in so many control periods."""
+"""At rest, the readings of so many control periods differ by at most so much [rad/s]."""
 
 
 class GyroCalibration:
-    """Learns the gyrometer's `bias` [rad/s], Shape (3,), whenever the robot is at rest; begins with one known before.
+    """Learns the gyrometer's `bias` [rad/s], Shape (3,), whenever the robot is at rest, starting from a known one.
 
-    A robot that breathes and shifts its weight turns to and fro: over twelve seconds that is nothing.
+    Breathing and shifting weight turn the robot to and fro, which averages to zero over twelve seconds.
     """
 
     def __init__(self, bias: NDArray[np.float64]) -> None:
@@ -65,7 +64,7 @@ class GyroCalibration:
         self._next = 0
 
     def feel(self, rates: NDArray[np.float64], *, at_rest: bool) -> None:
-        """Take note of what it tells in a control period [rad/s]; `at_rest`: nothing moves the robot on purpose."""
+        """Update the bias with a period's readings [rad/s]; `at_rest` means that nothing moves the robot on purpose."""
         self._told[self._next] = rates if at_rest else np.inf
         self._next = (self._next + 1) % REST
         if at_rest and max((np.maximum.reduce(self._told) - np.minimum.reduce(self._told)).tolist()) < REST_SPREAD:
@@ -73,10 +72,10 @@ class GyroCalibration:
 
 
 class Gyrometer:
-    """Rates with noise and a bias that grows as the robot warms up, less the bias that it has learned at rest.
+    """A gyrometer with noise and a bias that drifts as the robot warms up; it subtracts the bias learned at rest.
 
-    The robot has rested before the run began: what it does not know of the bias then is a residue. Each robot's seed
-    has its own bias.
+    The robot is assumed to have rested before the run, so only a small error of the learned bias remains. Each seed has
+    its own bias.
     """
 
     def __init__(self, lacking: Imperfections, seed: int) -> None:
@@ -89,7 +88,7 @@ class Gyrometer:
         self._periods = 0
 
     def feel(self, rates: tuple[float, float, float], errors: NDArray[np.float64], *, at_rest: bool) -> list[float]:
-        """How fast it believes to turn [rad/s], a control period later; `errors` are draws of a normal distribution."""
+        """Return the measured rates [rad/s] one control period later; `errors` are draws of a normal distribution."""
         self._periods += 1
         warmer = WARMING * (1.0 - exp(-self._periods * CONTROL_PERIOD / WARMING_TIME))
         told: NDArray[np.float64] = self._bias + warmer * self._drift + rates + self._noise * errors
@@ -102,12 +101,11 @@ _INERTIAL = [f"{kind}{axis}" for kind in ("Angle", "Gyroscope", "Accelerometer")
 
 
 class BodySensors:
-    """Reads joint angles and turning speeds as the robot's own computer would; the same seed gives the same noise.
+    """Reads joint angles and rates as the robot's own computer would; the same seed gives the same noise.
 
-    `gyro` is how fast the torso rolls to the right and pitches forward [rad/s], `turning` how fast it turns left, less
-    the bias that it has learned; `heading` is how far it has turned there since the start [rad]; all as felt last. The
-    heading is right again to 3 degrees when the robot stands after it was down: the attitude follows the gyrometer, and
-    where up is keeps it level.
+    `gyro` are the last measured rates of rolling right and pitching forward [rad/s], `turning` that of turning left,
+    less the learned bias. `heading` is the angle turned left since the start [rad]. When the robot stands again after
+    lying or sitting, the heading is right to 3 degrees: the attitude follows the gyrometer, and gravity keeps it level.
     """
 
     def __init__(self, world: World, lacking: Imperfections, seed: int = 0) -> None:
@@ -116,22 +114,22 @@ class BodySensors:
         self._noise = ENCODER_NOISE if lacking.noise else 0.0
         self._gyrometer, self._rates = Gyrometer(lacking, seed), MeanRates(world.gyro_axes)
         self.angles = world.angles
-        """Where the encoders say the joints are."""
+        """The angles measured by the encoders [rad; hands 0..1]."""
         self.gyro, self.turning = (0.0, 0.0), 0.0
         self.heading = 0.0
         self._attitude, self._axes, self._turns = np.array([1.0, 0.0, 0.0, 0.0]), np.eye(3).ravel(), np.zeros(3)
 
     @property
     def up(self) -> tuple[float, float, float]:
-        """Where up is, in the torso's axes (forward, left, up), as the inertial unit tells."""
+        """The unit vector that points up, in the torso's axes (forward, left, up), measured by the inertial unit."""
         return self._world.up
 
     @property
     def inertial(self) -> dict[str, float]:
-        """The inertial unit as NAOqi names it: angles [rad], speeds [rad/s], accelerations [m/s^2] in the torso's axes.
+        """The inertial unit by NAOqi's names: angles [rad], rates [rad/s], accelerations [m/s^2] in the torso's axes.
 
-        X is forward, Y left, Z up; AngleX is roll, AngleY pitch, AngleZ how far the robot has turned since the start.
-        At rest the accelerometer feels the floor push upwards: Z is 9.81.
+        X is forward, Y left, Z up; AngleX is roll, AngleY pitch, AngleZ the angle turned since the start. At rest the
+        accelerometer measures the floor's upward force: Z is 9.81.
         """
         forward, left, up = self._world.up
         turning, pushed = (self.gyro[0], self.gyro[1], self.turning), self._world.acceleration
@@ -139,9 +137,9 @@ class BodySensors:
         return {name: round(v, 4) for name, v in zip(_INERTIAL, (*angles, *turning, *pushed), strict=True)}
 
     def feel(self, *, at_rest: bool) -> None:
-        """Read encoders and gyrometer, once in each control period.
+        """Read encoders and gyrometer; call it once in each control period.
 
-        `at_rest` is whether nothing moves the legs on purpose: then what turns is the gyrometer's bias.
+        `at_rest` means that nothing moves the legs on purpose: then the gyrometer's reading is its bias.
         """
         angles, step = self._world.angles, self._step
         errors = self._random.standard_normal(len(angles) + 3)
@@ -152,7 +150,7 @@ class BodySensors:
         self._turn(roll, pitch, yaw)
 
     def _turn(self, roll: float, pitch: float, yaw: float) -> None:
-        """Turn the believed attitude as fast as the gyrometer says, and about level axes to where up is felt."""
+        """Turn the estimated attitude by the gyrometer's rates, and level it with the measured direction of up."""
         axes, (x, y, z) = self._axes, self._world.up
         _, _, _, _, _, _, u, v, w = axes.tolist()
         self._turns[:] = (

@@ -1,4 +1,4 @@
-"""Robots under physics."""
+"""Sets up robots under physics."""
 
 from collections.abc import Mapping
 
@@ -11,14 +11,14 @@ from lumen.run.setup import RobotRequest, Setup
 
 
 def set_up(request: RobotRequest) -> Setup:
-    """Return a robot on its feet, in the simulation's time."""
+    """Return a standing robot with a clock of simulated time."""
     project = request.project
     robot = SimulatedRobot(project.body, *model_files(project), imperfections=lacking_in(request), stage=project.stage)
     return Setup(robot, SimulatedClock(robot.advance, request.pace), robot, available() or "")
 
 
 def set_up_house(requests: Mapping[str, RobotRequest]) -> dict[str, Setup]:
-    """Return robots on their feet in one hall, with one clock."""
+    """Return standing robots in one hall with one shared clock."""
     from lumen.features.simulation.shared_hall import HallRobot, SharedHall
 
     robots = {

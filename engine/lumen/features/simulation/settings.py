@@ -1,33 +1,35 @@
-"""In what a simulated robot falls short of its model: each is a switch, how much of it stands in the simulation."""
+"""Switches for the imperfections of a simulated robot: False makes the robot perfect in that respect."""
 
 from dataclasses import dataclass, fields
 
 
 @dataclass(frozen=True, slots=True)
 class Imperfections:
-    """What is False the robot does perfectly.
-
-    Sensors have `noise`, encoders tell whole steps (`quantisation`), the gyrometer turns while nothing does
-    (`gyro_bias`). A command acts a control period later (`latency`), gears have play (`backlash`), the torque of a
-    motor falls with its speed (`torque_speed`), and with the battery's voltage (`supply`).
-    """
+    """The imperfections of a simulated robot."""
 
     noise: bool = True
+    """Sensors have noise."""
     quantisation: bool = True
+    """Encoders give whole steps."""
     gyro_bias: bool = True
+    """The gyrometer measures a turn while there is none."""
     latency: bool = True
+    """A command acts one control period later."""
     backlash: bool = True
+    """Gears have play."""
     torque_speed: bool = True
+    """The torque of a motor falls with its speed."""
     supply: bool = True
+    """The torque of a motor falls with the battery's voltage."""
 
 
 IMPERFECTIONS = tuple(field.name for field in fields(Imperfections))
 
 
 def only(names: tuple[str, ...]) -> Imperfections:
-    """A robot with these imperfections and no others."""
+    """Return a robot's imperfections with only these switched on."""
     return Imperfections(**{name: name in names for name in IMPERFECTIONS})
 
 
 PERFECT = only(())
-"""A robot as its model has it."""
+"""No imperfections: the robot as its model describes it."""

@@ -1,9 +1,9 @@
-"""The NAO's shells: lofts through superellipses, written as OBJ files beside its MJCF.
+"""The NAO's shells: lofts through superellipses, written as OBJ files into the folder of its MJCF.
 
     python -m lumen.features.simulation.shells models/nao
 
-Only looks depend on them. Proportions follow the published dimensions (link lengths, sensor places, the outline of the
-sole); lengths in [mm], in the frame of the link.
+They affect only the robot's looks. Proportions follow the published dimensions (link lengths, positions of sensors, the
+outline of the sole); lengths are in [mm], in the link's frame.
 """
 
 import sys
@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 Vertices = NDArray[np.float64]
 CrossSection = tuple[float, float, float, float, float, float]
-"""Place along the axis, centre and half widths (x, y of the ring each), exponent (2 an ellipse, more a box)."""
+"""The position along the axis, the ring's centre (x, y) and half widths (x, y), and the exponent: 2 for an ellipse,
+more for a box.
+"""
 
 SEGMENTS, BLEND_STEPS = 28, 3
 
@@ -29,7 +31,9 @@ class Loft:
     axis: str = "z"
 
     def skin(self, s: Vertices, theta: Vertices, offset: float = 0.0) -> Vertices:
-        """Points at the parts `s` (0..1) of the way through the sections and angles `theta`; Shape (s, theta, 3)."""
+        """Return points at the shares `s` (0..1) of the length and the angles `theta` [rad], `offset` [mm] outwards;
+        Shape (s, theta, 3).
+        """
         along, cx, cy, a, b, n = _through(np.array(self.sections), s).T[:, :, None]
         c, d = np.cos(theta)[None], np.sin(theta)[None]
         power = 2.0 / np.maximum(n, 1.0)
@@ -40,7 +44,7 @@ class Loft:
         return np.stack(points, axis=-1)
 
     def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
-        """The whole skin, closed at both ends."""
+        """Return vertices and triangles of the whole skin, closed at both ends."""
         s = np.linspace(0, 1, BLEND_STEPS * (len(self.sections) - 1) + 1)
         theta = np.linspace(0, 2 * np.pi, SEGMENTS, endpoint=False)
         grid = self.skin(s, theta)
@@ -57,16 +61,20 @@ class Loft:
 
 @dataclass(frozen=True)
 class ShellPanel:
-    """A part of a loft's skin, a little above it: between the parts `span` of its length and the angles `arc` [deg]."""
+    """A slab on a part of a loft's skin."""
 
     loft: Loft
     span: tuple[float, float]
+    """The shares of the loft's length where it begins and ends."""
     arc: tuple[float, float]
+    """The angles where it begins and ends [deg]."""
     rise: float = 1.0
+    """Its height above the skin [mm]."""
     sink: float = 1.5
+    """Its depth below the skin [mm]."""
 
     def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
-        """A closed slab."""
+        """Return vertices and triangles of a closed slab."""
         s = np.linspace(*self.span, 14)
         theta = np.radians(np.linspace(*self.arc, max(6, round((self.arc[1] - self.arc[0]) / 8))))
         outer, inner = self.loft.skin(s, theta, self.rise), self.loft.skin(s, theta, -self.sink)
@@ -84,12 +92,15 @@ class ShellPanel:
 
 @dataclass(frozen=True)
 class Ring:
-    """A torus around z of radius 1000 (scaled by the MJCF), `thick` half as thick across and `flat` along z."""
+    """A torus around z of radius 1000 (scaled by the MJCF)."""
 
     thick: float
+    """Half its thickness across."""
     flat: float
+    """Half its thickness along z."""
 
     def mesh(self) -> tuple[Vertices, NDArray[np.int64]]:
+        """Return vertices and triangles of the torus."""
         around, across = np.linspace(0, 2 * np.pi, 32, endpoint=False), np.linspace(0, 2 * np.pi, 8, endpoint=False)
         radius = 1000 + self.thick * np.cos(across)[:, None]
         x, y = radius * np.cos(around), radius * np.sin(around)
@@ -100,7 +111,7 @@ class Ring:
 
 
 def _through(sections: Vertices, s: Vertices) -> Vertices:
-    """Sections between the given ones, by Catmull and Rom's spline: Shape (len(s), columns)."""
+    """Return sections between the given ones, by a Catmull-Rom spline: Shape (len(s), columns)."""
     position = s * (len(sections) - 1)
     i = np.minimum(position.astype(int), len(sections) - 2)
     t = (position - i)[:, None]
@@ -111,7 +122,9 @@ def _through(sections: Vertices, s: Vertices) -> Vertices:
 
 
 def _quads(rows: int, columns: int, wrap: bool) -> NDArray[np.int64]:
-    """Triangles of a grid of points, counterclockwise seen from outside."""
+    """Return the triangles of a grid of points, counterclockwise seen from outside; `wrap` joins the last column to the
+    first.
+    """
     count = columns if wrap else columns - 1
     r, c = (index.ravel() for index in np.meshgrid(np.arange(rows - 1), np.arange(count), indexing="ij"))
     a, b = r * columns + c, r * columns + (c + 1) % columns

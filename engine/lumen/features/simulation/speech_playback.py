@@ -1,4 +1,4 @@
-"""How long the simulated robot takes to say something, and who else may want to know."""
+"""The simulated robot's speech: how long it takes, and an interface for a real voice."""
 
 from typing import Protocol
 
@@ -7,26 +7,28 @@ from lumen.robot.command_table import speech_duration
 
 
 class SpeechPlayback(Protocol):
-    """Says texts in simulated time; `words` tells when those of the last one begin, where the voice knows."""
+    """Speaks texts in simulated time."""
 
     words: tuple[WordTime, ...]
+    """The times at which the words of the last text begin, if the voice reports them."""
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
-        """Say it from `now` [s] on, with a `volume` from 0 to 1; how long that takes [s]."""
+        """Begin to speak at `now` [s] with a `volume` from 0 to 1; return the duration [s]."""
         ...
 
     def end(self, now: float) -> None:
-        """It is over, or was cancelled."""
+        """End the speech: it is finished or was cancelled."""
         ...
 
 
 class SilentPlayback:
-    """Says nothing, and takes its time for that."""
+    """Speaks without sound, as long as the text would take."""
 
     words: tuple[WordTime, ...] = ()
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
+        """Return the usual duration of the text [s]."""
         return speech_duration(text)
 
     def end(self, now: float) -> None:
-        """Nothing was to be heard."""
+        """Do nothing: there was no sound."""

@@ -1,4 +1,4 @@
-"""A simulated robot that is examined while it moves, and one of its many brothers."""
+"""A simulated robot that is measured while it moves, and variants of it with other masses, friction and noise."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,22 +14,25 @@ from lumen.motion.gait.legs import SIDE_ROLES
 from lumen.ports import Sole, Strain
 
 CONTACT_FORCE = 1.0
-"""With what force two links press on each other that run into each other [N]."""
+"""The contact force above which two of the robot's own links count as colliding [N]."""
 
 EXHAUSTED_TORQUE = 0.98
-"""The part of its greatest torque at which a motor gives all it can."""
+"""The share of its greatest torque from which a motor counts as exhausted."""
 
 LAG_TOLERANCE = 0.05
-"""A joint that is nearer to its goal than this is not late [rad]."""
+"""A joint farther than this from its goal counts as late [rad]."""
 
 MASS_RANGE, FRICTION_RANGE, USUAL_FRICTION = (0.9, 1.1), (0.5, 1.0), 0.8
-"""What brothers differ in: a factor of each link's mass; the ground's friction, and what it usually is."""
+"""The ranges that variants are drawn from: a factor for each link's mass, and the ground's friction; the third value is
+the friction of the unchanged model.
+"""
 
 
 class ExaminedRobot(SimulatedRobot):
-    """A simulated robot that measures how it fares."""
+    """A simulated robot that reports how hard its motion strains it."""
 
     def strain(self) -> Strain:
+        """Return tilt, self-contacts, load on the soles, exhausted motors and late joints of this moment."""
         motors, playing = self.motors, self._skills.playing
         late = np.abs(motors.goal - self.world.angles)
         full = (np.abs(self.world.torques) >= EXHAUSTED_TORQUE * motors.effort) & (motors.effort > 0.0)
@@ -48,14 +51,16 @@ class ExaminedRobot(SimulatedRobot):
         return frozenset((one, other) for one, other in pairs)
 
     def _touches(self) -> Iterator[tuple[tuple[str, str], float]]:
-        """What touches what, by the names of the robot's parts, and with what force [N]."""
+        """Yield the two parts in each contact, by name ("" for anything but the robot), and the contact's normal force
+        [N].
+        """
         model, data, force = self.world.model, self.world.data, np.zeros(6)
         for i, (one, other) in enumerate(data.contact.geom.tolist()):
             mujoco.mj_contactForce(model, data, i, force)
             yield (self._link(one), self._link(other)), float(force[0])
 
     def _link(self, geom: int) -> str:
-        """The name of a part of the robot, empty for what is none; a geom without one is called as its link."""
+        """Return the name of a part of the robot, "" for anything else; a geom without a name has that of its link."""
         model = self.world.model
         link = str(model.body(model.geom_bodyid[geom]).name)
         name = str(model.geom(geom).name) or link
@@ -80,7 +85,10 @@ class ExaminedRobot(SimulatedRobot):
 def subject(
     body: Body, models: Path, hall: str, brother: int, imperfections: Imperfections | None = None
 ) -> ExaminedRobot:
-    """The robot as its model has it for `brother` 0; else one whose links, ground and sensors differ, by that seed."""
+    """Return the robot as its model describes it if `brother` is 0, else a variant with that seed.
+
+    A variant differs in its links' masses, the ground's friction and its sensors' errors.
+    """
     if not brother:
         return ExaminedRobot(body, models, hall, imperfections=imperfections)
     draw = np.random.default_rng(brother)

@@ -1,4 +1,4 @@
-"""The visitor in the hall: scenery of adjustable height, who faces the robot."""
+"""The visitor in the hall: a figure of adjustable height that faces the robot."""
 
 from math import atan2, cos, sin
 
@@ -8,13 +8,13 @@ from lumen.language.stories import Visitor
 
 VISITOR_BODY = "visitor"
 FIGURE_HEIGHT = 1.65
-"""How tall the figure of the hall's MJCF is [m]."""
+"""The height of the figure in the hall's MJCF [m]."""
 
 _AWAY = (0.0, 0.0, -10.0)
 
 
 class VisitorFigure:
-    """Moves and scales the hall's body `visitor`; absent until placed."""
+    """Moves and scales the hall's body `visitor`; it is out of sight until placed."""
 
     def __init__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self._model, self._data = model, data
@@ -32,7 +32,7 @@ class VisitorFigure:
         self.place(None)
 
     def place(self, visitor: Visitor | None) -> None:
-        """Stand where that visitor stands, on the floor, looking at where the robot began; None leaves."""
+        """Place the figure where that visitor stands, on the floor, facing the robot's start; None removes it."""
         changed = visitor and (self._visitor is None or visitor.height != self._visitor.height)
         self._visitor = visitor
         if visitor is None:
@@ -45,7 +45,7 @@ class VisitorFigure:
             self._scale(visitor.height / FIGURE_HEIGHT)
 
     def face(self) -> tuple[float, float, float] | None:
-        """Where the middle of the face is in the hall [m]; None where nobody is."""
+        """Return the middle of the face in the hall [m]; None without a visitor."""
         if self._visitor is None:
             return None
         x, y, z = self._face * (self._visitor.height / FIGURE_HEIGHT)

@@ -1,4 +1,4 @@
-"""A robot on two driven wheels: it walks by driving, brakes where it stands, and tips over where it is pushed hard."""
+"""A base with two driven wheels: the robot drives to walk, brakes to stand, and tips over if it is pushed hard."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from lumen.robot.executor import Activity
 
 
 class Wheels:
-    """Two wheels side by side under a body. Raises RobotModelError if it can't drive on them."""
+    """Two wheels side by side under a torso. Raises RobotModelError if the robot can't drive on them."""
 
     catching = False
 
@@ -32,13 +32,16 @@ class Wheels:
 
     @property
     def whereabouts(self) -> Whereabouts:
+        """Return the robot's estimate of its position and how far it may be wrong."""
         return self.odometry.whereabouts
 
     @property
     def soles(self) -> Soles:
+        """Return no soles: wheels have none."""
         return NO_SOLES
 
     def walk(self, command: Walk | Move, now: float) -> Activity:
+        """Begin to drive, or change the speed of the present drive. Raises RobotRefusedError for a sideways speed."""
         way = way_of(command)
         if isinstance(way, Velocity):
             return self._move(way, now)
@@ -61,7 +64,7 @@ class Wheels:
             raise RobotRefusedError(f"{reason}: the robot did not start driving")
 
     def steady(self, now: float, *, standing: bool, upright: bool) -> JointVector:
-        """Let the wheels turn as wanted, or brake; arms and head are left alone."""
+        """Turn the wheels as steered, or brake if the robot does not stand; return no corrections for the joints."""
         self.odometry.feel(CONTROL_PERIOD)
         if standing:
             self.drive.turn_wheels()
@@ -70,13 +73,15 @@ class Wheels:
         return self._nothing
 
     def relax(self) -> None:
-        """Wheels brake while the motors are off, as gears with a brake do."""
+        """Brake: wheels stay locked while the motors are off."""
         self.odometry.feel(CONTROL_PERIOD)
         self.drive.halt()
 
     def lose(self, posture: str) -> None:
+        """Widen the estimate of the position if the robot has fallen."""
         if not posture:
             self.odometry.lose()
 
     def keep(self, heading: float) -> None:
+        """Tell the odometry that the robot stands again."""
         self.odometry.keep()

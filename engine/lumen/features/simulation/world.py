@@ -1,4 +1,4 @@
-"""The simulated world while it runs: where everything is, and time."""
+"""The running physics of one robot: its state, its sensors and the passing of time."""
 
 from collections.abc import Mapping
 from math import acos, pi
@@ -16,7 +16,7 @@ from lumen.language.robots import Body
 from lumen.language.roles import SIDES
 
 CONTROL_PERIOD = 0.01
-"""Time between two commands to the joints [s]."""
+"""The time between two commands to the joints [s]."""
 
 _UNSTABLE = [
     int(w)
@@ -25,10 +25,10 @@ _UNSTABLE = [
 
 
 class World:
-    """MuJoCo's model and state, by the body's own order of joints; whoever steps it owns it.
+    """MuJoCo's model and state, read in the body's own order of joints. Only the thread that steps it may use it.
 
-    `model` and `data` are MuJoCo's; `physics` is dm_control's view of the same memory. A world that several robots have
-    in common is `shared`; what is this one's there has names that begin with its `prefix`.
+    `model` and `data` are MuJoCo's; `physics` is dm_control's view of the same memory. Several robots may share one
+    world, passed as `shared`: then this robot's elements have names that begin with its `prefix`.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class World:
         self.physics = shared or physics(body, models, hall, variation, backlash=backlash)
         self.model: mujoco.MjModel = self.physics.model.ptr
         self.data: mujoco.MjData = self.physics.data.ptr
-        if self.model.ntree == 1:  # one robot alone is one island: looking for others in each step finds the same
+        if self.model.ntree == 1:  # a lone robot is one island: searching for more costs time
             self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_ISLAND
         joints = [self.model.joint(f"{prefix}/{name}") for name in body.joints]
         self._angles = np.array([j.qposadr[0] for j in joints])
@@ -63,13 +63,13 @@ class World:
         roles = body.roles
         self.torso = self.model.body(f"{prefix}/{roles.torso}").id
         self.free = roles.base.row.moves
-        """Whether the robot can be elsewhere than where it was built in."""
+        """Whether the robot can leave the place where it was attached."""
         self._soles = [f"{prefix}/{roles.soles[side]}" for side in SIDES if side in roles.soles]
         self._root = self.model.joint(f"{prefix}/").qposadr[0] if self.free else 0
         self._accelerometer = self._sensor(roles.sensors.accelerometer)
         gyro = roles.sensors.gyro
         self.gyro_axes: NDArray[np.float64] | None = None
-        """The axes that a gyrometer turns with, now, Shape (9,); None where the body has none."""
+        """The gyrometer's present axes, Shape (9,), a view that MuJoCo updates; None if the body has no gyrometer."""
         if gyro:
             self.gyro_axes = self.data.site_xmat[self.model.sensor(f"{prefix}/{gyro}").objid[0]]
         self._torso_axes = self.data.xmat[self.torso]
@@ -78,13 +78,15 @@ class World:
         self._start: NDArray[np.float64] = self.data.qpos[self._root : self._root + 7].copy()
 
     def step(self) -> None:
-        """Live one control period; as dm_control's `step`, it ends with everything known of the new state."""
+        """Advance one control period; like dm_control's `step`, it leaves everything that depends on the position
+        computed.
+        """
         mujoco.mj_step2(self.model, self.data)
         mujoco.mj_step(self.model, self.data, self._substeps - 1)
         mujoco.mj_step1(self.model, self.data)
 
     def check(self) -> None:
-        """Raises RobotError where MuJoCo has met numbers that are none, or too large to be true."""
+        """Raise RobotError if MuJoCo has warned of positions, speeds or accelerations that are not finite or too large."""
         if self._warnings[_UNSTABLE].any():
             raise RobotModelError(
                 "the simulation has become unstable: check the positions, sizes and forces in models/"
@@ -92,7 +94,7 @@ class World:
 
     @property
     def angles(self) -> JointVector:
-        """Where the joints are, behind the play of their gears."""
+        """The joints' angles, measured behind the play of their gears [rad; hands 0..1]."""
         qpos = self.data.qpos
         measured: JointVector = qpos.take(self._angles)
         measured[self._loose] += qpos.take(self._plays)
@@ -100,45 +102,46 @@ class World:
 
     @property
     def speeds(self) -> JointVector:
-        """How fast their motors turn them, per second."""
+        """The speeds at which the motors turn the joints [rad/s]."""
         measured: JointVector = self.data.qvel[self._speeds]
         return measured
 
     @property
     def motor_speeds(self) -> NDArray[np.float64]:
-        """How fast the motors of `actuators` turn their joints, per second."""
+        """The speeds of the joints with a motor, in the order of `actuators` [rad/s]."""
         speeds: NDArray[np.float64] = self.data.qvel.take(self._driving)
         return speeds
 
     @property
     def torques(self) -> JointVector:
-        """What the motors give [N m]; nothing at a joint that shares another's motor."""
+        """The motors' torques [N m]; 0 at a joint that shares another's motor."""
         torques = np.zeros(len(self.body.joints))
         torques[self.driven] = self.data.actuator_force[self.actuators]
         return torques
 
     @property
     def acceleration(self) -> tuple[float, float, float]:
-        """What the accelerometer feels in the torso's axes: forward, left, up [m/s^2]."""
+        """The accelerometer's reading in the torso's axes: forward, left, up [m/s^2]."""
         x, y, z = self._felt(self._accelerometer)
         return x, y, z
 
     @property
     def up(self) -> tuple[float, float, float]:
-        """Where up is in the torso's axes: forward, left, up."""
+        """The unit vector that points up, in the torso's axes: forward, left, up."""
         forward, left, up = self._torso_axes[6:9].tolist()
         return forward, left, up
 
     @property
     def tilt(self) -> float:
-        """How far the torso leans from upright [rad]."""
+        """The angle between the torso and upright [rad]."""
         return acos(min(1.0, max(-1.0, float(self._torso_axes[8]))))
 
     def set_up(self, angles: Mapping[str, float]) -> None:
         """Put the robot on its stage in this posture: both soles flat, the point between its feet at the stage's site.
 
-        One without feet stands where it was attached, as low as it goes. Only for the beginning of a run: nothing moves
-        the robot but its motors afterwards. Raises RobotError where something in the hall is nowhere.
+        A robot without feet is placed with its lowest point where it was attached. Use this only to begin a run:
+        afterwards nothing but its motors moves the robot. Raises RobotError if a geom of the hall has a position that
+        is not finite.
         """
         data, root = self.data, self._root
         data.qpos[self._angles] = [angles[name] for name in self.body.joints]
@@ -167,7 +170,7 @@ class World:
             raise RobotModelError(f"geoms in models/ have a position that is not a number: {', '.join(lost)}")
 
     def _lowest(self) -> float:
-        """How low what touches of the robot reaches [m]."""
+        """Return the height of the robot's lowest geom that can touch something [m]."""
         model, data = self.model, self.data
         whole = model.body_rootid[self.torso]
         touching = (model.geom_contype | model.geom_conaffinity).astype(bool)
@@ -177,7 +180,7 @@ class World:
         return float((data.geom_xpos[own, 2] + (axes * centre).sum(1) - (np.abs(axes) * half).sum(1)).min())
 
     def _sensor(self, name: str) -> int:
-        """Where a sensor's readings begin, -1 where the body has none."""
+        """Return the index of a sensor's first reading, -1 if the body has no such sensor."""
         return int(self.model.sensor(f"{self.prefix}/{name}").adr[0]) if name else -1
 
     def _felt(self, sensor: int) -> tuple[float, float, float]:
@@ -192,9 +195,9 @@ def _nowhere(places: NDArray[np.float64]) -> NDArray[np.intp]:
 
 
 def _upright(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The rotation that lays the left sole flat and lets both soles point evenly to either side of straight ahead.
+    """Return the quaternion that lays the left sole flat and turns both soles symmetrically about straight ahead.
 
-    Shape (3, 3) each, of the torso upright; a quaternion.
+    The arguments are the soles' axes in the upright torso's frame, Shape (3, 3) each.
     """
     flat = left.T
     other = flat @ right
@@ -207,4 +210,4 @@ def _upright(left: NDArray[np.float64], right: NDArray[np.float64]) -> NDArray[n
 
 
 FALLEN_TILT = pi / 4
-"""The torso leans farther than anything it does on purpose [rad]."""
+"""The tilt of the torso from which the robot counts as fallen: more than in any motion [rad]."""

@@ -1,4 +1,4 @@
-"""The robot in its hall as MuJoCo has it: compiled once for the same files, and kept on the disk."""
+"""The robot in its hall as a MuJoCo model: compiled once for the same files and kept on disk."""
 
 import copy
 import hashlib
@@ -18,9 +18,11 @@ from lumen.project.memoization import memoize
 from lumen.upkeep.cache_folder import CacheFolder
 
 KEPT = 16
-"""How many compiled worlds are kept on the disk, of 3 MB each."""
+"""The number of compiled worlds kept on disk, of 3 MB each."""
 MAX_BYTES = 32_000_000
-"""Of the files of a world that is kept: of more nobody reads each byte at a start."""
+"""The largest total size of a world's files for which the compiled world is kept [B]: reading more at each start takes
+too long.
+"""
 BINARY = "world.mjb"
 _LEVEL = 1
 
@@ -28,10 +30,10 @@ _LEVEL = 1
 def physics(
     body: Body, models: Path, hall: str, variation: Variation | None = None, *, backlash: bool = False
 ) -> Physics:
-    """The hall with the robot on its stage, to be lived in.
+    """Return the hall with the robot on its stage, ready to be simulated.
 
-    A second robot of the same body and the same files in `models` is a copy of what was compiled for the first, in this
-    process or an earlier one. Raises RobotError as `model.load` does, and where MuJoCo can't build it.
+    A second robot of the same body and files in `models` gets a copy of the model compiled for the first, in this
+    process or an earlier one. Raises RobotError as `model.load` does, and if MuJoCo can't build the world.
     """
     folders = {models, (models / hall).parent}
     files = {path: _version(path) for folder in folders for path in _files(folder)}
@@ -56,12 +58,12 @@ def physics(
 
 
 def _kept(name: str, compiled: Callable[[], mujoco.MjModel]) -> mujoco.MjModel:
-    """What was compiled under that name before, to the bit, else now."""
+    """Return the model kept under that name, or compile and keep it."""
     folder = CacheFolder("worlds", KEPT)
     if packed := folder.read(name):
         try:
             return mujoco.MjModel.from_binary_path(BINARY, {BINARY: zlib.decompress(packed)})
-        except (ValueError, zlib.error):  # whatever is in the file: it is made anew
+        except (ValueError, zlib.error):  # A damaged file is compiled again.
             pass
     made = compiled()
     content = np.zeros(mujoco.mj_sizeModel(made), np.uint8)
@@ -72,7 +74,7 @@ def _kept(name: str, compiled: Callable[[], mujoco.MjModel]) -> mujoco.MjModel:
 
 @cache
 def _engine() -> str:
-    """The state of what builds worlds: an edited file, or another dm_control, builds others."""
+    """Return a hash of the code that builds worlds, so that an edit or another dm_control invalidates kept worlds."""
     return files_hash(Path(__file__).parent, Path(dm_control.__path__[0]))
 
 
@@ -81,6 +83,6 @@ def _files(folder: Path) -> list[Path]:
 
 
 def _version(path: Path) -> tuple[int, int, int]:
-    """What tells a file from what it was before."""
+    """Return what changes whenever a file changes: its inode, size and time of modification."""
     status = path.stat()
     return status.st_ino, status.st_size, status.st_mtime_ns

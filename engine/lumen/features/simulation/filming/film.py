@@ -1,4 +1,4 @@
-"""A film of a run, by simulated time: directed, subtitled, drawn by as many threads as there are cores."""
+"""A film of a run in simulated time: directed, with subtitles, drawn by one thread per core."""
 
 import os
 from collections import deque
@@ -36,31 +36,35 @@ FilmSize = tuple[int, int]
 FILM_SIZE: FilmSize = (1920, 1080)
 
 TITLE_SHOWN, TITLE_FADES = 3.0, 0.6
-"""How long the title stands, and how long it takes to come and to go [s]."""
+"""How long the title is visible, and how long it takes to fade in or out [s]."""
 
 MAX_WAITING_FRAMES = 8
-"""Drawn ahead of those that are written, at most: each is as large as its pixels."""
+"""The number of frames that may wait to be written; each takes as much memory as its pixels."""
 
 FOLLOWING = 0.06
-"""The part of the way that a camera within a shot goes after what it shows, each frame."""
+"""The share of the remaining distance that the camera moves towards its subject with each frame."""
 
 
 class Picture(NamedTuple):
-    """All that one frame is drawn from."""
+    """Everything that one frame is drawn from."""
 
     state: RenderState
     camera: str | tuple[HallPoint, float, float, float]
+    """The name of a camera of the model, or a free camera's target, azimuth [deg], elevation [deg] and distance [m]."""
     said: str
+    """The robot's subtitle."""
     heard: str
+    """The visitor's subtitle."""
     title: float
+    """The title's opacity, from 0 to 1."""
 
 
 class Film:
-    """Writes an MP4 of a run; `tick` whenever time has passed, `close` at the end.
+    """Writes an MP4 of a run: call `tick` whenever time has passed, and `close` at the end.
 
-    Without a `camera` of the hall its own one is directed: by what `happened`. `size` is (width, height) [px], even
-    numbers. Raises RobotModelError where nothing can be drawn, saying which package to install, or the hall has no such
-    camera.
+    Without a `camera` of the hall it uses its own, which is directed by what `happened`. `size` is (width, height)
+    [px], both even. Raises RobotModelError if nothing can be drawn, with the package to install, or if the hall has no
+    such camera.
     """
 
     def __init__(
@@ -88,36 +92,36 @@ class Film:
 
     @property
     def frames(self) -> int:
-        """How many it has by now."""
+        """The number of frames so far."""
         return self._due
 
     @property
     def length(self) -> float:
-        """How long it is by now [s]."""
+        """The length of the film so far [s]."""
         return self._due / FILM_RATE
 
     def frame_due(self, now: float) -> bool:
-        """Whether it is time [s] for the next frame."""
+        """Return whether the next frame is due at `now` [s]."""
         return now + 1e-9 >= self._due / FILM_RATE
 
     def happened(self, moment: FilmMoment) -> None:
-        """Something happens that a camera cares about."""
+        """Tell the director that this has happened: it may change the shot."""
         self._director.happened(moment)
 
     def says(self, text: str) -> None:
-        """The robot says this from now on; empty where it has ended."""
+        """Show this text as the robot's subtitle, until another follows; an empty text removes it."""
         self._said, self._said_from = text, None
         if text:
             self._heard = ""
             self.happened(FilmMoment.ROBOT_SPEAKS)
 
     def hears(self, text: str, now: float) -> None:
-        """The visitor says this at `now` [s]: it stands as long as it takes to read."""
+        """Show what the visitor says at `now` [s], for as long as it takes to read."""
         self._heard, self._heard_until = text, now + 1.0 + 0.07 * len(text)
         self.happened(FilmMoment.VISITOR_SPEAKS)
 
     def tick(self, now: float) -> None:
-        """Take the frames that are due by `now` [s]; the run waits where drawing does not keep up."""
+        """Draw the frames that are due by `now` [s]; this blocks the run if drawing can't keep up."""
         if not self.frame_due(now):
             return
         world = self._robot.world
@@ -139,7 +143,7 @@ class Film:
             self._write()
 
     def close(self) -> None:
-        """Finish the file; harmless when repeated."""
+        """Finish the file; further calls do nothing."""
         while self._waiting:
             self._write()
         self._writer.close()
@@ -171,7 +175,7 @@ class Film:
         return pixels
 
     def _saying(self, now: float) -> str:
-        """The part of what is said that is said about now [s]: no voice says how far it is."""
+        """Return the page of the subtitle to show at `now` [s], estimated from the usual speed of speech."""
         if not self._said:
             return ""
         if self._said_from is None:
@@ -182,7 +186,7 @@ class Film:
         return next((page for page, end in zip(pages, ends, strict=True) if so_far < end), pages[-1])
 
     def _directed(self, now: float) -> tuple[HallPoint, float, float, float]:
-        """Where the film's own camera looks, its azimuth and elevation [deg] and its distance [m]."""
+        """Return the target, azimuth [deg], elevation [deg] and distance [m] of the film's own camera."""
         who = self._subjects()
         shot = self._director.shot(now, who.visitor is not None)
         eye, target = camera_place(shot, who, self._size[0] / self._size[1])
@@ -213,7 +217,7 @@ def _up(point: HallPoint, by: float) -> HallPoint:
 
 
 def _fading(now: float) -> float:
-    """How visible the title is at `now` [s], from 0 to 1."""
+    """Return the opacity of the title at `now` [s], from 0 to 1."""
     return max(0.0, min(now / TITLE_FADES, (TITLE_SHOWN - now) / TITLE_FADES, 1.0))
 
 

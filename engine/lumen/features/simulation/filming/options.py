@@ -1,4 +1,4 @@
-"""Where `--video` may write, and how large its picture is."""
+"""The options `--video` and `--size`: the file of a video and the size of its picture."""
 
 import argparse
 import os
@@ -17,7 +17,7 @@ from lumen.run.audio_track import AudioTrack
 
 
 def film_path(path: Path | None, robot: str) -> Path | None:
-    """Where a film may be written; raises UsageError where it may not."""
+    """Return the path if a film can be written there, None for None. Raises UsageError otherwise."""
     if path is None:
         return None
     if robot != "simulation":
@@ -31,11 +31,11 @@ def film_path(path: Path | None, robot: str) -> Path | None:
 
 FILM_SIZE = (1920, 1080)
 MIN_FILM_SIDE, MAX_FILM_SIDE = 64, 4096
-"""What a side of the picture may have [px]."""
+"""The range of the picture's width and height [px]."""
 
 
 def configure_size(parser: argparse.ArgumentParser) -> None:
-    """`--size`, for a verb that has `--video`."""
+    """Add `--size` to a command that has `--video`."""
     usual = "x".join(map(str, FILM_SIZE))
     parser.add_argument(
         "--size", default=usual, metavar="WIDTHxHEIGHT", help=f"size of the video [px] (default: {usual})"
@@ -43,7 +43,7 @@ def configure_size(parser: argparse.ArgumentParser) -> None:
 
 
 def film_size(text: str) -> tuple[int, int]:
-    """(width, height) [px] of `1280x720`. Raises UsageError for what no film can have."""
+    """Return (width, height) [px] of a text such as `1280x720`. Raises UsageError for odd numbers or out of range."""
     match = re.fullmatch(r"(\d{1,5})[x×](\d{1,5})", text)
     sides = (int(match[1]), int(match[2])) if match else (0, 0)
     if any(side % 2 or not MIN_FILM_SIDE <= side <= MAX_FILM_SIDE for side in sides):
@@ -54,23 +54,28 @@ def film_size(text: str) -> tuple[int, int]:
 
 @dataclass(frozen=True, slots=True)
 class FilmPlan:
-    """A video of a simulated robot: its file, sound, size (width, height) [px], and progress on the terminal."""
+    """A video of a simulated robot to be made."""
 
     path: Path
     track: AudioTrack | None = None
+    """The soundtrack, None for a silent film."""
     size: tuple[int, int] | None = None
+    """The width and height of the picture [px], None for the default."""
     progress: FilmProgress | None = None
+    """The progress to print on the terminal."""
 
 
 class FilmOptions:
     """`--video` and `--size` of `lumen run`."""
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
+        """Add the options to the parser."""
         add = parser.add_argument
         add("--video", metavar="FILE.mp4", type=Path, help="save a video of the run (simulation only; needs OpenGL)")
         configure_size(parser)
 
     def check(self, options: argparse.Namespace, parts: Sequence[str], robots: int) -> None:
+        """Raise UsageError if a video is requested with several robots or with `--only`."""
         if options.video and robots > 1:
             raise UsageError("--video works with only one robot: choose it with `--robot-name NAME`")
         if options.video and parts:
@@ -79,6 +84,7 @@ class FilmOptions:
     def wishes(
         self, options: argparse.Namespace, project: Project, story: Story | None, period: float | None
     ) -> Mapping[str, Any]:
+        """Return the film and its soundtrack for the run's plan; empty without `--video`."""
         video, size = film_path(options.video, options.robot), film_size(options.size)
         if video is None:
             return {}
@@ -88,7 +94,10 @@ class FilmOptions:
 
 
 def film_progress(project: Project, story: Story | None, period: float | None) -> FilmProgress:
-    """Who tells how far a film is, of a story or of a `period` [s]: the recording robot plays the story beforehand."""
+    """Return the progress of a film whose length [s] is the shorter of the story's and `period`.
+
+    The recording robot rehearses the story to find its length.
+    """
     from lumen.run.rehearsal import rehearse  # few runs are filmed
 
     lengths = [length for length in (rehearse(project, story).time if story else None, period) if length]

@@ -1,4 +1,4 @@
-"""A film of a simulated robot."""
+"""The part that films a simulated robot."""
 
 import os
 import subprocess
@@ -23,7 +23,9 @@ from lumen.upkeep.private_folder import private_folder
 
 
 def add_sound(film: Path, track: AudioTrack, length: float) -> None:
-    """Give the MP4 of that length [s] this track, as AAC; the pictures stay. Raises RobotFailedError where it can't."""
+    """Add this soundtrack to an MP4 of that length [s], as AAC; the pictures stay. Raises RobotFailedError if ffmpeg
+    fails.
+    """
     import imageio_ffmpeg
 
     with tempfile.TemporaryDirectory(dir=film.parent, prefix=".lumen-film-") as folder:
@@ -41,10 +43,11 @@ def add_sound(film: Path, track: AudioTrack, length: float) -> None:
 
 
 class FilmPart(Part, Observer):
-    """Writes each tick into a file, and when it is closed what `track` heard; what happens chooses what is shown.
+    """A part that films each tick and, when closed, adds what `track` recorded. Events of the run choose the camera's
+    shot.
 
-    `size` is (width, height) [px], None for the usual one. Raises RobotError where nothing can be drawn, UsageError for
-    another robot.
+    `size` is (width, height) [px], None for the default. Raises RobotError if nothing can be drawn, UsageError if the
+    robot is not simulated.
     """
 
     watches = True
@@ -74,6 +77,7 @@ class FilmPart(Part, Observer):
         self._now = 0.0
 
     def performing(self, command: Command, now: float) -> None:
+        """Show the subtitle of a `say`, or show the robot when a motion begins."""
         match command:
             case Start(id, Say(text)):
                 self._saying = id
@@ -82,12 +86,13 @@ class FilmPart(Part, Observer):
                 self._film.happened(self._moments.ROBOT_MOVES)
 
     def answered(self, event: Event) -> None:
+        """Remove the subtitle when the robot has finished speaking."""
         _, answer, id = event.name.partition(".command.")
         if answer and id == self._saying:
             self._film.says("")
 
     def visitor_action(self, action: VisitorAction) -> None:
-        """The visitor does something."""
+        """Tell the film that the visitor arrives, leaves or speaks."""
         match action:
             case Arrive():
                 self._film.happened(self._moments.COMES)
@@ -97,12 +102,14 @@ class FilmPart(Part, Observer):
                 self._film.hears(text, self._now)
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        """Draw the frames that are due, and report progress."""
         self._now = now
         self._film.tick(now)
         if self._progress:
             self._progress.tick(self._film.length)
 
     def close(self) -> None:
+        """Finish the video and add its sound."""
         self._film.close()
         if self._track:
             add_sound(self._path, self._track, self._film.length)

@@ -1,14 +1,14 @@
-"""How far a film is, and about when it will be finished: told now and then, for it takes longer than what it shows."""
+"""Progress of a film: drawing takes longer than the film lasts, so the time left is printed now and then."""
 
 import time
 from collections.abc import Callable
 
 FILM_TOLD_EVERY = 15.0
-"""[s] of real time between one line and the next."""
+"""Real time between two lines [s]."""
 
 
 class FilmProgress:
-    """Tells, with `tell`, how much of a film of about `whole` [s] is drawn; 0 where nobody knows its length."""
+    """Prints with `tell` how much of a film of about `whole` [s] is drawn; 0 if its length is unknown."""
 
     def __init__(
         self, tell: Callable[[str], None], whole: float = 0.0, clock: Callable[[], float] = time.monotonic
@@ -17,7 +17,7 @@ class FilmProgress:
         self._began = self._told = clock()
 
     def tick(self, length: float) -> None:
-        """The film has `length` [s] by now."""
+        """Print a line if one is due; the film has `length` [s] so far."""
         now = self._clock()
         if now - self._told < FILM_TOLD_EVERY or length <= 0.0:
             return

@@ -1,7 +1,7 @@
-"""Where a film's camera stands: the robot with its visitor, its face, all of it, or what the visitor sees.
+"""The places of a film's camera: the robot with its visitor, its face, all of it, or the visitor's own view.
 
-What happens chooses the shot, as an editor would cut a talk between two: who speaks is seen, who listens now and then,
-and nothing is cut faster than an eye follows.
+Events choose the shot, as an editor cuts a dialogue: mostly the speaker, sometimes the listener, and no shot shorter
+than an eye can follow.
 """
 
 from enum import StrEnum
@@ -9,11 +9,11 @@ from math import atan2, cos, degrees, hypot, radians, sin, tan
 from typing import NamedTuple
 
 HallPoint = tuple[float, float, float]
-"""In the hall [m]: x, y, z."""
+"""A point of the hall: x, y, z [m]."""
 
 
 class Shot(StrEnum):
-    """What a camera shows, in the words of those who make films."""
+    """The kinds of shot, by their names in film making."""
 
     TWO_SHOT = "two-shot"
     CLOSE_UP = "close-up"
@@ -22,7 +22,7 @@ class Shot(StrEnum):
 
 
 class FilmMoment(StrEnum):
-    """What happens that a camera cares about."""
+    """Events that may change the shot."""
 
     COMES = "comes"
     LEAVES = "leaves"
@@ -32,30 +32,34 @@ class FilmMoment(StrEnum):
 
 
 class Subjects(NamedTuple):
-    """Who is to be seen: the robot's head and torso, where it looks [rad], and the visitor's face, None without one."""
+    """What can be filmed."""
 
     head: HallPoint
+    """The robot's head."""
     torso: HallPoint
+    """The robot's torso."""
     heading: float
+    """The direction that the robot faces [rad]."""
     visitor: HallPoint | None
+    """The visitor's face, None without a visitor."""
 
 
 class CameraPlace(NamedTuple):
-    """Where a camera stands and what stands in the middle of its picture [m]."""
+    """The camera's position and the point in the middle of its picture [m]."""
 
     eye: HallPoint
     target: HallPoint
 
 
 SHORTEST_SHOT, LONGEST_SHOT = 2.5, 9.0
-"""How long a shot stays, whatever happens, and after how long another one is due, even if nothing does [s]."""
+"""The shortest time that a shot stays, and the time after which the shot changes without an event [s]."""
 
 FIELD_OF_VIEW = 36.0
-"""Of the picture's height [deg]: a long lens, in which nothing looks bent."""
+"""The vertical angle of view [deg]: that of a long lens, without visible distortion."""
 
 HEAD_ROOM, CLOSE_DISTANCE, FULL_DISTANCE = 0.45, 0.62, 1.75
 SIDE = radians(-32.0)
-"""How far beside the robot's look a camera stands that sees its face: on the open side of the hall."""
+"""The angle between the robot's heading and a camera that films its face [rad], on the open side of the hall."""
 
 _WANTED = {
     FilmMoment.COMES: (Shot.TWO_SHOT,),
@@ -64,13 +68,13 @@ _WANTED = {
     FilmMoment.VISITOR_SPEAKS: (Shot.POINT_OF_VIEW, Shot.TWO_SHOT),
     FilmMoment.ROBOT_MOVES: (Shot.FULL_SHOT,),
 }
-"""What is shown when something happens: the next time the next one, so that a talk is not one picture."""
+"""The shots for each event, used in turn, so that a dialogue is not a single picture."""
 
 _NEEDS_VISITOR = frozenset((Shot.TWO_SHOT, Shot.POINT_OF_VIEW))
 
 
 class ShotDirector:
-    """Chooses what is shown; the same moments at the same times [s] make the same film."""
+    """Chooses the shot; the same events at the same times [s] give the same film."""
 
     def __init__(self) -> None:
         self._shot, self._since = Shot.FULL_SHOT, 0.0
@@ -78,13 +82,13 @@ class ShotDirector:
         self._times = dict.fromkeys(FilmMoment, 0)
 
     def happened(self, moment: FilmMoment) -> None:
-        """Something happens now; what was due before is forgotten."""
+        """Request the next shot for this event, in place of one requested before."""
         wanted = _WANTED[moment]
         self._next = wanted[self._times[moment] % len(wanted)]
         self._times[moment] += 1
 
     def shot(self, now: float, visitor: bool) -> Shot:
-        """What is shown at `now` [s], with a visitor or without one."""
+        """Return the shot to show at `now` [s], with or without a visitor."""
         shown = now - self._since
         if self._shot in _NEEDS_VISITOR and not visitor:
             self._cut(Shot.FULL_SHOT, now)
@@ -100,7 +104,7 @@ class ShotDirector:
 
 
 def camera_place(shot: Shot, who: Subjects, aspect: float) -> CameraPlace:
-    """Where the camera of a shot stands; `aspect` is the picture's width by its height."""
+    """Return the camera's place for a shot; `aspect` is the picture's width divided by its height."""
     if shot is Shot.CLOSE_UP:
         return CameraPlace(_beside(who, CLOSE_DISTANCE, who.head[2] + 0.02), _higher(who.head, -0.03))
     if shot is Shot.POINT_OF_VIEW and who.visitor:
@@ -113,7 +117,7 @@ def camera_place(shot: Shot, who: Subjects, aspect: float) -> CameraPlace:
 
 
 def _two_shot(who: Subjects, visitor: HallPoint, aspect: float) -> CameraPlace:
-    """From the side, so far away that both are in the picture, from the robot's feet to the visitor's hair."""
+    """Return a camera to the side, far enough to show both from the robot's feet to the visitor's hair."""
     dx, dy = visitor[0] - who.torso[0], visitor[1] - who.torso[1]
     apart = max(hypot(dx, dy), 0.3)
     low, high = who.torso[2] - 0.4, max(visitor[2] + 0.22, who.head[2] + 0.15)
@@ -126,7 +130,7 @@ def _two_shot(who: Subjects, visitor: HallPoint, aspect: float) -> CameraPlace:
 
 
 def _beside(who: Subjects, distance: float, height: float) -> HallPoint:
-    """A place that far before the robot, to the side on which no visitor stands."""
+    """Return a point at that distance in front of the robot, on the side away from the visitor."""
     side = SIDE
     if who.visitor:
         towards = atan2(who.visitor[1] - who.torso[1], who.visitor[0] - who.torso[0]) - who.heading
@@ -140,7 +144,7 @@ def _higher(point: HallPoint, by: float) -> HallPoint:
 
 
 def free_camera(place: CameraPlace) -> tuple[float, float, float]:
-    """Azimuth [deg], elevation [deg] and distance [m] of a camera of MuJoCo's that looks at the place's target."""
+    """Return azimuth [deg], elevation [deg] and distance [m] of MuJoCo's free camera that looks at the place's target."""
     dx, dy, dz = (target - eye for eye, target in zip(place.eye, place.target, strict=True))
     flat = hypot(dx, dy)
     return degrees(atan2(dy, dx)), degrees(atan2(dz, flat)), hypot(flat, dz)
