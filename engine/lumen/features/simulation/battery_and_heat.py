@@ -1,4 +1,4 @@
-"""How the robot fares: battery and the heat of its motors."""
+"""The robot's battery and the heat of its motors."""
 
 from collections.abc import Sequence
 
@@ -9,32 +9,33 @@ from lumen.features.simulation.imperfections import voltage
 from lumen.language.events import Event
 
 BATTERY_CAPACITY = 48.6 * 3600
-"""A full battery [J]: 48.6 Wh, from NAO V5's data sheet."""
+"""The energy of a full battery [J]: 48.6 Wh, from NAO V5's data sheet."""
 
 IDLE_POWER = 30.0
-"""What computer and sensors take [W]; so that a charge lasts a good hour and a half of standing and talking."""
+"""The power of computer and sensors [W]: a charge lasts a good hour and a half of standing and talking."""
 
 CHARGING_POWER = 50.0
-"""What the charger gives [W]; so that an empty battery is full after an hour, if the robot rests. Chosen, not measured.
-
-While plugged in, the robot lives on the charger, and motors that take more take the rest from the battery.
+"""The power into the battery while the charger is in [W]: an empty battery is full after an hour of rest. Chosen, not
+measured. The charger also powers the robot; motors that need more than it gives draw the rest from the battery.
 """
 
 STALL_POWER = 6.0
-"""What a motor takes [W] to give its greatest torque without moving."""
+"""The power of a motor at its greatest torque without moving [W]."""
 
 BATTERY_LOW, BATTERY_RECOVERED, BATTERY_USED = 20, 25, 95
-"""Charge [%] at which the robot raises `battery.low`, may do so again, and may raise `battery.full` again."""
+"""The charges [%] at which the robot raises `battery.low`, may raise it again, and may raise `battery.full` again."""
 
 MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
-"""Temperatures [degrees Celsius] at which the robot raises `motors.hot`, and may do so again."""
+"""The temperatures [degrees Celsius] at which the robot raises `motors.hot`, and may raise it again."""
 
 MOTOR_AMBIENT, MOTOR_RISE, MOTOR_TIME_CONSTANT = 38.0, 300.0, 600.0
-"""Where motors begin, how far they heat up at their greatest torque, in what time [s]. Chosen, not measured."""
+"""The motors' first temperature [degrees Celsius], their rise at the greatest torque, and the time constant [s].
+Chosen, not measured.
+"""
 
 
 class BatteryAndHeat:
-    """Integrates what the motors do; `temperatures` [degrees Celsius] in the order of the joints.
+    """Integrates the motors' use of energy and their heat; `temperatures` [degrees Celsius] are in the joints' order.
 
     `plugged` is whether the charger is in.
     """
@@ -50,21 +51,22 @@ class BatteryAndHeat:
 
     @property
     def percentage(self) -> int:
+        """The battery's charge [%]."""
         return max(0, round(100 * self._energy / BATTERY_CAPACITY))
 
     @property
     def voltage(self) -> float:
-        """What the battery gives [V]."""
+        """The battery's voltage [V]."""
         return voltage(self._energy / BATTERY_CAPACITY)
 
     @property
     def charging(self) -> bool:
-        """Whether the charger is in and the battery takes more."""
+        """Whether the charger is in and the battery not full."""
         return self.plugged and self._energy < BATTERY_CAPACITY
 
     @property
     def empty(self) -> bool:
-        """Whether there is nothing left for the motors."""
+        """Whether no energy is left for the motors."""
         return self._energy <= 0.0
 
     @property
@@ -73,7 +75,7 @@ class BatteryAndHeat:
         return bool(self._hot)
 
     def live(self, torques: NDArray[np.float64], speeds: NDArray[np.float64], dt: float, now: float) -> list[Event]:
-        """Spend energy and heat up for `dt` [s] of such torques [N m] and speeds [rad/s]; the events of it."""
+        """Advance by `dt` [s] with these torques [N m] and speeds [rad/s]; return the events."""
         load = np.square(torques / self._efforts)
         power = IDLE_POWER + STALL_POWER * float(load.sum()) + float(np.abs(torques * speeds).sum())
         given = IDLE_POWER + CHARGING_POWER if self.plugged else 0.0

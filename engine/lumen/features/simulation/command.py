@@ -37,6 +37,7 @@ from lumen.run.troubles import trouble_of_answer
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `lumen play` to the parser."""
     parser.add_argument("motion", metavar="MOTION", help="a name in motions/, or a file: .yaml, .motion, .xar, .py")
     parser.add_argument(
         "--timeline",
@@ -66,6 +67,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    """Play the motion; return the exit code, 1 if the robot fell or missed a goal."""
     root = shown_project(options.project)
     use_model(options.model, [root])
     found = motion_parts(read_files(root))
@@ -85,7 +87,7 @@ def run(options: argparse.Namespace) -> int:
 def _played(
     project: Project, motion: MotionDefinition, speed: str, video: Path | None, size: tuple[int, int]
 ) -> dict[str, Any]:
-    """Play the motion; return the result. Raises UsageError if the robot can't."""
+    """Play the motion and return the result. Raises UsageError if the robot can't."""
     player = _Player(project, speed, video, size)
     print(f"{project.robot} plays `{motion.name}` ({motion.duration:.1f} s) at {speed} × real time")
     late = _slowed(motion, project.body)
@@ -117,7 +119,7 @@ def _played(
 
 
 class _Player:
-    """The simulated robot with nobody in charge of it: one command after another, each to its end."""
+    """The simulated robot without a runtime: it performs one command after another, each to its end."""
 
     def __init__(self, project: Project, speed: str, video: Path | None, size: tuple[int, int]) -> None:
         from lumen.features.simulation.filming.film import Film
@@ -129,9 +131,9 @@ class _Player:
         self._film = Film(video, self.robot, "close", size=size) if video else None
 
     def perform(self, command: RobotCommand, tell: ProgressListener, duration: float = 0.0) -> str:
-        """Perform to the end, which is `duration` [s] ahead; return a fall or the joint that missed its goal.
+        """Perform a command, about `duration` [s] long, to its end; return a fall or the joint that missed its goal.
 
-        Raises UsageError if the robot can't, with its reason.
+        Raises UsageError, with the reason, if the robot can't perform it.
         """
         self.robot.start("play", command)
         began = self._clock.now()
@@ -149,13 +151,14 @@ class _Player:
                     raise UsageError(str(event.data["reason"]))
 
     def close(self) -> None:
+        """Finish the film and close the robot."""
         if self._film:
             self._film.close()
         self.robot.close()
 
 
 def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
-    """Where the joints of a motion, one line each, come late at worst: no joint moves faster than it can."""
+    """Return a line for each joint that can't keep up with the motion, at its worst key."""
     worst = {excess.joint: excess for excess in sorted(overspeed(motion, body), key=lambda e: e.value / e.limit)}
     return [
         f"`{joint}` comes late: to get there by {excess.key.time:.2f} s it would have to move at {excess.value:.3g} "
@@ -165,7 +168,7 @@ def _slowed(motion: MotionDefinition, body: Body) -> list[str]:
 
 
 def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> MotionDefinition:
-    """The motion of that name or in that file, whatever is wrong with other files of the project."""
+    """Return the motion of that name or in that file; errors in the project's other files don't matter."""
     path = Path(name)
     foreign = endings("motion")
     if path.suffix.lower() in foreign:
@@ -188,7 +191,7 @@ def _motion(found: ProjectDraft, name: str, options: argparse.Namespace) -> Moti
 
 
 def _foreign(body: Body, path: Path, options: argparse.Namespace) -> MotionDefinition:
-    """The motion in another tool's file; what of it is left out is told."""
+    """Return the motion in another tool's file; print what could not be converted."""
     try:
         data, diagnostics = read_gesture(
             str(path), foreign_content(path), body, timeline=options.timeline, retime=options.retime

@@ -1,4 +1,4 @@
-"""Importing this raises MissingExtraError where what simulates the robot is not installed."""
+"""Raises MissingExtraError on import if the packages that simulate the robot are not installed."""
 
 from lumen.extras import demand
 

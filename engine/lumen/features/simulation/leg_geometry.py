@@ -1,7 +1,8 @@
-"""What a body's legs measure, read from its MJCF: where the axes of hips and ankles meet, and how long links are.
+"""Dimensions of a body's legs, read from its MJCF: the axes' intersections in hips and ankles, and the links' lengths.
 
-The legs bend in closed form (`LegGeometry.bend`), which needs a leg that yaws, rolls and pitches about one point of the
-hip, pitches in the knee, and pitches and rolls about one point of the ankle. Another one is refused, saying why.
+The legs' angles are computed in closed form (`LegGeometry.bend`). That needs a leg that yaws, rolls and pitches about
+one point of the hip, pitches in the knee, and pitches and rolls about one point of the ankle. Other legs are refused
+with the reason.
 """
 
 from itertools import pairwise, product
@@ -17,32 +18,39 @@ from lumen.language.roles import LEG_ROLES
 from lumen.motion.gait.legs import SIDE_ROLES, SIDES, LegGeometry, LegVector, Side, SoleSize, sign
 
 MEETING_TOLERANCE = 1e-3
-"""Axes that pass each other nearer than this meet, and legs that differ by less are alike [m]."""
+"""The distance below which axes intersect, and legs are alike [m]."""
 
 STRAIGHT_TOLERANCE = 0.02
-"""How far an axis may point beside where it should [rad]."""
+"""How far an axis may deviate from its direction [rad]."""
 
 NANOMETRES = 9
-"""The digits that are kept [m], [rad]: what stands in the MJCF, without what adding up its positions rounds."""
+"""The decimals that are kept [m], [rad]: enough for the MJCF's numbers, without the rounding errors of their sums."""
 
 TOUCHES = 0.003
-"""What is no higher than this above a sole belongs to it [m]."""
+"""Points up to this height above a sole belong to it [m]."""
 
 
 class _Leg(NamedTuple):
-    """One leg with all joints at zero, in the torso's frame."""
+    """One leg with all joints at zero, in the torso's frame; y points outwards."""
 
     hip: LegVector
+    """The point where the hip's axes meet [m]."""
     inclination: float
+    """The tilt of the hip yaw's axis from upright [rad]."""
     thigh: LegVector
+    """The vector from hip to knee [m]."""
     tibia: LegVector
+    """The vector from knee to ankle [m]."""
     foot: float
+    """The height of the ankle above the sole [m]."""
     sole_size: SoleSize
+    """The distances of the sole's edges from the ankle [m]."""
     signs: tuple[float, ...]
+    """1 or -1 for each joint, -1 if it turns against its axis's usual direction."""
 
 
 def read_legs(model: mujoco.MjModel, body: Body) -> LegGeometry:
-    """The legs of a body whose model is alone in the world. Raises RobotModelError for such as it can't walk on."""
+    """Return the legs of a body whose model has no world. Raises RobotModelError if the robot can't walk on them."""
     names = {side: tuple(body.roles.name(f"legs.{SIDE_ROLES[side]}.{role}") for role in LEG_ROLES) for side in SIDES}
     for side in SIDES:
         if lost := [role for role, name in zip(LEG_ROLES, names[side], strict=True) if not name]:
@@ -83,6 +91,7 @@ class _LegReader:
         self._origin, self._axes = torso.xpos.copy(), torso.xmat.reshape(3, 3).copy()
 
     def leg(self, side: Side, names: tuple[str, ...]) -> _Leg:
+        """Return the dimensions of one leg. Raises RobotModelError if the robot can't walk on it."""
         axes = [self._axes.T @ self._data.joint(name).xaxis for name in names]
         places = [self._place(self._data.joint(name).xanchor) for name in names]
         which = f"the {SIDE_ROLES[side]} one"
@@ -122,7 +131,7 @@ class _LegReader:
         )
 
     def _chained(self, names: tuple[str, ...]) -> bool:
-        """Whether each of these joints carries the next one."""
+        """Return whether each of these joints carries the next one."""
         order = [(int(self._model.joint(name).bodyid[0]), self._model.joint(name).id) for name in names]
         parents = self._model.body_parentid
 
@@ -135,12 +144,12 @@ class _LegReader:
         return all(carries(one, other) for one, other in pairwise(order))
 
     def _knee(self, name: str) -> float:
-        """Which way the knee goes farther [rad], as its joint counts."""
+        """Return the middle of the knee's range [rad]; its sign is the direction in which the knee bends."""
         joint = self._body.joints[name]
         return joint.maximum + joint.minimum
 
     def _sole(self, side: Side, ankle: LegVector, joint: str) -> tuple[float, SoleSize]:
-        """How far the sole is below the ankle [m], and how far it reaches from there."""
+        """Return the depth of the sole below the ankle [m] and the distances of its edges."""
         name = self._body.roles.soles.get(SIDE_ROLES[side], "")
         site = self._data.site(name)
         place, axes = self._place(site.xpos), self._axes.T @ site.xmat.reshape(3, 3)
@@ -163,19 +172,19 @@ class _LegReader:
         return -beside[2], SoleSize(_rounded(toe), _rounded(heel), _rounded(outer), _rounded(inner))
 
     def _touching(self, link: int) -> list[int]:
-        """The geoms of a link that can touch something."""
+        """Return the geoms of a link that can touch something."""
         first, count = self._model.body_geomadr[link], self._model.body_geomnum[link]
         solid = self._model.geom_contype | self._model.geom_conaffinity
         return [geom for geom in range(first, first + count) if solid[geom]]
 
     def _place(self, point: LegVector) -> LegVector:
-        """A point of the world in the torso's frame [m]."""
+        """Return a point of the world in the torso's frame [m]."""
         seen: LegVector = self._axes.T @ (point - self._origin)
         return seen
 
 
 def _outline(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> LegVector:
-    """Points of a geom's surface where it may touch the ground: Shape (points, 3)."""
+    """Return the points of a geom's surface that may touch the ground: Shape (points, 3)."""
     size, axes, place = model.geom_size[geom], data.geom_xmat[geom].reshape(3, 3), data.geom_xpos[geom]
     below = 0.0
     match mujoco.mjtGeom(model.geom_type[geom]):
@@ -194,7 +203,7 @@ def _outline(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> LegVector
 
 
 def _compare(left: _Leg, right: _Leg) -> None:
-    """Refuse legs that are not each other's mirror image."""
+    """Raise RobotModelError if the legs are not mirror images of each other."""
     pairs = [
         ("hips", left.hip, right.hip),
         ("thighs", left.thigh, right.thigh),
@@ -210,14 +219,16 @@ def _compare(left: _Leg, right: _Leg) -> None:
 
 
 def _meet(pitch: LegVector, roll: LegVector, names: tuple[str, str]) -> LegVector:
-    """Where an axis that points aside meets one that points ahead."""
+    """Return the point where a lateral axis meets one that points ahead. Raises RobotModelError if they pass each
+    other.
+    """
     if (apart := abs(float(pitch[2] - roll[2]))) > MEETING_TOLERANCE:
         raise _apart(names[0], names[1], apart)
     return np.array((pitch[0], roll[1], pitch[2]))
 
 
 def _turned(link: LegVector) -> float:
-    """How far a link that goes there is pitched from straight down [rad]."""
+    """Return the pitch of a link from straight down [rad]."""
     return atan2(-link[0], -link[2])
 
 

@@ -1,4 +1,4 @@
-"""The robot's lights, and what it holds: colours of materials of the model."""
+"""The robot's lights and the things it holds: colours of materials of the model."""
 
 from collections.abc import Iterable, Iterator, Mapping
 
@@ -14,10 +14,10 @@ RENDERED_COLOURS: Mapping[object, int] = {
     "yellow": 0xFFE020, "orange": 0xFF8810, "cyan": 0x20E0F0, "magenta": 0xFF30D0, "purple": 0x9030FF,
     "pink": 0xFF80C0, "turquoise": 0x30E0C0, "gold": 0xFFC030, "violet": 0xA050FF,
 }  # fmt: skip
-"""How lit LEDs look behind their covers; all other colours are CSS's."""
+"""The colours of lit LEDs as seen through their covers; other names and values are CSS colours."""
 
 PROPS = ("microphone",)
-"""What the robot can hold for show; materials of the MJCF, invisible until then."""
+"""What the robot can hold for show: materials of the MJCF, invisible until then."""
 
 _SPEAKING = (0.4, 0.9, 1.0)
 _WHITE = np.array([channel / 255 for channel in RENDERED_COLOURS["white"].to_bytes(3, "big")], np.float32)
@@ -25,7 +25,7 @@ _UNSEEN = 1e-5
 
 
 class Lights:
-    """Sets colours of the model that is rendered; physics knows nothing of them.
+    """Sets colours of the rendered model; the physics is not affected.
 
     `groups` are the lights of this body: materials of its MJCF.
     """
@@ -41,31 +41,34 @@ class Lights:
         self._worn: str | None = ""
 
     def show(self, colours: Mapping[str, object]) -> None:
-        """Give each of these lights its colour, a name or `#rrggbb`; unknown lights and colours change nothing."""
+        """Set these groups of lights to a colour each, a name or `#rrggbb`; unknown groups and colours change
+        nothing.
+        """
         for light, colour in self.lights_of(colours):
             shown = rendered(colour)
             if shown is not None:
                 self.draw(light, shown)
 
     def lights_of(self, groups: Mapping[str, object]) -> Iterator[tuple[str, object]]:
-        """Each light of these groups with its group's colour; what this body lacks is left out."""
+        """Return each light of these groups with its group's colour; groups that this body lacks are left out."""
         return ((light, colour) for group, colour in groups.items() for light in self._groups.get(group, ()))
 
     def hold(self, props: Iterable[str]) -> None:
-        """Let the robot hold these things, and no others."""
+        """Show exactly these things in the robot's hand."""
         for name in PROPS:
             if name in self._ids:
                 self._colours[self._ids[name], 3] = float(name in props)
 
     def speak(self, speaking: bool) -> None:
-        """Light the ears while the robot speaks; then they are as they were before."""
+        """Light the ears while the robot speaks; restore them afterwards."""
         for light in self._groups.get("ears", ()):
             self._cover(light, _SPEAKING if speaking else None)
 
     def wear_eyes(self, colour: str) -> None:
-        """Draw the eyes in this colour, `off` where it blinks, unless it is empty; nobody has lit them for that.
+        """Draw this colour over the eyes, `off` for a blink; an empty text removes it.
 
-        Another colour than `off` is worn only by eyes that nobody has lit, or that are white.
+        A colour other than `off` shows only on eyes that have their first colour or are white: lights set by a command
+        win.
         """
         if colour == self._worn:
             return
@@ -77,7 +80,7 @@ class Lights:
                 self._cover(light, rendered(colour) if colour == "off" or not lit else None)
 
     def _cover(self, light: str, shown: tuple[float, float, float] | None) -> None:
-        """Draw a light like this over what it is, until it is uncovered with None."""
+        """Draw a light in this colour over its own until it is uncovered with None."""
         i = self._ids.get(light)
         if i is not None and shown is not None:
             self._unlit.setdefault(i, self._colours[i].copy())
@@ -86,24 +89,24 @@ class Lights:
             self._colours[i] = self._unlit.pop(i)
 
     def restore(self, groups: Iterable[str]) -> None:
-        """Give the lights of these groups the colours that they had when the robot was switched on."""
+        """Restore the lights of these groups to their colours at the start."""
         for light, _ in self.lights_of(dict.fromkeys(groups)):
             if light in self._ids:
                 self.draw(light, self._first[self._ids[light], :3])
 
     def reset(self) -> None:
-        """As the robot looked when it was switched on."""
+        """Restore the robot's looks at the start."""
         self._unlit.clear()
         self._worn = ""
         self._colours[:] = self._first
 
     def shown(self, light: str) -> NDArray[np.float32]:
-        """How a light is drawn (red, green, blue from 0 to 1): Shape (3,)."""
+        """Return a light's own colour (red, green, blue from 0 to 1), Shape (3,), even while it is covered."""
         i = self._ids.get(light)
         return np.zeros(3, np.float32) if i is None else self._unlit.get(i, self._colours[i])[:3].copy()
 
     def draw(self, light: str, shown: ArrayLike) -> None:
-        """Draw a light like this, or once it is no longer lit by speech."""
+        """Set a light's own colour; if the light is covered, the colour appears once it is uncovered."""
         i = self._ids.get(light)
         if i is not None:
             self._unlit.get(i, self._colours[i])[:3] = shown
@@ -111,12 +114,12 @@ class Lights:
 
 
 def _alike(one: NDArray[np.float32], other: NDArray[np.float32]) -> bool:
-    """Whether nobody sees a difference between two colours."""
+    """Return whether two colours look the same."""
     return bool((np.abs(one - other) < _UNSEEN).all())
 
 
 class LightFade:
-    """Lights on an even way of `seconds` [s] to their colours; where it is cancelled they have them at once."""
+    """Changes lights evenly to their colours within `seconds` [s]; cancelled, it sets them at once."""
 
     def __init__(self, lights: Lights, colours: Mapping[str, object], seconds: float, now: float) -> None:
         self._lights, self._seconds, self._begin = lights, seconds, now
@@ -124,16 +127,18 @@ class LightFade:
         self._ways = [(light, lights.shown(light), np.array(goal)) for light, goal in goals.items() if goal]
 
     def advance(self, now: float) -> bool:
+        """Draw the colours at `now` [s]; return True at the end."""
         part = min(1.0, (now - self._begin) / self._seconds) if self._seconds else 1.0
         for light, start, goal in self._ways:
             self._lights.draw(light, start + part * (goal - start))
         return part >= 1.0
 
     def cancel(self) -> None:
+        """Make the next `advance` reach the end."""
         self._seconds = 0.0
 
 
 def rendered(colour: object) -> tuple[float, float, float] | None:
-    """How a light of that colour is drawn (red, green, blue from 0 to 1); None for what is no colour."""
+    """Return a light's colour as drawn (red, green, blue from 0 to 1); None if `colour` is not one."""
     shown = RENDERED_COLOURS.get(colour, rgb(colour))
     return None if shown is None else ((shown >> 16) / 255, (shown >> 8 & 255) / 255, (shown & 255) / 255)

@@ -51,7 +51,9 @@ class MassModel:
         )
 
     def centre_of_mass(self, angles: Mapping[str, float]) -> NDArray[np.float64]:
-        """Return the centre of mass (3,) [m] in the torso's frame; joints not in `angles` [rad] keep their last value."""
+        """Return the centre of mass (3,) [m] in the torso's frame; joints not in `angles` [rad] keep their last
+        value.
+        """
         for name, angle in angles.items():
             self._data.qpos[self._places[name]] = angle
         mujoco.mj_kinematics(self.model, self._data)

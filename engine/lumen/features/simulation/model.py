@@ -148,7 +148,9 @@ def compile_world(world: mjcf.RootElement) -> mujoco.MjModel:
 
 
 def _plain(error: Exception) -> str:
-    """Return the compiler's message without dm_control's advice, hashes in file names and lines of the generated XML."""
+    """Return the compiler's message without dm_control's advice, hashes in file names and lines of the generated
+    XML.
+    """
     reason = " ".join(str(error).split()).rpartition("Error: ")[2]
     return re.sub(r"-[0-9a-f]{40}(?=\.)|, id \d+, line \d+", "", reason)
 

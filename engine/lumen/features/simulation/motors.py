@@ -1,4 +1,4 @@
-"""The only way to a joint."""
+"""The motors: every joint is moved through them."""
 
 from collections import deque
 from collections.abc import Collection, Iterable, Mapping
@@ -15,14 +15,14 @@ from lumen.features.simulation.world import World
 from lumen.project.units import unit_in_si
 
 _WITHOUT_BOUND = 1e9
-"""The stall torque [N m] of a motor that names none; infinity times a speed of 0 would be no number."""
+"""The stall torque [N m] of motors without one; infinity would give NaN at a speed of 0."""
 
 
 class MotorTorques:
-    """The lines from stall torque to no-load speed of all motors.
+    """The line from stall torque to no-load speed of each motor.
 
-    A motor whose actuator names no stall torque keeps its torque at every speed; so do all where they are not
-    `falling`. `fastest`: no-load speeds [rad/s] at the battery's nominal voltage, Shape (motors,).
+    A motor whose actuator has no stall torque keeps its torque at every speed; without `falling`, all do. `fastest` are
+    the no-load speeds [rad/s] at the battery's nominal voltage, Shape (motors,).
     """
 
     def __init__(self, world: World, fastest: NDArray[np.float64], *, falling: bool = True) -> None:
@@ -32,7 +32,9 @@ class MotorTorques:
         self._stall = np.where(stall > 0.0, stall, _WITHOUT_BOUND)
 
     def limit(self, allowed: NDArray[np.float64], volts: float) -> NDArray[np.float64]:
-        """Least and greatest torque [N m], Shape (motors, 2): those `allowed`, or what `volts` give at this speed."""
+        """Return the least and greatest torque [N m], Shape (motors, 2): `allowed`, reduced to what `volts` [V] give at
+        the present speed.
+        """
         supply, limits = volts / NOMINAL_VOLTAGE, np.empty((len(self._stall), 2))
         turning = self._world.motor_speeds / self._fastest
         np.maximum(allowed[:, 0], -self._stall * np.maximum(supply + turning, 0.0), out=limits[:, 0])
@@ -41,14 +43,14 @@ class MotorTorques:
 
 
 LIMP_STIFFNESS = 0.5
-"""Below this stiffness a joint may be anywhere but at its goal."""
+"""A joint with less stiffness than this may be far from its goal."""
 
 
 class Motors:
-    """Takes goals, and drives every joint there inside the body's limits and speeds.
+    """Drives every joint to its goal within the body's limits and speeds.
 
-    `goal` is where the joints are wanted, `command` what is sent to their servos: Shape (joints,), [rad; hands 0..1].
-    `effort` is the greatest torque of each motor [N m], 0 at a joint that shares another's; `voltage` feeds them [V].
+    `goal` are the joints' goals, `command` the angles sent to their servos: Shape (joints,), [rad; hands 0..1].
+    `effort` is the greatest torque of each motor [N m], 0 at a joint that shares a motor; `voltage` is the supply [V].
     """
 
     def __init__(self, world: World, lacking: Imperfections | None = None) -> None:
@@ -75,10 +77,10 @@ class Motors:
         self._sent = deque([self.command], maxlen=LATENCY + 1 if lacking.latency else 1)
 
     def aim(self, targets: Mapping[str, float]) -> None:
-        """Want these joints there, or at their limit where it lies before.
+        """Set the goals of these joints, limited to their ranges.
 
-        Raises RobotError, and changes nothing, for an unknown joint or what is no number.
-        A joint that shares a motor moves its twin too; where both are named, the one that has the motor decides.
+        A joint that shares a motor moves its twin too; if both are named, the one with the motor decides. Raises
+        RobotError, and changes nothing, for an unknown joint or an angle that is not finite.
         """
         self.check(targets)
         for name, angle in targets.items():
@@ -89,7 +91,7 @@ class Motors:
             self.goal[self.index[follower]] = self.goal[self.index[leader]]
 
     def check(self, targets: Mapping[str, float]) -> None:
-        """Raises RobotError where these are no goals for this body."""
+        """Raise RobotError if these are not goals for this body."""
         for name, angle in targets.items():
             if name not in self.index:
                 raise BadCommandError(f"`{name}` is not a joint of this robot")
@@ -97,12 +99,12 @@ class Motors:
                 raise BadCommandError(f"`{name}` cannot move to {angle}")
 
     def inside(self, name: str, angle: float) -> float:
-        """The nearest angle inside that joint's limits."""
+        """Return the nearest angle inside that joint's limits."""
         low, high = self._limits[name]
         return min(max(angle, low), high)
 
     def wanted(self, names: Iterable[str]) -> dict[str, float]:
-        """The goals of these joints."""
+        """Return the goals of these joints [rad; hands 0..1]."""
         return {name: float(self.goal[self.index[name]]) for name in names}
 
     def unit(self, name: str) -> str:
@@ -120,16 +122,18 @@ class Motors:
         return abs(self._world.angles.item(i) - self.command.item(i))
 
     def sway(self, offsets: Mapping[str, float]) -> None:
-        """Add that [rad] to the goals of these joints in the next period, and in that alone."""
+        """Add these angles [rad] to the joints' goals in the next period only."""
         for name, angle in offsets.items():
             self._sway[self.index[name]] += angle
 
     def hold(self, angles: Mapping[str, float]) -> None:
-        """Send these joints there [rad] in the next period, and in that alone, instead of to their goals."""
+        """Replace these joints' goals [rad] in the next period only."""
         self._held = {self.index[name]: angle for name, angle in angles.items()}
 
     def stiffen(self, stiffness: float, names: Collection[str] | None = None) -> None:
-        """Let these motors (or all) give at most that part (0..1) of their torque; what was limp starts where it is."""
+        """Limit these motors, or all, to that share (0..1) of their torque; limp joints start from their present
+        angle.
+        """
         chosen = [self.index[name] for name in names] if names is not None else list(self.index.values())
         limp = [i for i in chosen if self.stiffness[i] < LIMP_STIFFNESS]
         if limp:
@@ -143,7 +147,9 @@ class Motors:
         self._limits_of_torque()
 
     def drive(self, trim: JointVector, dt: float) -> None:
-        """Tell the servos where to be `dt` [s] from now; `trim` [rad] is added to the goal, not kept."""
+        """Send the servos their angles for `dt` [s] from now; `trim` [rad] is added to the goals in this period
+        only.
+        """
         wanted = self.goal + self._sway
         for joint, angle in self._held.items():
             wanted[joint] = angle
@@ -156,6 +162,6 @@ class Motors:
         self._limits_of_torque()
 
     def _limits_of_torque(self) -> None:
-        """Let each motor give what its stiffness allows, and what it can at the speed it turns at."""
+        """Limit each motor's torque by its stiffness and its present speed."""
         volts = self.voltage if self._supplied else NOMINAL_VOLTAGE
         self._world.model.actuator_forcerange[self._world.actuators] = self._torques.limit(self._allowed, volts)

@@ -1,4 +1,4 @@
-"""`--imperfections`: a simulated robot that falls short in other ways than lumen.yaml says."""
+"""`--imperfections`: a simulated robot with other imperfections than lumen.yaml's."""
 
 import argparse
 
@@ -8,14 +8,14 @@ from lumen.language.diagnostics import did_you_mean
 
 
 def configure_imperfections(parser: argparse.ArgumentParser) -> None:
-    """`--imperfections`, for a verb that has a simulated robot."""
+    """Add `--imperfections` to a command that simulates a robot."""
     names = ", ".join(IMPERFECTIONS)
     what = f"imperfections of the simulated robot: `none`, or a list of {names} (default: as in lumen.yaml, else all)"
     parser.add_argument("--imperfections", metavar="LIST", help=what)
 
 
 def imperfections_of(text: str | None) -> Imperfections | None:
-    """Those that were named, None where nothing was; raises UsageError for what is none."""
+    """Return the named imperfections, None for None. Raises UsageError for an unknown name."""
     if text is None:
         return None
     if text == "none":

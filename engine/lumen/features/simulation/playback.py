@@ -1,4 +1,4 @@
-"""What the robot does while it plays a motion or speaks."""
+"""The activities of playing a motion and of speaking."""
 
 from collections.abc import Mapping
 
@@ -16,13 +16,15 @@ _START_POSTURE_TOLERANCE = 0.05
 
 LATE, BLOCKED, BLOCKED_ON_THE_WAY = 0.05, 0.2, 0.4
 """Tolerances [rad; hands 0..1]: of the angle sent to a joint at a key, and of the joint from that angle at the end of a
-motion and at the keys before."""
+motion and at earlier keys.
+"""
 
 
 class MotionPlayback:
-    """A motion: to the posture it begins in where the robot is not there, then along its keys, cues beside them.
+    """A motion: first to its starting posture if the robot is elsewhere, then along its keys, with its cues.
 
-    `home` holds that posture's angles [rad] of the joints that the motion owns; `notice` gets words and sounds.
+    `home` are the starting posture's angles [rad] of the joints that the motion owns; `notice` receives words and
+    sounds.
     """
 
     def __init__(
@@ -55,10 +57,11 @@ class MotionPlayback:
 
     @property
     def reached(self) -> float:
-        """How far along the motion it is [s]; 0 on the way to its beginning."""
+        """The time in the motion [s]; 0 on the way to its beginning."""
         return self._now - self._begin if self._trajectory else 0.0
 
     def advance(self, now: float) -> bool:
+        """Play on; return True at the end."""
         self._now = now
         if self._recovery:
             return self._recovery.advance(now)
@@ -71,7 +74,7 @@ class MotionPlayback:
         return self._play(self._trajectory, now - self._begin)
 
     def cancel(self) -> None:
-        """Back to where it began, which takes `RECOVERY`."""
+        """Begin to return to the starting posture, within `RECOVERY_TIME`."""
         for cue in self._motion.cues:
             if cue.kind == "leds" and isinstance(cue.value, Mapping):
                 self._lights.restore(cue.value)
@@ -101,7 +104,7 @@ class MotionPlayback:
         return True
 
     def _note_keys(self, t: float) -> None:
-        """Note the joints that are not at a key that has passed: they can't move faster, or not at all."""
+        """Record joints that are not at a key that has passed: they are too slow, or blocked."""
         while self._keys and self._keys[0][0] <= t:
             _, joint = self._keys.pop(0)
             self._note(joint, self._motors.lag(joint), LATE, t)
@@ -119,7 +122,7 @@ class MotionPlayback:
 
 
 class SpeechActivity:
-    """Saying a text, which takes `duration` [s]; the robot's ears glow meanwhile. `words` are the voice's."""
+    """Speaks a text for `duration` [s] while the robot's ears glow; `words` are the voice's times of words."""
 
     def __init__(self, lights: Lights, voice: SpeechPlayback, said: Say, volume: float, now: float) -> None:
         self._lights, self._voice, self._now = lights, voice, now
@@ -129,6 +132,7 @@ class SpeechActivity:
         lights.speak(True)
 
     def advance(self, now: float) -> bool:
+        """Return True, and turn the ears off, once the text has been spoken."""
         self._now = now
         if now < self._until:
             return False
@@ -137,5 +141,6 @@ class SpeechActivity:
         return True
 
     def cancel(self) -> None:
+        """Stop the voice; the next `advance` ends the activity."""
         self._until = 0.0
         self._voice.end(self._now)

@@ -1,4 +1,4 @@
-"""From posture to posture along the ways that do not fall, down to the floor and up again."""
+"""Changes of posture along ways that do not fall, down to the floor and up again."""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -14,17 +14,17 @@ from lumen.motion.postures import lies, passage, route
 from lumen.motion.trajectories import Trajectory
 
 MAX_ATTEMPTS = 3
-"""How often a robot that ends on the floor tries again."""
+"""How often a robot that ends on the floor tries, in all."""
 
 LYING_TILT = pi / 3
-"""A torso that leans farther than this lies [rad]; a relaxed one that sits leans half as far."""
+"""A torso that leans more than this is lying [rad]; that of a relaxed, sitting robot leans half as much."""
 
 SETTLING_TIME, REST_TIME = 1.5, 0.4
-"""How long the joints take to the posture that a robot lies in, or sits in, before it moves on [s]; and to rest [s]."""
+"""How long the joints take to the posture in which a robot lies or sits, before it moves on, and to rest [s]."""
 
 
 class UprightSensor(Protocol):
-    """What the accelerometer measures of the torso: where up is, in its own axes (forward, left, up)."""
+    """The direction of up in the torso's axes (forward, left, up), measured by the accelerometer."""
 
     @property
     def up(self) -> tuple[float, float, float]: ...
@@ -32,24 +32,25 @@ class UprightSensor(Protocol):
 
 @dataclass
 class PostureState:
-    """In which posture the robot is; between two of them, on which passage, and how far along it [s].
-
-    `standing` are those on both feet, or on what else it stands.
-    """
+    """The robot's posture or, between two postures, its passage."""
 
     posture: str
+    """The posture that the robot is in or has left last."""
     standing: Collection[str]
+    """The postures on both feet, or on whatever else the robot stands."""
     passage: MotionDefinition | None = None
+    """The passage that was interrupted, None in a posture."""
     reached: float = 0.0
+    """The time in that passage [s]."""
 
     @property
     def upright(self) -> bool:
-        """Whether it stands, on both feet where it has them."""
+        """Whether the robot stands, on both feet if it has them."""
         return self.posture in self.standing and self.passage is None
 
 
 def lying(feeling: UprightSensor) -> str:
-    """The posture on the floor that a robot is in or next to; empty where its torso does not lie."""
+    """Return the posture on the floor nearest to the robot's; empty if its torso does not lie."""
     forward, _, up = feeling.up
     if up > cos(LYING_TILT):
         return ""
@@ -57,11 +58,11 @@ def lying(feeling: UprightSensor) -> str:
 
 
 class PosturePlanner:
-    """The robot's way to the nearest of `goals`: each passage to its end, and after it a look whether it went well.
+    """The way to the nearest of `goals`, passage by passage, with a check of the result after each.
 
-    Where it did not, the robot lies; it begins again from there, `ATTEMPTS` times in all. A cancelled way halts where
-    it is, and the next one goes on from there. `settle` is for a robot whose joints may be anywhere. Raises RobotError
-    where no way leads to a goal.
+    If a passage fails, the robot lies on the floor and begins again from there, `MAX_ATTEMPTS` times in all. A
+    cancelled way halts, and the next one continues from there. `settle` is for a robot whose joints may be anywhere.
+    Raises RobotError if no way leads to a goal.
     """
 
     def __init__(
@@ -85,10 +86,11 @@ class PosturePlanner:
 
     @property
     def passing(self) -> bool:
-        """Whether the robot is between two postures that no straight way connects."""
+        """Whether the robot is on a passage between two postures."""
         return isinstance(self._step, _Passing)
 
     def advance(self, now: float) -> bool:
+        """Move on; return True at the end. Raises RobotFailedError if the robot can't reach the posture."""
         if self._step is not None and not self._step.advance(now):
             return False
         if self._cancelled:
@@ -101,6 +103,7 @@ class PosturePlanner:
         return self._step is None
 
     def cancel(self) -> None:
+        """Halt, and remember the place on a passage."""
         if isinstance(self._step, _Passing):
             self._posture_state.passage, self._posture_state.reached = self._step.motion, self._step.reached
             self._step = None
@@ -109,7 +112,9 @@ class PosturePlanner:
         self._cancelled = True
 
     def _arrived(self) -> bool:
-        """Take note of where the robot has come to, and whether that is where it was to come."""
+        """Record the posture reached; return whether it is the intended one. Raises RobotFailedError after the last
+        attempt.
+        """
         step, state = self._step, self._posture_state
         state.posture, state.passage = step.end if step else state.posture, None
         down = lying(self._feeling)
@@ -140,21 +145,23 @@ class PosturePlanner:
 
 
 class _Straight:
-    """All joints together to a posture."""
+    """Moves all joints together to a posture."""
 
     def __init__(self, motors: Motors, body: Body, end: str, now: float, seconds: float) -> None:
         self.end = end
         self._transition = JointTransition(motors, body.postures[end], now, seconds)
 
     def advance(self, now: float) -> bool:
+        """Move on; return True at the end."""
         return self._transition.advance(now)
 
     def cancel(self) -> None:
+        """Begin to slow down."""
         self._transition.cancel()
 
 
 class _Passing:
-    """Along a passage, from the time `reached` [s] of it; then it comes to rest."""
+    """Moves along a passage from the time `reached` [s], then rests."""
 
     def __init__(self, motors: Motors, motion: MotionDefinition, now: float, reached: float = 0.0) -> None:
         self.motion, self.end, self.reached = motion, motion.end, reached
@@ -162,6 +169,7 @@ class _Passing:
         self._trajectory = Trajectory(motion, motors.wanted(motion.tracks) if not reached else None)
 
     def advance(self, now: float) -> bool:
+        """Move on; return True after the rest."""
         self.reached = min(now - self._begin, self.motion.duration)
         self._motors.aim(self._trajectory.sample(self.reached))
         return now - self._begin >= self.motion.duration + REST_TIME

@@ -100,7 +100,9 @@ class RenderState:
 
 
 class SceneRenderer:
-    """Draws scenes of one model; each thread that uses it gets an OpenGL context of its own, made at its first picture."""
+    """Draws scenes of one model; each thread that uses it gets an OpenGL context of its own, made at its first
+    picture.
+    """
 
     def __init__(self, model: mujoco.MjModel, quality: RenderQuality, soles: Soles = NO_SOLES) -> None:
         self._model, self._quality, self._soles = model, quality, soles

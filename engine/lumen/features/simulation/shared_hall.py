@@ -1,4 +1,4 @@
-"""Several simulated robots in one hall: one physics, in which they stand beside, see and push each other."""
+"""Several simulated robots in one hall, with one physics: they can see and push each other."""
 
 from collections.abc import Mapping
 from math import cos, sin
@@ -18,20 +18,23 @@ from lumen.language.robots import Body
 
 
 class HallRobot(NamedTuple):
-    """One of the robots: its body, the folder of its MJCF, and where it stands in the hall."""
+    """One of the robots in a hall."""
 
     body: Body
     models: Path
+    """The folder of its MJCF."""
     at: StartPose = StartPose()
+    """Its first place in the hall."""
     imperfections: Imperfections = Imperfections()
     stage: Stage | None = None
+    """The bounds of its walks, None for no bounds."""
 
 
 class SharedHall:
-    """Robots by name that live together when `advance` is called, by the thread that calls it.
+    """Robots by name in one hall, whose time passes only in `advance`, in the caller's thread.
 
-    `models` is the folder of the hall. There is one visitor in it, whom all robots can see; who moved them last counts.
-    Raises RobotError where the models can't be used.
+    `models` is the folder of the hall. The hall has one visitor, whom all robots can see and any of them can move.
+    Raises RobotError if the models are unusable.
     """
 
     def __init__(self, robots: Mapping[str, HallRobot], models: Path, hall: str, *, posture: str = "Stand") -> None:
@@ -57,9 +60,9 @@ class SharedHall:
         self._ticks, self._until = 0, 0.0
 
     def advance(self, dt: float) -> None:
-        """Live `dt` [s] of physics, in whole control periods: what is left over is lived next time.
+        """Advance by `dt` [s] in whole control periods; the remainder is kept for the next call.
 
-        Raises RobotError where the models let the simulation become unstable.
+        Raises RobotError if the models make the simulation unstable.
         """
         self._until += dt
         while (self._ticks + 1) * CONTROL_PERIOD <= self._until + 1e-9:

@@ -1,4 +1,4 @@
-"""What a simulated robot can do: each command's parts of the body, and how it begins."""
+"""The abilities of a simulated robot: the body parts of each command, and how it begins."""
 
 from collections.abc import Callable
 from math import inf, pi
@@ -26,10 +26,10 @@ from lumen.robot.joint_ways import LOOK_SPEED, home_angles
 from lumen.robot.silent_recording import SilentRecording
 
 FALLEN_STIFFNESS = 0.1
-"""Stiffness of a robot that has fallen."""
+"""The stiffness of a fallen robot."""
 
 PROTECTING_STIFFNESS, PROTECTING_TIME = 0.6, 0.7
-"""Stiffness of head and arms while the robot falls, and for how long [s]."""
+"""The stiffness of head and arms during a fall, and for how long [s]."""
 
 BREAKS_A_FALL = {
     "head.pitch": -0.6,
@@ -38,25 +38,25 @@ BREAKS_A_FALL = {
     "arms.left.elbow-roll": -0.9,
     "arms.right.elbow-roll": 0.9,
 }
-"""Head and arms of a robot that falls on its belly or aside [rad]. On the back nothing that was tried was better."""
+"""The angles of head and arms in a forward or sideways fall [rad]. Nothing that was tried helped in a backward fall."""
 
 FIRST_POSTURE = "Stand"
 """The posture that every body has."""
 
 BACKWARDS = 0.3
-"""A torso in whose frame up is farther ahead than this falls on its back."""
+"""If up is farther ahead than this in the torso's axes, the robot falls on its back."""
 
 FULL_VOLUME = 1.0
-"""How loud a robot speaks that nobody has told."""
+"""The volume of speech before any `volume` command."""
 
 _REST_SPEED, _WAKE_SPEED = 0.3, 0.4
 _UPRIGHT = pi / 9
 
 
 class SimulatedSkills:
-    """Begins activities; knows whether the motors are on, in which posture the robot is and whether it has fallen.
+    """Begins activities; keeps whether the motors are on, the robot's posture, and whether it has fallen.
 
-    `notice` gets events for what a motion says and sounds; `playing` is the motion begun last.
+    `notice` receives events for the words and sounds of a motion; `playing` is the motion begun last.
     """
 
     def __init__(
@@ -87,24 +87,24 @@ class SimulatedSkills:
 
     @property
     def upright(self) -> bool:
-        """Whether the robot is on both feet, and means to stay there."""
+        """Whether the robot is on both feet and is not leaving them."""
         return self._posture_state.upright and not (self._way and self._way.passing)
 
     @property
     def posture(self) -> str:
-        """The posture that the robot is in, or on its way from."""
+        """The posture that the robot is in or leaving."""
         return self._posture_state.posture
 
     def parts(self, command: RobotCommand) -> frozenset[str]:
-        """Which parts of the body a command owns."""
+        """Return the body parts that a command owns."""
         return parts_of(command, self._world.body)
 
     def part(self, joint: str) -> str:
-        """The part of the body that a joint belongs to."""
+        """Return the body part of a joint, empty if unknown."""
         return self._part.get(joint, "")
 
     def begin(self, command: NativeCommand, now: float) -> Activity:
-        """The command under way. Raises RobotError where the robot can't."""
+        """Begin a command and return its activity. Raises RobotError if the robot can't."""
         if row_of(command).moves and not isinstance(command, Wake | Posture):
             self._ready()
         match command:
@@ -139,9 +139,8 @@ class SimulatedSkills:
                 assert_never(command)
 
     def fall(self, now: float) -> None:
-        """Give way, the head held up and arms where they take the blow; `lie` ends that.
-
-        The fall is over sooner than legs could help.
+        """Go limp, with the head raised and the arms in the way of the fall, until `lie`; legs would be too slow to
+        help.
         """
         self.fallen, self._way, self._down_at = True, None, now + PROTECTING_TIME
         self._motors.stiffen(FALLEN_STIFFNESS)
@@ -151,7 +150,7 @@ class SimulatedSkills:
         self._lights.reset()
 
     def lie(self, now: float) -> None:
-        """Let go of head and arms, too, once a fall is over."""
+        """Release head and arms too, once the fall is over."""
         if self.fallen and now >= self._down_at:
             self._motors.stiffen(FALLEN_STIFFNESS)
             self._down_at = inf
@@ -181,7 +180,7 @@ class SimulatedSkills:
     def _go(
         self, goals: tuple[str, ...], now: float, speed: float, after: Callable[[], None] | None = None
     ) -> PosturePlanner:
-        """The way to one of these postures; a robot that has fallen, or was limp, begins with where it lies or sits."""
+        """Return the way to the nearest of these postures; a fallen or limp robot begins from how it lies or sits."""
         limp, down = self.fallen or not self.awake, lying(self._sensors)
         if limp and down:
             self._posture_state = PostureState(down, self._standing)

@@ -12,7 +12,7 @@ from lumen.language.robots import Ultrasound
 from lumen.language.roles import SIDES
 
 _ECHOING = np.array([0, 1, 0, 0, 0, 0], dtype=np.uint8)
-"""Geom group 1, what stands in the hall; the ground throws sound away from the robot, and it does not hear itself."""
+"""Geom group 1, the things in the hall. The ground reflects sound away, and the robot does not detect itself."""
 
 _RINGS = ((0.0, 1), (0.45, 6), (0.9, 8))
 SONAR_RESOLUTION, SONAR_NOISE = 0.01, 0.003
@@ -38,7 +38,7 @@ class Sonars:
         self._hit = np.zeros(len(self._rays), dtype=np.int32)
 
     def measure(self) -> tuple[float, float]:
-        """Left and right; the farthest that can be heard where nothing is. One sensor alone is heard on both sides."""
+        """Return the distances left and right [m], at most the sensor's range; a single sensor gives both."""
         heard = [self._heard(name) for name in self._sites]
         return heard[0], heard[-1]
 
@@ -55,7 +55,7 @@ class Sonars:
 
 
 def _cone(half: float) -> NDArray[np.float64]:
-    """Directions around x inside a cone of that half angle [rad]: Shape (rays, 3)."""
+    """Return directions around x in a cone of that half angle [rad]: Shape (rays, 3)."""
     rays = []
     for part, count in _RINGS:
         angle = part * half

@@ -1,4 +1,4 @@
-"""How the simulated robot plays a sound file, and who else may want to hear it."""
+"""The simulated robot's sound files, and an interface for playing them."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -10,25 +10,29 @@ class SoundPlayback(Protocol):
     """Plays sound files in simulated time."""
 
     def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
-        """Play it from `now` [s] on, with a `volume` from 0 to 1; what to call with the time of its end."""
+        """Begin to play at `now` [s] with a `volume` from 0 to 1; return a function to call with the time of the end
+        [s].
+        """
         ...
 
 
 class SilentSounds:
-    """Plays nothing: the robot takes its time for that."""
+    """Plays nothing; the robot still waits for the sound's length."""
 
     def play(self, sound: PlaySound, volume: float, now: float) -> Callable[[float], None]:
+        """Return a function that does nothing."""
         return lambda now: None
 
 
 class SoundActivity:
-    """Playing a sound, as long as it takes."""
+    """A sound that is playing, for as long as the file lasts."""
 
     def __init__(self, playback: SoundPlayback, sound: PlaySound, volume: float, now: float) -> None:
         self._end, self._now = playback.play(sound, volume, now), now
         self._until = now + sound.length
 
     def advance(self, now: float) -> bool:
+        """Return True, and stop the player, once the sound has ended."""
         self._now = now
         if now < self._until:
             return False
@@ -36,4 +40,5 @@ class SoundActivity:
         return True
 
     def cancel(self) -> None:
+        """Make the next `advance` end the sound."""
         self._until = 0.0

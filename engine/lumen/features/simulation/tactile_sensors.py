@@ -1,4 +1,4 @@
-"""The tactile sensors: what stands in the hall presses those that it touches."""
+"""The tactile sensors, pressed by the things in the hall that touch them."""
 
 from collections.abc import Iterable
 
@@ -8,13 +8,13 @@ from lumen.features.simulation.model_terms import ROBOT_PREFIX
 from lumen.features.simulation.physics import mujoco
 
 _SOLID = 2
-"""The collision type of what stands in a hall and is not its ground."""
+"""The collision type of things in a hall other than the ground."""
 
 
 class TactileSensors:
-    """Looks at the contacts of the robot with what stands in the hall.
+    """Checks the robot's contacts with things in the hall.
 
-    A sensor is the box that the model's site of its name spans; those of `sensors` without a site feel nothing.
+    A sensor is the box of the model's site of its name; those of `sensors` without a site are never pressed.
     """
 
     def __init__(
@@ -26,7 +26,7 @@ class TactileSensors:
         self._sites = {name: site for name, site in sites.items() if site >= 0}
 
     def pressed(self) -> set[str]:
-        """Those that are pressed now."""
+        """Return the sensors that are pressed now."""
         touching = self._data.contact.geom
         if self._solid.isdisjoint(touching.ravel().tolist()):
             return set()
@@ -34,7 +34,7 @@ class TactileSensors:
         return {name for i, pair in at for name, site in self._sites.items() if self._in(site, i, pair)}
 
     def _in(self, site: int, contact: int, pair: list[int]) -> bool:
-        """Whether a contact of the site's body is inside of the site's box."""
+        """Return whether a contact with the site's body is inside the site's box."""
         if self._model.site_bodyid[site] not in self._model.geom_bodyid[pair]:
             return False
         away = self._data.contact.pos[contact] - self._data.site_xpos[site]

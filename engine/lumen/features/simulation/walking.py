@@ -1,4 +1,4 @@
-"""What the robot does while it walks, to a place or on and on: NAOqi's `moveTo` and `move`."""
+"""Walking, to a place or continuously: NAOqi's `moveTo` and `move`."""
 
 from collections.abc import Callable, Mapping
 from math import isfinite
@@ -30,27 +30,28 @@ from lumen.motion.gait.legs import SIDE_ROLES, sign
 from lumen.motion.gait.parameters import scale_of
 
 MAX_WALK_DISTANCE = 10.0
-"""A walk farther than this [m] is a mistake."""
+"""The longest walk that is accepted [m]."""
 
 MAX_STAGE_DRIFT = 0.02
-"""How far beyond the stage a step may be planned on the way [m]: each landed foot is a little off its plan."""
+"""How far beyond the stage a later step may be planned [m]: each foot lands a little off its plan."""
 
 ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.02, 0.05
-"""A walk that ends farther than this from where it should [m], [rad] has failed."""
+"""A walk that ends farther than this from its goal [m], [rad] has failed."""
 
 WALK_POSTURE_TIME, WALK_REST_TIME = 0.8, 0.2
-"""How long it takes to get into the walk's posture, and to come to rest there [s]."""
+"""How long it takes to reach the walk's posture, and to come to rest there [s]."""
 
 HAZARD_CHECK_PERIOD = 0.1
-"""Time between two looks at what may be in the way [s]."""
+"""The time between two checks for hazards [s]."""
 
 ARM_SWING_GAIN, MAX_ARM_SWING, HANGING_ARM_PITCH = 2.5, 0.35, 1.0
-"""Arms swing that far for each metre between the feet [rad/m], on legs as long as those that paces were found with, at
-most so far [rad]; those below this pitch [rad]."""
+"""Arms whose pitch exceeds the last value [rad] swing by the first [rad/m] for each metre between the feet, at most by
+the second [rad]; the first is for legs as long as those that the paces were tuned with.
+"""
 
 
 def way_of(command: Walk | Move) -> Pose | Velocity:
-    """Where a walk goes, or how fast. Raises RobotError for what is no number, or too far."""
+    """Return a walk's goal or its velocity. Raises RobotError if it is not finite, or too far."""
     if isinstance(command, Move):
         velocity = Velocity(command.vx, command.vy, command.vtheta)
         if not all(map(isfinite, velocity)):
@@ -65,9 +66,9 @@ def way_of(command: Walk | Move) -> Pose | Velocity:
 
 
 class WalkController:
-    """What walking takes; `begin` makes the activity of a command.
+    """The parts of the robot that walking uses; `begin` makes the activity of a command.
 
-    `free` says whether nothing else moves a joint, `hot` whether the motors should be spared.
+    `free` returns whether nothing else moves a joint, `hot` whether the motors should be spared.
     """
 
     def __init__(
@@ -97,9 +98,9 @@ class WalkController:
         self._walking: WalkActivity | None = None
 
     def begin(self, command: Walk | Move, now: float) -> "WalkActivity":
-        """The walk under way; one that goes on at a speed already goes on like this where another is asked for.
+        """Begin a walk and return its activity; for a new velocity, a walk in progress changes its own.
 
-        Raises RobotError, and changes nothing, for one that must not begin.
+        Raises RobotError, and changes nothing, if the walk must not begin.
         """
         way = way_of(command)
         if isinstance(way, Velocity) and self._walking and self._walking.steer(way, now):
@@ -119,9 +120,10 @@ class WalkController:
         return self._walking
 
     def pace(self, way: Pose | Velocity, now: GaitParameters | None = None) -> GaitParameters:
-        """Gently with hot motors; briskly only where a speed is asked for that takes it: a place asks for truth.
+        """Return the gentle pace with hot motors, the brisk one for velocities that need it, else the usual one.
 
-        A walk that is brisk `now` stays so: who changes to and fro between the two stumbles.
+        A walk to a place is never brisk, so that it ends accurately. A walk that is brisk `now` stays so, because
+        frequent changes between the two make the robot stumble.
         """
         usual, gentle, brisk, _ = self._paces
         if self._hot():
@@ -129,12 +131,12 @@ class WalkController:
         return brisk if isinstance(way, Velocity) and (now == brisk or way.within(usual) != way) else usual
 
     def measured(self) -> dict[str, float]:
-        """Where the encoders say the legs' joints are [rad]."""
+        """Return the legs' angles by the encoders [rad]."""
         angles = self.sensors.angles
         return {name: float(angles[i]) for name, i in self._legs}
 
     def swing(self, stride: float) -> None:
-        """Swing the arms that hang and do nothing else, against the legs; `stride`: the left foot's lead [m]."""
+        """Swing hanging arms that no command uses against the legs; `stride` is the left foot's lead [m]."""
         angle = min(max(self._arm_gain * stride, -MAX_ARM_SWING), MAX_ARM_SWING)
         hanging = self.motors.wanted(name for name, _, _ in self._arms)
         self.motors.sway(
@@ -146,14 +148,16 @@ class WalkController:
         )
 
     def centre_of_mass(self, legs: Mapping[str, float]) -> NDArray[np.float64]:
-        """Where it is (3,) [m] in the torso's frame, with legs bent like this [rad] and all else where it is wanted."""
+        """Return the centre of mass (3,) [m] in the torso's frame, with these legs' angles [rad] and all other joints
+        at their goals.
+        """
         return self._mass_model.centre_of_mass({**self.motors.wanted(self._others), **legs})
 
 
 class WalkActivity:
     """A walk: into its posture, step by step to the place, and to rest.
 
-    What gets in the way ends it, as `cancel` does, within the step in the air and one that brings the feet together.
+    A hazard ends it as `cancel` does: with the step in progress and one that brings the feet together.
     """
 
     def __init__(self, walker: WalkController, gait: Gait, now: float) -> None:
@@ -166,7 +170,7 @@ class WalkActivity:
         self._cancelled = self._over = self._stumbled = False
 
     def steer(self, velocity: Velocity, now: float) -> bool:
-        """Go on at that speed; false for a walk that goes to a place, ends, or did not live until now."""
+        """Change the velocity; return False if the walk goes to a place, is ending, or was not advanced to `now`."""
         alive = self._now == now and not self._cancelled and not self._over
         goes_on = alive and isinstance(self._gait.goal, Velocity)
         if goes_on:
@@ -175,6 +179,7 @@ class WalkActivity:
         return goes_on
 
     def advance(self, now: float) -> bool:
+        """Walk on; return True at the end. Raises RobotFailedError if a hazard stopped it or it missed its goal."""
         self._now = now
         self._walker.balance.walking = True
         if self._walker.balance.catching:
@@ -190,6 +195,7 @@ class WalkActivity:
         return self._go()
 
     def cancel(self) -> None:
+        """End the walk with the feet together."""
         self._cancelled = True
         if self._rising:
             self._rising.cancel()
@@ -197,7 +203,7 @@ class WalkActivity:
             self._gait.stop()
 
     def _go_on(self, now: float) -> bool:
-        """After a fall that was caught, walk on from where the feet stand now; a cancelled walk ends there."""
+        """Continue from where the feet are after a caught fall; a cancelled walk ends there."""
         walker, gait = self._walker, self._gait
         self._stumbled, self._landed = False, 0
         self._gait = Gait(walker.legs, walker.odometry.feet, gait.goal, walker.centre_of_mass, gait.pace)
@@ -224,7 +230,7 @@ class WalkActivity:
         return False
 
     def _watch(self, now: float) -> None:
-        """End where something is in the way, or where the way leads off the stage by now."""
+        """Cancel the walk if a hazard appears or the planned steps leave the stage."""
         if self._cancelled:
             return
         if now >= self._look:

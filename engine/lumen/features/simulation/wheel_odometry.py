@@ -1,4 +1,4 @@
-"""Where a robot on wheels believes to be, from where it began: by its wheels' encoders and the gyrometer."""
+"""A wheeled robot's estimate of its position since its start, from its wheels' encoders and the gyrometer."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from lumen.motion.gait.poses import wrap
 from lumen.ports import Whereabouts
 
 STILL_RATE = 0.15
-"""A robot whose wheels stand still and that seems to turn slower than this [rad/s] does not turn: a gyrometer errs."""
+"""If the wheels stand still, a measured rate below this counts as the gyrometer's error [rad/s]."""
 
 
 class WheelOdometry:
@@ -33,20 +33,20 @@ class WheelOdometry:
         self._lost = False
         self.here = Pose()
         self.speed = 0.0
-        """How fast the wheels roll ahead [m/s]."""
+        """The speed at which the wheels roll ahead [m/s]."""
 
     @property
     def whereabouts(self) -> Whereabouts:
-        """Where the robot believes to be, and how far that may be wrong."""
+        """The estimate of the robot's position and its possible error."""
         return self._reckoning.whereabouts
 
     @property
     def doubt(self) -> float:
-        """How far from there the robot may be after it was down [m]."""
+        """How far the robot may be from the estimate because it was down [m]."""
         return self._reckoning.slid
 
     def feel(self, dt: float) -> None:
-        """Take note of this control period: as far as the wheels rolled, the way the gyrometer says it faces."""
+        """Advance the estimate by one control period of `dt` [s]: the wheels' way along the gyrometer's heading."""
         rolled, heading = self._encoders(), self._sensors.heading
         moved, turned = rolled - self._rolled, wrap(heading - self._heading)
         self._rolled, self._heading = rolled, heading
@@ -59,19 +59,20 @@ class WheelOdometry:
         self._reckoning.follow(*self.here)
 
     def lose(self) -> None:
-        """The robot has fallen: nothing measures how it slid."""
+        """Note that the robot has fallen: nothing measures how far it slid."""
         if not self._lost:
             self._lost = True
             self._reckoning.slid += DRIFT_AFTER_FALL
 
     def keep(self) -> None:
-        """The robot stands."""
+        """Note that the robot stands."""
         self._lost = False
 
     def check(self, *places: Pose) -> None:
-        """Raises RobotError for a place where the robot would reach farther beyond the stage than it does already.
+        """Raise RobotError if the robot would reach farther beyond the stage at one of these places than it does
+        already.
 
-        In doubt, the stage is that much smaller on every side.
+        With a doubtful position the stage is smaller by `doubt` on every side.
         """
         if self._stage is None:
             return
@@ -93,7 +94,7 @@ class WheelOdometry:
                     )
 
     def _encoders(self) -> NDArray[np.float64]:
-        """How far each wheel has rolled ahead [m], as its encoder counts."""
+        """Return how far each wheel has rolled ahead [m] by its encoder."""
         drive = self._drive
         angles = drive.signs * self._world.data.qpos[drive.angles]
         if self._step:

@@ -86,7 +86,9 @@ class World:
         mujoco.mj_step1(self.model, self.data)
 
     def check(self) -> None:
-        """Raise RobotError if MuJoCo has warned of positions, speeds or accelerations that are not finite or too large."""
+        """Raise RobotError if MuJoCo has warned of positions, speeds or accelerations that are not finite or too
+        large.
+        """
         if self._warnings[_UNSTABLE].any():
             raise RobotModelError(
                 "the simulation has become unstable: check the positions, sizes and forces in models/"

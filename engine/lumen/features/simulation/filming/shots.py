@@ -144,7 +144,9 @@ def _higher(point: HallPoint, by: float) -> HallPoint:
 
 
 def free_camera(place: CameraPlace) -> tuple[float, float, float]:
-    """Return azimuth [deg], elevation [deg] and distance [m] of MuJoCo's free camera that looks at the place's target."""
+    """Return azimuth [deg], elevation [deg] and distance [m] of MuJoCo's free camera that looks at the place's
+    target.
+    """
     dx, dy, dz = (target - eye for eye, target in zip(place.eye, place.target, strict=True))
     flat = hypot(dx, dy)
     return degrees(atan2(dy, dx)), degrees(atan2(dz, flat)), hypot(flat, dz)

@@ -1,4 +1,4 @@
-"""From where a motion is played: the postures in which the behaviours may leave the robot before it."""
+"""The cases in which a motion is played: after each posture in which the behaviours may leave the robot before it."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,16 +17,16 @@ FIRST_POSTURE = "Stand"
 """The posture in which a robot begins."""
 
 LIVED = 20.0
-"""For how long a robot is alive in a style [s]: several of its sways."""
+"""How long a robot lives in a style [s]: several periods of its sways."""
 
 Before = tuple[RobotCommand, ...]
 
 
 @dataclass(frozen=True)
 class Case:
-    """A motion of `folder`, what the robot does before it, and the `command` that plays it.
+    """A motion of `folder`, the commands `before` it, and the `command` that plays it.
 
-    A style of life is a motion without keyframes.
+    A style of life counts as a motion without keyframes.
     """
 
     folder: str
@@ -36,21 +36,22 @@ class Case:
 
     @property
     def file(self) -> str:
+        """The path of the motion's file in the project."""
         return f"{self.folder}/{self.motion.name}.yaml"
 
     @property
     def passage(self) -> bool:
-        """Whether it leads from posture to posture, where feet may slide and links may touch on purpose."""
+        """Whether it leads from posture to posture: then feet may slide and links may touch on purpose."""
         return self.folder == PASSAGES
 
     @property
     def living(self) -> bool:
-        """Whether it is no motion, but a style of life."""
+        """Whether it is a style of life instead of a motion."""
         return self.folder == LIFE_FOLDER
 
     @property
     def way(self) -> str:
-        """`from Stand`, `after photo`, `alive`."""
+        """The case in words: `from Stand`, `after photo` or `alive`."""
         if self.living:
             return "alive"
         match self.before[-1:]:
@@ -62,7 +63,9 @@ class Case:
 
 
 def cases(project: Project) -> list[Case]:
-    """Every motion from its start and from wherever the behaviours lead to it, every passage, every style of life."""
+    """Return every motion from its start and from wherever the behaviours lead to it, every passage and every style of
+    life.
+    """
     motions = project.motions
     ways: dict[str, list[Before]] = {name: [_to(motion.start or FIRST_POSTURE)] for name, motion in motions.items()}
     blocks = [block for machine in project.behaviors.values() for block in _blocks(machine)]
@@ -89,7 +92,7 @@ def cases(project: Project) -> list[Case]:
 
 
 def _own(project: Project) -> dict[str, str]:
-    """The folder of each motion that is this robot's own: only that one of all robots' folders was read."""
+    """Return the folder of each motion of this robot's own folders; no other robot's folder was read."""
     files = [PurePosixPath(file) for file in project.documents]
     return {file.stem: str(file.parent) for file in files if is_robots_own(str(file.parent))}
 
@@ -99,7 +102,7 @@ def _to(posture: str) -> Before:
 
 
 def _end(motions: Mapping[str, MotionDefinition], action: object) -> Before | None:
-    """What a robot does to be where this action leaves it; None for one that moves neither arms nor legs."""
+    """Return the commands that lead to where this action leaves the robot; None if it moves neither arms nor legs."""
     match action:
         case Posture(name):
             return _to(name)
@@ -128,7 +131,7 @@ def _played(step: PlacedAction) -> Iterator[str]:
 
 
 def _blocks(machine: MachineDefinition) -> Iterator[Sequence[PlacedAction]]:
-    """Every list of actions, those inside others too."""
+    """Yield every list of actions, nested ones included."""
     for state in machine.states.values():
         for block in (state.entry, state.do, state.exit, *(t.actions for t in state.transitions)):
             yield from _nested(block)

@@ -1,4 +1,4 @@
-"""`lumen lint --physics`: its options, and what is printed of how the motions went."""
+"""The options of `lumen lint --physics`, and the summary that it prints."""
 
 import argparse
 from collections.abc import Sequence
@@ -11,13 +11,14 @@ from lumen.run.linting.findings import Findings
 from lumen.run.linting.targets import Wanted
 
 ONLY_WITH = ("robots", "workers", "imperfections")
-"""Options of how motions are played."""
+"""Options that need `--physics`."""
 
 
 class PhysicsOptions:
-    """`--physics`, and the options that go with it."""
+    """`--physics` and its further options."""
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
+        """Add the options to the parser."""
         add = parser.add_argument
         add(
             "--physics",
@@ -33,6 +34,7 @@ class PhysicsOptions:
         configure_imperfections(parser)
 
     def check(self, options: argparse.Namespace) -> None:
+        """Raise UsageError for options that can't be combined."""
         for name in ONLY_WITH:
             if vars(options)[name] is not None and not options.physics:
                 raise UsageError(f"--{name} needs --physics")
@@ -40,7 +42,7 @@ class PhysicsOptions:
             raise UsageError("--physics can't be combined with --watch, --fix, --diff or `-`")
 
     def more(self, found: Sequence[Findings], wanted: Wanted, options: argparse.Namespace) -> list[Findings]:
-        """Return the findings with those of the motions in simulation; print beside them how these went."""
+        """Return the findings, extended with those of the motions in simulation; print a summary of these as text."""
         if not options.physics:
             return [*found]
         from lumen.cli.progress import progress

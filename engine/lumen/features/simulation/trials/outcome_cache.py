@@ -1,4 +1,4 @@
-"""What came of motions in simulation, kept under `.lumen/physics/` so that it is simulated once."""
+"""Outcomes of motions in simulation, kept under `.lumen/physics/` so that each is simulated once."""
 
 import hashlib
 import json
@@ -22,13 +22,13 @@ from lumen.robot.motion_codec import encode_motion
 from lumen.upkeep.private_folder import private_folder
 
 CODE = ("lumen.features.simulation", "lumen.fuzzy", "lumen.language", "lumen.motion", "lumen.robot")
-"""The packages whose code decides what comes of a motion in simulation."""
+"""The packages whose code affects the outcome of a motion in simulation."""
 
 
 class OutcomeCache:
-    """Remembers outcomes by everything that they depend on: motion, models, the engine's own code.
+    """Keeps outcomes by everything that they depend on: the motion, the models and the engine's own code.
 
-    A folder that can't be written, or a file in it that can't be read, is as good as none.
+    A folder that can't be written and a file that can't be read are ignored.
     """
 
     def __init__(self, project: Project, files: Mapping[str, bytes]) -> None:
@@ -44,7 +44,7 @@ class OutcomeCache:
         self._passages = _digest(passages.values())
 
     def recall(self, case: Case) -> dict[int, Outcome]:
-        """What is known of a case, by number of the robot."""
+        """Return the known outcomes of a case, by number of the robot."""
         try:
             data = json.loads(self._file(case).read_text(encoding="utf-8"))
             return {int(number): Outcome.from_json(outcome) for number, outcome in data.items()}
@@ -52,7 +52,7 @@ class OutcomeCache:
             return {}
 
     def keep(self, case: Case, outcomes: Mapping[int, Outcome]) -> None:
-        """Remember it in place of what was known of this case when it was another."""
+        """Keep the outcomes of a case; delete those of its earlier versions."""
         file = self._file(case)
         draft = file.with_suffix(f".{os.getpid()}")
         try:

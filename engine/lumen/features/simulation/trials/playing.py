@@ -1,4 +1,4 @@
-"""`lumen lint --physics`: every motion played by the simulated robot, and by others that differ a little."""
+"""`lumen lint --physics`: every motion played by the simulated robot and by slightly different variants."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
@@ -22,10 +22,10 @@ from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in
 from lumen.run.workers.workers import Workers
 
 ROBOTS = 20
-"""How many robots beside the one of the model play each motion, where nobody says."""
+"""The number of variants that play each motion by default."""
 
 ProgressHook = Callable[[int, int, str], None]
-"""Told how many performances are done, of how many, and of what is played now."""
+"""Called with the number of finished performances, their total, and the motion that is playing."""
 
 
 def played(
@@ -38,11 +38,12 @@ def played(
     imperfections: Imperfections | None = None,
     workers: Workers | None = None,
 ) -> tuple[Findings, list[CaseResult]]:
-    """The findings of a project with those of its motions in simulation, where it has no errors; and what was played.
+    """Return a project's findings with those of its motions in simulation, and the results; nothing is played if the
+    project has errors.
 
-    `imperfections` are other than the project's. Only motions in files that somebody asked about are played, and with
-    `keep` only where they were not before; without `workers` in this process. Raises MissingExtraError where there is
-    no simulation, and WorkersError.
+    `imperfections` replace the project's. Only motions in the requested files are played, with `keep` only those whose
+    outcome is not known, and without `workers` in this process. Raises MissingExtraError if the simulation is not
+    installed, and WorkersError.
     """
     root = Path(found.root)
     project = check_files(root, found.files)[0]
@@ -67,11 +68,13 @@ def played(
 
 
 def play_case(kit: UnpackedKit, case: int, robot: int, imperfections: Imperfections) -> Outcome:
-    """A task: what comes of a case, by its place among the project's, with that robot."""
+    """Play a case, given by its index in the project, with that robot; return the outcome. This is a task for
+    workers.
+    """
     from lumen.features.simulation.subject import subject
 
     project = kit.project()
-    assert project is not None  # who sent the task has loaded it
+    assert project is not None  # the sender of the task has loaded it
     models, hall = model_files(project)
     simulated = subject(project.body, models, hall, robot, imperfections)
     try:
@@ -88,7 +91,9 @@ def _play(
     robots: int,
     tell: ProgressHook,
 ) -> Iterator[tuple[int, int, Outcome]]:
-    """Case, robot and outcome of what is not known, as they come; robot by robot, since each has a model to compile."""
+    """Yield case, robot and outcome of unknown outcomes as they arrive, ordered by robot, since each has its own model
+    to compile.
+    """
     every = cases(project)
     tasks = [
         (case, robot, project.section(Imperfections))
@@ -107,7 +112,7 @@ def _play(
 
 
 def summary(rehearsals: Sequence[CaseResult]) -> str:
-    """A line for each case: how many came to its end, and how far the torso leaned."""
+    """Return a line for each case: how many robots reached its end, and how far the torso leaned."""
     lines = []
     for rehearsal in rehearsals:
         case, tried = rehearsal.case, rehearsal.tried
@@ -121,7 +126,7 @@ def summary(rehearsals: Sequence[CaseResult]) -> str:
 
 
 def number_of_robots(text: str) -> int:
-    """What --robots says; raises UsageError for what is no such number."""
+    """Return the number given with --robots. Raises UsageError if it is not a number from 0 to 1000."""
     number = int(text) if text.isdecimal() and text.isascii() and len(text) < 10 else inf
     if number > 1000:
         raise UsageError(f"--robots must be a number from 0 to 1000, not `{text[:40]}`")

@@ -1,4 +1,4 @@
-"""One performance of a motion, watched."""
+"""One watched performance of a motion."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
@@ -10,63 +10,71 @@ from lumen.language.events import Event
 from lumen.ports import Live, RobotCommand, Sole, Strain, Subject
 
 POLL_INTERVAL = 0.02
-"""Between two looks at the robot [s]."""
+"""The time between two samples of the robot's state [s]."""
 
 STUCK_AFTER = 60.0
-"""How much longer than its motion a command may take until it counts as stuck [s]."""
+"""A command that takes so much longer than its motion is stuck [s]."""
 
 REST_BEFORE, REST_AFTER = 0.3, 0.5
-"""How long the robot comes to rest before and after [s]."""
+"""How long the robot comes to rest before and after the motion [s]."""
 
 RETRIED_AFTER = 1.5
 """A passage that takes so much longer than its motion was tried again [s]."""
 
 LEANING_TILT, FALLING_TILT = 15.0, 30.0
-"""A torso that falls was falling since it leaned that far [degrees]; what happens beyond the second is the fall's."""
+"""Tilts of the torso [degrees]: a fall began when the first was exceeded; beyond the second, problems are consequences
+of the fall.
+"""
 
 DONE, FELL = "done", "fell"
 MAX_FOOT_SLIDE = 0.01
-"""How far a foot that bears load may slide [m]."""
+"""How far a foot may slide while it bears load [m]."""
 
 BEARING_FORCE = 5.0
-"""A foot bears load from here on [N]."""
+"""The force from which a foot bears load [N]."""
 
 TimedAmount = tuple[float, float]
-"""When it was [s from the motion's beginning], and how long or how much it came to."""
+"""A time from the motion's beginning [s], and a duration or amount."""
 
 _KINDS = ("collisions", "exhausted", "behind", "slid")
 
 
 @dataclass
 class Outcome:
-    """What came of one performance.
-
-    `answer` is `done`, `fell`, or why the robot did not go on, at the time `at` [s]; `tilt` is how far it leaned at
-    most [degrees], at the time `leaned` [s].
-    `collisions` [s] by pair of links, `exhausted` [s] and `behind` [rad] by joint, `slid` [m] by foot.
-    """
+    """The outcome of one performance."""
 
     answer: str = ""
+    """`done`, `fell`, or the reason why the robot stopped; empty if it did not reach the motion's beginning."""
     at: float = 0.0
+    """The time of the answer, or of the beginning of the fall [s]."""
     tilt: float = 0.0
+    """The greatest tilt of the torso [degrees]."""
     leaned: float = 0.0
+    """The time of the greatest tilt [s]."""
     collisions: dict[str, TimedAmount] = field(default_factory=dict)
+    """The time that two links touched [s], by `LINK and LINK`."""
     exhausted: dict[str, TimedAmount] = field(default_factory=dict)
+    """The longest time at full torque without a pause [s], by joint."""
     behind: dict[str, TimedAmount] = field(default_factory=dict)
+    """The greatest distance behind the motion [rad], by joint."""
     slid: dict[str, TimedAmount] = field(default_factory=dict)
+    """The greatest slide while bearing load [m], by foot."""
 
     def to_json(self) -> dict[str, Any]:
+        """Return the outcome as JSON data."""
         return asdict(self)
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """Raises KeyError, TypeError, ValueError or AttributeError for what is no outcome."""
+        """Return the outcome from JSON data. Raises KeyError, TypeError, ValueError or AttributeError if the data is
+        not one.
+        """
         moments = {kind: {str(k): (float(a), float(b)) for k, (a, b) in data[kind].items()} for kind in _KINDS}
         return cls(str(data["answer"]), float(data["at"]), float(data["tilt"]), float(data["leaned"]), **moments)
 
 
 def attempt(case: Case, robot: Subject) -> Outcome:
-    """What comes of the motion; `answer` is empty where the robot did not even come to its beginning."""
+    """Play the case and return its outcome; `answer` is empty if the robot did not reach the motion's beginning."""
     if any(_perform(robot, command) != DONE for command in case.before):
         return Outcome()
     robot.advance(REST_BEFORE)
@@ -77,7 +85,7 @@ def attempt(case: Case, robot: Subject) -> Outcome:
 
 
 def _perform(robot: Subject, command: RobotCommand, watch: "_Watch | None" = None, duration: float = 0.0) -> str:
-    """A command to its end: `done`, `fell`, or why not."""
+    """Perform a command to its end; return `done`, `fell`, or why it failed."""
     robot.start("it", command)
     waited = 0.0
     lasts = duration if isinstance(command, Live) else duration + STUCK_AFTER
@@ -100,7 +108,7 @@ def _answer(event: Event) -> str:
 
 
 class _Watch:
-    """Sums up how the robot fares, look by look; on the way to a motion's beginning it only sees falls."""
+    """Collects the problems of a performance, sample by sample; with `passage` it only watches for falls."""
 
     def __init__(self, passage: bool) -> None:
         self.outcome, self._passage = Outcome(), passage
@@ -109,6 +117,7 @@ class _Watch:
         self._since: dict[str, float] = {}
 
     def look(self, strain: Strain, waited: float) -> None:
+        """Record the robot's strain, `waited` [s] after the command."""
         self._now = waited if self._passage else strain.played
         tilt = degrees(strain.tilt)
         if tilt > self.outcome.tilt:
@@ -122,7 +131,7 @@ class _Watch:
             self._slide(strain.soles)
 
     def closed(self, robot: Subject) -> Outcome:
-        """The whole, a moment after it was over."""
+        """Return the outcome after a moment of rest, in which the robot may still fall."""
         if self.outcome.answer == DONE:
             robot.advance(REST_AFTER)
             self.outcome.tilt = max(self.outcome.tilt, degrees(robot.strain().tilt))
@@ -138,7 +147,7 @@ class _Watch:
             self.outcome.collisions[f"{one} and {other}"] = begin, round(lasted + POLL_INTERVAL, 3)
 
     def _exhaust(self, strain: Strain) -> None:
-        """The longest time without a pause that a motor gave all it could."""
+        """Record the longest time without a pause at which each motor gave its full torque."""
         self._since = {joint: self._since.get(joint, self._now) for joint in strain.exhausted}
         for joint, since in self._since.items():
             _most(self.outcome.exhausted, joint, since, self._now - since)
@@ -148,7 +157,7 @@ class _Watch:
             _most(self.outcome.behind, joint, self._now, angle)
 
     def _slide(self, soles: Mapping[str, Sole]) -> None:
-        """How far each foot came from where it was when it began to bear load."""
+        """Record how far each foot is from where it began to bear load."""
         for side, sole in soles.items():
             if sole.load < BEARING_FORCE:
                 self._stands.pop(side, None)

@@ -1,4 +1,4 @@
-"""What is to be said about a motion that was played in simulation, at the keyframes where it showed."""
+"""Findings about a motion that was played in simulation, placed at the keyframes where the problem showed."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from math import degrees
@@ -12,37 +12,38 @@ from lumen.lint.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVE
 from lumen.ports import Live
 
 MAX_CONTACT_TIME = 0.04
-"""How long two links have to press into each other [s]."""
+"""How long two links may press on each other [s]."""
 
 MAX_FULL_TORQUE_TIME = 0.3
-"""For how long a motor may give all it can [s]."""
+"""How long a motor may give its full torque [s]."""
 
 MAX_JOINT_LAG = 0.35
-"""How far a joint may be from where the motion has it [rad]."""
+"""How far a joint may be behind the motion [rad]."""
 
 MAX_LIVING_TILT = 5.0
-"""How far the torso may lean of a robot that only lives [degrees]: shipped styles have 0.5."""
+"""How far the torso may lean while the robot only makes lifelike movements [degrees]: the shipped styles reach 0.5."""
 
 MAX_FAILED_SHARE = 0.1
-"""Of a passage, which the robot tries again, so many attempts may fail."""
+"""The share of attempts at a passage that may fail, since the robot retries it."""
 
 _FEET = {"L": "the left foot", "R": "the right foot"}
 _JOINTS = (COMES_LATE, OVERLOADED)
 
 
 def findings(rehearsal: CaseResult, document: Places, body: Body) -> list[Diagnostic]:
-    """What is wrong with a motion that this body played; `document` is its file."""
+    """Return the findings about a motion that this body played; `document` is the motion's file."""
     return [*_Judge(rehearsal, document, body).judge()]
 
 
 class _Judge:
-    """Looks at the outcomes of one case."""
+    """Judges the outcomes of one case."""
 
     def __init__(self, rehearsal: CaseResult, document: Places, body: Body) -> None:
         self._rehearsal, self._case, self._document = rehearsal, rehearsal.case, document
         self._legs = frozenset(role.joint for leg in body.roles.legs.values() for role in leg.values())
 
     def judge(self) -> Iterator[Diagnostic]:
+        """Yield the findings; after a serious one, its consequences are left out."""
         tried = self._rehearsal.tried
         if not tried:
             return
@@ -64,11 +65,11 @@ class _Judge:
                 f"the torso leans {most.tilt:.0f} deg when the robot {self._when()}: at 45 deg, it counts as fallen"
             )
             yield self._found(UNSTEADY, message, "make the robot lean less", self._keys(most.leaned, self._legs))
-            return  # the rest comes of it
+            return  # a consequence of the leaning
         worst = [*self._worst(SELF_COLLISION, lambda o: o.collisions, MAX_CONTACT_TIME)]
         if worst or (failed and failed[0] is self._rehearsal.outcomes[0]):
             yield from worst
-            return  # the rest comes of it
+            return  # a consequence of the collision or fall
         slides = [*self._worst(FEET_SLIDE, lambda o: o.slid, MAX_FOOT_SLIDE)]
         yield from slides
         spared = self._legs if slides else ()
@@ -76,7 +77,7 @@ class _Judge:
         yield from late or self._worst(OVERLOADED, lambda o: o.exhausted, MAX_FULL_TORQUE_TIME, spared)
 
     def _failure(self, failed: list[Outcome], itself: bool) -> Iterator[Diagnostic]:
-        """It falls, or does not come to its end: with the robot itself, or with some others."""
+        """Report a fall, or a motion that does not end: of the robot itself (`itself`), or only of variants."""
         worst = failed[0]
         what = "falls" if worst.answer == FELL else f"does not finish: {worst.answer}"
         if worst.answer == "done":
@@ -106,7 +107,7 @@ class _Judge:
         limit: float,
         spared: Collection[str] = (),
     ) -> Iterator[Diagnostic]:
-        """One finding where some robot went too far with something, at the worst moment."""
+        """Report the amount that exceeds its limit most, at its time, with the other joints or links that exceed it."""
         tried = self._rehearsal.tried
         beyond = [
             (moment, what)
@@ -126,15 +127,16 @@ class _Judge:
         yield self._found(code, message, hint, self._keys(at, joints))
 
     def _when(self, *, plural: bool = False) -> str:
-        """What the robot does, in words."""
+        """Return what the robot does, in words."""
         if self._case.living:
             return "live like this" if plural else "lives like this"
         return f"{'play' if plural else 'plays'} this {self._case.way}"
 
     def _keys(self, at: float, joints: Collection[str]) -> NodePath:
-        """Where the keyframe stands that the robot was on its way to; of these joints, where some of them move.
+        """Return the path of the keyframe that the robot was moving to at `at` [s]; of these joints, if any of them
+        move.
 
-        Of a style of life it is the sway that moves the legs most, else the one that moves anything most.
+        In a style of life it is the sway that moves the legs fastest, or else anything fastest.
         """
         if isinstance(self._case.command, Live):
             sways = self._case.command.style.sways
@@ -146,7 +148,7 @@ class _Judge:
         return _keyframe(keys[0]) if keys else ()
 
     def _shaking(self, sway: Sway) -> tuple[float, float]:
-        """How fast a sway moves legs, and how fast anything, as far as that tells which one tips the robot."""
+        """Return the speed of a sway's legs, then of all its joints; the greatest is most likely to tip the robot."""
         legs = sum(abs(angle) for joint, angle in sway.joints.items() if joint in self._legs)
         return legs / sway.period, sum(map(abs, sway.joints.values())) / sway.period
 
@@ -155,7 +157,7 @@ class _Judge:
 
 
 def _words(code: Code, what: str, at: float, value: float) -> tuple[str, str]:
-    """What is wrong, and what to do."""
+    """Return the message and the hint."""
     if code == SELF_COLLISION:
         message = f"{what} collide here, at {at:.1f} s, for {value:.1f} s"
         return message, "move one of them around the other: add a keyframe in between, or use a wider pose"
@@ -174,7 +176,7 @@ def _name(what: str) -> str:
 
 
 def _keyframe(key: Keyframe) -> NodePath:
-    """Where the keyframe of a key stands: the innermost item of a list of keyframes."""
+    """Return the path of a key's keyframe: the innermost item of a list of keyframes."""
     last = max((i for i, step in enumerate(key.where) if step == "keyframes"), default=None)
     if last == len(key.where) - 1:
         return ("return",)
