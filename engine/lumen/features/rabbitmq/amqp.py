@@ -1,8 +1,8 @@
 """The bus on RabbitMQ: pika on connections and threads of its own.
 
 One connection receives and one sends; a third thread runs the handlers. So heartbeats are answered while a handler
-works, and `publish` never waits for the network. What is lost with a connection comes back with it: subscriptions are
-made again, and what waits to be sent waits on. Where a route carries stops, these have all three of their own.
+works, and `publish` never waits for the network. After a lost connection, subscriptions are made again, and messages to
+be sent keep waiting. If a route carries stops, these have a separate set of all three.
 """
 
 import logging
@@ -26,17 +26,17 @@ from lumen.language.routes import Carried, Direction, Route
 from lumen.ports import Bus, Message, MessageHandler, Outgoing
 
 CLOSE_TIMEOUT = 5.0
-"""How long closing may take [s]: what waits is sent, what was received is handled."""
+"""How long closing may take [s]: waiting messages are sent, and received ones handled."""
 
 _log = logging.getLogger(__name__)
 
 
 class AmqpBus(Bus):
-    """A handle on the exchange `amq.topic` of the broker at `url` (`amqp://` or `amqps://`).
+    """A bus on the exchange `amq.topic` of the broker at `url` (`amqp://` or `amqps://`).
 
-    Raises BusError, saying what to do, where the broker can't be used. How a message travels is said by the route of
-    its key (`carry`). One without a route waits in the outbox for a broker that is away, and is sent once; with a `ttl`
-    it is thrown away when that is over, here or on the broker. `sender` is the program whose handle this is.
+    The route of a key decides how its messages travel (`carry`). A message without a route waits in the outbox for a
+    broker that is away, and is sent once; after its `ttl` it is discarded, here or on the broker. `sender` is the name
+    of the program that uses the bus. Raises BusError, with the remedy, if the broker is unusable.
     """
 
     def __init__(self, url: str, sender: str = "") -> None:
@@ -56,12 +56,12 @@ class AmqpBus(Bus):
 
     @property
     def host(self) -> str:
-        """The machine of the broker."""
+        """The broker's host."""
         return str(self._address.parameters.host)
 
     @property
     def away(self) -> bool:
-        """Whether the broker can't be reached now."""
+        """Whether the broker can't be reached at present."""
         return self._outage.going_on
 
     @property
@@ -71,7 +71,7 @@ class AmqpBus(Bus):
 
     @property
     def dropped(self) -> Mapping[str, int]:
-        """How many messages were dropped under each key."""
+        """The number of dropped messages by key."""
         found = Counter[str]()
         for transport in self._transports():
             for drops in transport.drops:
@@ -79,6 +79,7 @@ class AmqpBus(Bus):
         return found
 
     def carry(self, routes: Mapping[str, Route]) -> None:
+        """Apply these routes to all messages, and watch for messages without a receiver."""
         self._routes = dict(routes)
         self._open_stop(routes)
         if not self._watching:
@@ -91,6 +92,7 @@ class AmqpBus(Bus):
             transport.consumer.carry(routes)
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
+        """Bind queues for the incoming routes that gather messages until a handler subscribes."""
         self._open_stop(routes)
         for transport in self._transports():
             coming = {
@@ -99,6 +101,7 @@ class AmqpBus(Bus):
             transport.consumer.prepare(coming)
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
+        """Call the handler with the messages of a pattern; return a function that ends that. Raises BusError."""
         if self._closed:
             raise BusClosedError("the bus is closed: subscribing is no longer possible")
         check_subscription(pattern, handler)
@@ -108,6 +111,7 @@ class AmqpBus(Bus):
         return lambda: consumer.remove(subscription)
 
     def send(self, message: Outgoing) -> None:
+        """Queue a message for sending. Raises BusError if the bus is closed or full."""
         if self._closed:
             raise BusClosedError("the bus is closed: publishing is no longer possible")
         key, body, reply_to, correlation_id, ttl, *_ = message
@@ -139,15 +143,18 @@ class AmqpBus(Bus):
         )
 
     def heard(self, key: str) -> bool:
-        """Whether anybody takes what is published under this key; true where that is not known yet."""
+        """Return whether a process receives messages under this key; True while that is unknown."""
         return self._transport_of(self._routes.get(key)).publisher.heard(key)
 
     def returns(self, handler: Callable[[str], None]) -> None:
+        """Call the handler with the key of each message that has no receiver."""
         for transport in self._transports():
             transport.publisher.returned = handler
 
     def reply(self, message: Message, body: Any) -> None:
-        """A text goes to a queue as it is, as modules of 2015 expect `command finished`; everything else as JSON."""
+        """Reply to a message: a text is sent unchanged, as modules of 2015 expect `command finished`; all else as
+        JSON.
+        """
         if not message.reply_to:
             return
         if self._closed:
@@ -156,7 +163,7 @@ class AmqpBus(Bus):
         self._transport.answer(message.reply_to, message.correlation_id, body, self.sender)
 
     def close(self) -> None:
-        """Deliver what was published, to our own subscribers too, within 5 s, and end."""
+        """Deliver published messages, also to our own subscribers, within 5 s, and end."""
         if self._closed:
             return
         self._closed = True
@@ -166,7 +173,7 @@ class AmqpBus(Bus):
         self._end(deadline)
 
     def _open_stop(self, routes: Mapping[str, Route]) -> None:
-        """Stops get a transport of their own as soon as a route carries any; nobody waits for it here."""
+        """Open a separate transport for stops as soon as a route carries any, without waiting for it."""
         with self._opening:
             if self._stop_transport is None and any(route.carried is Carried.STOP for route in routes.values()):
                 self._stop_transport = Transport(self._address, self._outage, "stop-")

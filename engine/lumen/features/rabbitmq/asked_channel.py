@@ -1,4 +1,4 @@
-"""A channel of its own for questions: what the broker refuses closes it, and costs nothing else."""
+"""A separate channel for requests: a refusal by the broker closes it and affects nothing else."""
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 
 class AskedConnection(Protocol):
-    """What a channel needs of its connection: to turn until that is so, or for so long [s]; and more channels."""
+    """The connection that such a channel needs: it can wait for a condition or a time [s], and open more channels."""
 
     def until(self, done: Callable[[], object]) -> None: ...
 
@@ -16,9 +16,9 @@ class AskedConnection(Protocol):
 
 
 class AskedChannel:
-    """Calls methods of pika's channel and waits for the broker's answer, which they return.
+    """Calls methods of pika's channel, waits for the broker's answer and returns it.
 
-    Raises ChannelClosedByBroker where the broker refuses, and what `until` raises.
+    Raises ChannelClosedByBroker if the broker refuses, and whatever `until` raises.
     """
 
     def __init__(self, connection: AskedConnection, channel: Any) -> None:
@@ -34,7 +34,7 @@ class AskedChannel:
         self._channel.basic_publish(exchange, key, b"", properties)
 
     def close(self) -> None:
-        """Nothing more is asked; nobody waits for the broker to know."""
+        """Close the channel without waiting for the broker's answer."""
         if self._channel.is_open:
             self._channel.close()
 

@@ -1,4 +1,4 @@
-"""Where a broker is, and in one line why it can't be used."""
+"""The address of a broker, and one-line reasons why it can't be used."""
 
 import logging
 import os
@@ -17,21 +17,21 @@ from lumen.errors import BusAddressError, BusError, BusRefusedError, BusUnreacha
 from lumen.language.addresses import fault_of_broker, public
 
 HEARTBEAT_INTERVAL = 10
-"""How often both sides show that they live [s], where the address does not say."""
+"""The time between heartbeats in both directions [s], unless the address has another."""
 SOCKET_TIMEOUT = 5.0
-"""How long connecting, and each answer while logging in, may take [s]."""
+"""How long connecting, and each answer during login, may take [s]."""
 BROKER_TIMEOUT = 2 * SOCKET_TIMEOUT
 """How long the broker may take to answer a request [s]."""
 CREDENTIALS_VARIABLE = "LUMEN_BUS_CREDENTIALS"
 """The environment variable that names a file with `NAME:PASSWORD`."""
 MIN_RABBITMQ_VERSION = (3, 10)
-"""Since this RabbitMQ quorum queues have a time to live."""
+"""The first RabbitMQ whose quorum queues have a time to live."""
 
-logging.getLogger("pika").setLevel(logging.CRITICAL)  # it logs a traceback for every failure that we report ourselves
+logging.getLogger("pika").setLevel(logging.CRITICAL)  # pika logs a traceback for every failure that we report
 
 
 class BrokerAddress:
-    """A broker's URL, taken apart; `str` shows it without the password."""
+    """The parts of a broker's URL; `str` shows it without the password."""
 
     def __init__(self, url: str) -> None:
         shown = public(url)
@@ -63,7 +63,7 @@ class BrokerAddress:
         return self.place
 
     def check_version(self, server: Mapping[str, Any]) -> None:
-        """Raise BusError where the broker is a RabbitMQ that lacks what we need."""
+        """Raise BusError if the broker is a RabbitMQ that is too old."""
         version = server.get("version", b"")
         text = version.decode(errors="replace") if isinstance(version, bytes) else str(version)
         numbers = tuple(int(n) for n in re.findall(r"\d+", text)[:2])
@@ -74,7 +74,7 @@ class BrokerAddress:
             )
 
     def explain(self, error: BaseException) -> BusError:
-        """What to do about a connection that could not be opened."""
+        """Return the error, with its remedy, for a connection that could not be opened."""
         if isinstance(error, BusError):
             return error
         found = filter(None, map(self._explained, _causes(error)))
@@ -125,14 +125,14 @@ def shortage(reason: str) -> str:
 
 
 def _authority(parts: SplitResult) -> tuple[str, str]:
-    """The file of whoever signs certificates, from `?ca=FILE`, and the URL without it."""
+    """Return the file of trusted certificates, from `?ca=FILE`, and the URL without it."""
     query = dict(parse_qsl(parts.query))
     authority = query.pop("ca", "")
     return authority, parts._replace(query=urlencode(query)).geturl()
 
 
 def _trusting(authority: str) -> ssl.SSLContext:
-    """What checks certificates and the host's name in them; nothing turns that off."""
+    """Return the context that checks certificates and their host names; there is no option to turn that off."""
     try:
         return ssl.create_default_context(cafile=authority or None)
     except (OSError, ssl.SSLError) as error:
@@ -155,7 +155,7 @@ def _credentials(file: str) -> Any:
 
 
 def _causes(error: BaseException) -> Iterator[BaseException]:
-    """The error and what pika packed into it, the innermost first."""
+    """Yield the error's nested causes, the innermost first, then the error."""
     packed = [getattr(error, "exception", None), *getattr(error, "exceptions", ())]
     inner: list[Any] = [*error.args, *packed, error.__cause__]
     for item in inner:

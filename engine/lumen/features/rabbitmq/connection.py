@@ -1,4 +1,4 @@
-"""A connection to the broker that belongs to one thread, and comes back when it is lost."""
+"""A connection to the broker that belongs to one thread and reconnects when it is lost."""
 
 import logging
 import random
@@ -16,19 +16,19 @@ from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 MIN_RECONNECT_DELAY = 0.2
-"""How long the first attempt to reconnect is waited for [s]; each further one twice as long."""
+"""The wait before the first attempt to reconnect [s]; it doubles with each further one."""
 MAX_RECONNECT_DELAY = 10.0
-"""How long an attempt to reconnect is waited for at most [s]."""
+"""The longest wait before an attempt to reconnect [s]."""
 STABLE_TIME = 5.0
-"""A connection that lived for so long [s] was a good one: the next loss begins with the shortest delay again."""
+"""After a connection that lasted this long [s], the next loss begins with the shortest wait again."""
 
 _log = logging.getLogger(__name__)
 
 
 class OutageLog:
-    """One broker as all connections of a bus see it: each loss and each return is logged once, whoever notices first.
+    """The state of one broker for all connections of a bus: each loss and each return is logged once.
 
-    The `repr` of every failure is logged, those after the first of an outage, and repeated ones, at level INFO.
+    The `repr` of every failure is logged; those after the first of an outage, and repeated ones, at level INFO.
     """
 
     def __init__(self, address: BrokerAddress) -> None:
@@ -41,7 +41,7 @@ class OutageLog:
 
     @property
     def going_on(self) -> bool:
-        """Whether any of the connections is away."""
+        """Whether any of the connections is lost."""
         return bool(self._away)
 
     @property
@@ -63,6 +63,7 @@ class OutageLog:
             _log.warning("the broker at %s accepts messages again", self._address)
 
     def lost(self, connection: str, what: str, error: BaseException) -> None:
+        """Note that a connection is lost, and log it."""
         with self._changing:
             self._blocked.pop(connection, None)
             new = not self._away or what not in self._logged
@@ -79,6 +80,7 @@ class OutageLog:
             _log.warning("the broker at %s: %s", self._address, what)
 
     def back(self, connection: str) -> None:
+        """Note that a connection is back; log it if no other is lost."""
         with self._changing:
             was = connection in self._away
             self._away.discard(connection)
@@ -90,10 +92,10 @@ class OutageLog:
 
 
 class BrokerConnection:
-    """Opens, serves and reopens; a subclass says what there is to do (`begin`, `serve`).
+    """Connects, serves and reconnects; a subclass defines its work in `begin` and `serve`.
 
-    All of pika happens on the connection's own thread. A first failure is raised by `open`; later ones are logged,
-    and it is opened again, after twice as long each time, up to 10 s, and at random between half and all of that.
+    pika is used only on the connection's own thread. The first failure is raised by `open`; later ones are logged. Each
+    wait before reconnecting is twice as long as the last, up to 10 s, and is shortened at random by up to half.
     """
 
     def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
@@ -106,7 +108,7 @@ class BrokerConnection:
         self._backoff = Backoff(MIN_RECONNECT_DELAY, MAX_RECONNECT_DELAY)
 
     def open(self) -> None:
-        """Connect; raises BusError with what to do where that fails."""
+        """Connect. Raises BusError, with the remedy, if that fails."""
         self._thread.start()
         try:
             self._opened.result()
@@ -114,28 +116,28 @@ class BrokerConnection:
             raise self.address.explain(error) from error
 
     def begin_alone(self) -> None:
-        """Connect as soon as may be; a failure is logged, and tried again."""
+        """Start connecting; failures are logged, and connecting is tried again."""
         self._opened.set_result(None)
         self._thread.start()
 
     def join(self, timeout: float) -> bool:
-        """Wait until the thread has ended; whether it has, within `timeout` [s]."""
+        """Wait for the thread to end; return whether it did within `timeout` [s]."""
         return self._thread.join(max(0.0, timeout))
 
     def begin(self) -> None:
-        """The channel is open: make on the broker what is needed."""
+        """Set up what is needed on the broker; called when the channel is open."""
 
     def serve(self) -> bool:
-        """Do what there is to do, at most for a second; false when all is done and the connection may end."""
+        """Do the pending work for at most a second; return False when the connection may end."""
         raise NotImplementedError
 
     def process(self, seconds: float) -> None:
-        """Let the connection live for at most so long, then do what other threads want of it."""
+        """Process the connection's events for at most so long [s], then run other threads' requests."""
         self.connection.turn(seconds)
         self.connection.work()
 
     def disconnect(self, connection: PolledConnection) -> None:
-        """End the connection in good order, where it still lives."""
+        """Close the connection properly, if it is still alive."""
         connection.close()
 
     def _run(self) -> None:

@@ -1,4 +1,4 @@
-"""The connection that receives: a queue of its own for every subscription, and nothing but enqueueing in callbacks."""
+"""The receiving connection: a queue for every subscription, and callbacks that only enqueue."""
 
 import logging
 from collections.abc import Callable, Mapping
@@ -22,23 +22,24 @@ from lumen.ports import MessageHandler
 from lumen.upkeep.drops import DropLog
 
 PREFETCH = 64
-"""Deliveries of one subscription that the broker sends ahead of their being handled."""
+"""The number of deliveries that the broker sends ahead for each subscription."""
 BIND_TIMEOUT = 5.0
 """How long a subscription waits for the broker to confirm it [s]."""
 TURN_TIME = 1.0
-"""How long the connection is left to itself at a time [s]."""
+"""The longest time in one turn of the connection [s]."""
 FLOOD_PAUSE = 0.02
-"""How long nothing is read after more came than is taken [s]: a tick, at which all that was read is used."""
+"""The pause in reading after an excess of messages [s]: one tick, so that all of them are read at once."""
 UNBOUND_READ_TIME = 2.0
-"""How long a queue that nothing comes to any more is read on [s]: what was in it has come by then."""
+"""How long a queue is still read after it is unbound [s]: by then its remaining messages have arrived."""
 
 _log = logging.getLogger(__name__)
 
 
 class Consumer(BrokerConnection):
-    """Hands every delivery that is not too many to `receive`, what must arrive and is to `refused`; neither may block.
+    """Passes deliveries within their rate to `receive`, and refused ones that must arrive to `refused`; neither may
+    block.
 
-    The broker sends `PREFETCH` messages ahead of each subscription and keeps a bounded number more: that bounds the
+    The broker sends `PREFETCH` messages ahead for each subscription and keeps a bounded number more, which bounds the
     memory on both sides. `handled` acknowledges.
     """
 
@@ -60,6 +61,7 @@ class Consumer(BrokerConnection):
         self.unreadable = DropLog(_log, "properties of messages")
 
     def begin(self) -> None:
+        """Set the prefetch limit and bind all subscriptions again."""
         self._epoch += 1
         self._acknowledged = 0
         self.intake.forget()
@@ -69,23 +71,24 @@ class Consumer(BrokerConnection):
             self._bind(subscription)
 
     def serve(self) -> bool:
+        """Process events for a turn; return False once the end is requested."""
         self.process(TURN_TIME)
         self.unreadable.tell()
         self.intake.drops.tell()
-        if self.intake.flooded:  # what comes meanwhile is read at once: each reading costs as much as many messages
+        if self.intake.flooded:  # read the meantime's messages at once: a read costs as much as many messages
             self.intake.flooded = False
             self.ending.wait(FLOOD_PAUSE)
         return not self.ending.is_set()
 
     def subscriptions(self) -> list[Subscription]:
-        """Those that have a handler, in the order subscribed."""
+        """Return the subscriptions with a handler, in the order subscribed."""
         return self._subscriptions.active()
 
     def add(self, pattern: str, handler: MessageHandler, route: Route | None = None) -> Subscription:
-        """Subscribe; returns when the queue is bound, at once where the broker is away (it is bound on its return).
+        """Subscribe; return once the queue is bound, or at once if the broker is away (it is bound on its return).
 
-        Raises BusError where the broker refuses it. Whoever has ever prepared can't wait: what was prepared is bound
-        already, the rest as soon as the broker has answered; what it refuses is logged.
+        Raises BusError if the broker refuses. After any call of `prepare`, `add` does not wait: a prepared queue is
+        already bound, others are bound when the broker answers, and refusals are logged.
         """
         if prepared := self._subscriptions.claim(pattern, handler):
             self._later(lambda: self._consume(prepared))
@@ -99,9 +102,9 @@ class Consumer(BrokerConnection):
         return subscription
 
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        """Have queues for these keys bound, which gather until somebody subscribes; those prepared before are dropped.
+        """Bind queues for these keys that gather messages until a handler subscribes; drop those prepared before.
 
-        Raises BusError where the broker refuses one.
+        Raises BusError if the broker refuses one.
         """
         self._hurried = True
         waiting, dropped = self._subscriptions.prepare(routes)
@@ -114,12 +117,12 @@ class Consumer(BrokerConnection):
                 self._await(subscription)
 
     def watch(self, unrouted: Callable[[str], None]) -> None:
-        """Call `unrouted` with every key under which nobody takes a message, as far as the broker knows of them."""
+        """Call `unrouted` with the key of every message without a receiver that the broker reports."""
         subscription = self._subscriptions.add("#", lambda message: unrouted(message.key), None, UNROUTED)
         self._later(lambda: self._bind(subscription))
 
     def carry(self, routes: Mapping[str, Route]) -> None:
-        """Go on under these routes; where one needs another queue, that is bound before the old one is unbound."""
+        """Apply these routes; if one needs another queue, that is bound before the old one is unbound."""
         for subscription in self.subscriptions():
             old, new = subscription.route, routes.get(subscription.pattern)
             subscription.route = new
@@ -127,7 +130,7 @@ class Consumer(BrokerConnection):
                 self._later(lambda s=subscription, r=old: self._move(s, r))  # type: ignore[misc]
 
     def remove(self, subscription: Subscription) -> None:
-        """No message reaches the handler from now on; its queue goes away."""
+        """Remove a subscription: its handler gets no further messages, and its queue is removed."""
         if self._subscriptions.remove(subscription):
             self._later(lambda: self._drop(subscription))
 
@@ -141,20 +144,20 @@ class Consumer(BrokerConnection):
             raise BusRefusedError(f"the broker at {self.address} {what}: {subscription.refusal}")
 
     def handled(self, delivery: Delivery) -> None:
-        """This and all before it are done: the broker may send on."""
+        """Acknowledge a delivery and all before it, so that the broker sends more."""
         enough = 1 if delivery.subscription.must_arrive else PREFETCH // 2
         if delivery.epoch == self._epoch and delivery.number - self._acknowledged >= enough:
             self._acknowledged = delivery.number
             self._later(lambda: self._acknowledge(delivery))
 
     def end(self, timeout: float) -> bool:
-        """Stop listening and end; whether that was done within `timeout` [s]."""
+        """Stop receiving and end; return whether that was done within `timeout` [s]."""
         self.ending.set()
         self._later(lambda: None)
         return self.join(timeout)
 
     def _later(self, work: Callable[[], None]) -> bool:
-        """Have the connection's thread do this; false where there is no connection."""
+        """Let the connection's thread run this; return False if there is no connection."""
         connection = self.connection
         if connection is None:
             return False
@@ -162,7 +165,7 @@ class Consumer(BrokerConnection):
         return True
 
     def _bind(self, subscription: Subscription) -> None:
-        """Where the connection is lost meanwhile, it is bound as soon as there is another."""
+        """Bind a subscription's queue; if the connection is lost meanwhile, the next one binds it."""
         if not subscription.active or self.channel is None or subscription.epoch == self._epoch:
             return
         queue = queue_of(subscription.pattern, subscription.route, subscription.number, subscription.exchange)
@@ -198,7 +201,7 @@ class Consumer(BrokerConnection):
         self.connection.call_later(UNBOUND_READ_TIME, lambda: self._later(lambda: self._drop(unbound)))
 
     def _drop(self, subscription: Subscription) -> None:
-        """Stop reading a queue; nothing of it stays on the broker but what somebody needs."""
+        """Stop reading a queue, and remove from the broker what no other process needs."""
         if self.channel is None or not subscription.queue:
             return
         self.connection.cancel(subscription.tag)
@@ -207,12 +210,12 @@ class Consumer(BrokerConnection):
         self._declarer.remove(self.connection, subscription)
 
     def _cancelled(self, frame: Any) -> None:
-        """The broker ended a subscription (somebody deleted its queue): start anew."""
+        """Reconnect: the broker ended a subscription, for example because its queue was deleted."""
         self.connection.fail(ConsumerCancelled(frame.method.consumer_tag))
 
     def _acknowledge(self, delivery: Delivery) -> None:
         if delivery.epoch == self._epoch and self.channel is not None:
-            with suppress(AMQPChannelError):  # which the next turn raises
+            with suppress(AMQPChannelError):  # the next turn raises it
                 self.channel.basic_ack(delivery.number, multiple=True)
 
     def _reader(self, subscription: Subscription) -> MessageReader:
@@ -226,7 +229,7 @@ class Consumer(BrokerConnection):
         return arrived
 
     def _readable(self, key: bytes, properties: MessageProperties) -> str:
-        """The key as a text; properties that can't be read are counted, and told."""
+        """Return the key as text; count and log properties that can't be read."""
         try:
             text = key.decode()
         except UnicodeDecodeError:
@@ -239,5 +242,5 @@ class Consumer(BrokerConnection):
 
 
 def _short(key: str) -> str:
-    """As much of a key as AMQP could carry."""
+    """Return as much of a key as AMQP can carry."""
     return key.encode()[:MAX_KEY_BYTES].decode(errors="ignore")

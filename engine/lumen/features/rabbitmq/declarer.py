@@ -1,4 +1,4 @@
-"""Declares queues on the broker, each over a channel of its own: what it refuses costs nothing else."""
+"""Declares queues on the broker, each over a channel of its own, so that a refusal affects nothing else."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -15,13 +15,13 @@ PRECONDITION_FAILED = 406
 
 
 class QueueDeclarer:
-    """Declares and deletes queues; remembers, also over an outage, which ones a crash could still lose."""
+    """Declares and deletes queues; remembers across outages which new queues a broker's crash could still lose."""
 
     def __init__(self) -> None:
         self.settling: set[str] = set()
 
     def declare(self, connection: PolledConnection, queue: Queue) -> tuple[str, str]:
-        """Declare and bind a queue; its name, and why the broker refuses."""
+        """Declare and bind a queue; return its name and an empty text, or an empty name and the broker's refusal."""
         for attempt in self._attempts(queue):
             try:
                 with connection.asking() as channel:
@@ -33,19 +33,19 @@ class QueueDeclarer:
         return "", refusal
 
     def bind_again(self, connection: PolledConnection, subscription: Subscription) -> None:
-        """Who left while we came may have unbound a queue that nobody read yet; now the broker knows that we do."""
+        """Bind a consumed queue again: a process that was leaving may have unbound it while it had no consumer."""
         with suppress(ChannelClosedByBroker), connection.asking() as channel:
             channel.queue_bind(subscription.queue, EXCHANGE, subscription.pattern)
 
     def unbind(self, connection: PolledConnection, subscription: Subscription) -> None:
-        """Nothing comes to its queue under its key any more; what is in there can still be read."""
+        """Unbind a queue from its key; messages already in it can still be read."""
         with suppress(ChannelClosedByBroker), connection.asking() as channel:
             channel.queue_unbind(subscription.queue, EXCHANGE, subscription.pattern)
 
     def remove(self, connection: PolledConnection, subscription: Subscription) -> None:
-        """A queue that outlives us, and that no other process reads, is bound to nothing any more.
+        """Unbind a lasting queue that no other process reads.
 
-        It is deleted if it is empty; a quorum queue can't be deleted so carefully, and stays.
+        It is deleted if it is empty. A quorum queue can't be deleted on that condition, and stays.
         """
         with suppress(ChannelClosedByBroker), connection.asking() as channel:
             self._remove(channel, subscription)
@@ -56,22 +56,23 @@ class QueueDeclarer:
             if _is_read(channel, name):
                 return
             channel.queue_unbind(name, EXCHANGE, subscription.pattern)
-            if _is_read(channel, name):  # by somebody who came between
+            if _is_read(channel, name):  # another process subscribed in between
                 channel.queue_bind(name, EXCHANGE, subscription.pattern)
                 return
         if not queue_of("", subscription.route).quorum and (must or not subscription.tag):
             channel.queue_delete(name, if_unused=True, if_empty=must)
 
     def _attempts(self, queue: Queue) -> tuple[Callable[[AskedChannel, Queue], str], ...]:
-        """What to try, one after the other, where there is a queue of that name with other arguments."""
+        """Return the declarations to try in turn if a queue of that name has other arguments."""
         if queue.quorum:
             return self._declare_quorum, _adopt
         return (_declare, _renew, _adopt) if queue.name else (_declare,)
 
     def _declare_quorum(self, channel: AskedChannel, queue: Queue) -> str:
-        """A quorum queue, which is bound when a crash of the broker can't lose it any more.
+        """Declare a quorum queue, and bind it once a crash of the broker can no longer lose its content.
 
-        Where the broker was killed before that, it has no log for it and never answers for it: it is declared anew.
+        If the broker is killed before that, it has no log for the queue and never answers for it; so it is declared
+        anew.
         """
         if queue.name in self.settling:
             channel.queue_delete(queue.name)
@@ -106,12 +107,12 @@ def _declare(channel: AskedChannel, queue: Queue) -> str:
 
 
 def _renew(channel: AskedChannel, queue: Queue) -> str:
-    """There is one of that name with other arguments: where it holds nothing, another takes its place."""
+    """Replace a queue of that name with other arguments, if it is empty and unused."""
     channel.queue_delete(queue.name, if_unused=True, if_empty=True)
     return _declare(channel, queue)
 
 
 def _adopt(channel: AskedChannel, queue: Queue) -> str:
-    """Use the one that there is: nothing in it is lost, and it is replaced when it is empty."""
+    """Use the existing queue: nothing in it is lost, and it is replaced once it is empty."""
     channel.queue_bind(queue.name, EXCHANGE, queue.key)
     return queue.name

@@ -1,4 +1,4 @@
-"""The thread that runs handlers, one at a time, so that a slow one delays no heartbeat."""
+"""The thread that runs handlers, one at a time, so that a slow handler delays no heartbeat."""
 
 import hashlib
 import logging
@@ -20,9 +20,9 @@ from lumen.upkeep.drops import DropLog, ReasonLog
 from lumen.upkeep.threads import MessageGuard, WatchedThread
 
 FLUSH_MARK = "lumen.mark"
-"""The type of a message that only says that everything published before it has arrived."""
+"""The type of a message that only marks that everything published before it has arrived."""
 MAX_REMEMBERED_IDS = 10_000
-"""Messages that must arrive by which a second one of the same id is known."""
+"""The number of messages that must arrive whose ids are remembered, to recognise repeated ids."""
 MAX_SHOWN = 40
 """The number of characters of an id or a sender that a message shows."""
 
@@ -30,12 +30,12 @@ _log = logging.getLogger(__name__)
 
 
 class Dispatcher:
-    """Decodes deliveries and hands them to their handlers in the order received.
+    """Decodes deliveries and passes them to their handlers in the order received.
 
-    `handled` is called with each delivery that is over, `refused` with one that nobody could use, and the reason. Of
-    telemetry only the newest are handed on, as many as the route keeps, while they are young enough. A message that
-    must arrive is handed on once, even if it comes twice. Ids belong to their sender: if a sender uses an id again for
-    a different message, that message is counted in `repeated` and refused.
+    `handled` is called with each delivery that is finished, `refused` with an unusable one and the reason. Of
+    telemetry, only the newest messages are passed on, as many as the route keeps, while they are young enough. A
+    message that must arrive is passed on once, even if it comes twice. Ids belong to their sender: if a sender uses an
+    id again for a different message, that message is counted in `repeated` and refused.
     """
 
     def __init__(self, handled: Callable[[Delivery], None], refused: Callable[[Delivery, str], None]) -> None:
@@ -51,6 +51,7 @@ class Dispatcher:
         self._thread.start()
 
     def receive(self, delivery: Delivery) -> None:
+        """Queue a delivery for the handlers' thread."""
         self._waiting.put(delivery)
 
     @property
@@ -59,14 +60,14 @@ class Dispatcher:
         return self._thread.current
 
     def expect(self, marks: set[str]) -> threading.Event:
-        """An event that is set when marks with all of these bodies have come through."""
+        """Return an event that is set when messages with all of these bodies as marks have arrived."""
         self._marks = marks
         if not marks:
             self._marked.set()
         return self._marked
 
     def end(self, timeout: float) -> bool:
-        """Finish what has been received and end; whether that was done within `timeout` [s]."""
+        """Handle what has been received, then end; return whether that was done within `timeout` [s]."""
         self._waiting.put(None)
         return self.inside or self._thread.join(max(0.0, timeout))
 
@@ -94,7 +95,7 @@ class Dispatcher:
                 self._marked.set()
 
     def _wanted(self, subscription: Subscription, delivery: Delivery) -> bool:
-        """Whether it is neither too old, nor replaced by newer ones, nor here for the second time."""
+        """Return whether the delivery is neither too old, nor replaced by newer ones, nor a repetition."""
         route = subscription.route
         if route is None:
             return True
@@ -106,10 +107,10 @@ class Dispatcher:
         return not late and not (route.keep and subscription.taken - subscription.handled >= route.keep)
 
     def _new(self, subscription: Subscription, delivery: Delivery) -> bool:
-        """Whether it was not handled before; a message without an id is recognized by its whole content.
+        """Return whether it was not handled before; a message without an id is recognized by its whole content.
 
-        A copy that the broker or its sender sent again, because it was not confirmed, does not count as lost. If it
-        has no time, it may also be a new message of a sender that restarted its ids; a stop is then handled twice.
+        A copy that the broker or its sender sent again, because it was not confirmed, does not count as lost. A message
+        without a time may also be a new one of a sender that restarted its ids; in that case a stop is handled twice.
         """
         id, sender = delivery.properties.message_id, delivery.properties.app_id
         digest = _digest(delivery)

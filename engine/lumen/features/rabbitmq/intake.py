@@ -1,4 +1,4 @@
-"""What of all that a broker delivers is taken: a flood costs one look at the clock for each message, and no more."""
+"""Limits the rate of deliveries: in a flood, each dropped message costs no more than reading the clock."""
 
 import logging
 from collections.abc import Callable
@@ -8,23 +8,27 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import RateLimiter
 
 ANSWERED_RATE = 10.0
-"""How many messages a second that must arrive, and are too many, are answered and put aside; the rest is counted."""
+"""The number of dropped messages per second, among those that must arrive, that are answered and put aside; further
+ones are only counted.
+"""
 SPENT_BATCH = 32
-"""After how many messages that were dropped the broker is told to send on; no more than half of what it sends ahead."""
+"""The number of dropped messages after which the broker is asked for more; at most half of what it sends ahead."""
 
 _log = logging.getLogger(__name__)
 
 Later = Callable[[float, Callable[[], None]], object]
-"""Calls a function in so many seconds, on the same thread."""
+"""Calls a function on the same thread after so many seconds."""
 
 
 class Intake:
-    """Hands on to `receive` as many deliveries a second as their route takes (`Route.rate`); all on one thread.
+    """Passes at most as many deliveries per second to `receive` as their route accepts (`Route.rate`); all on one
+    thread.
 
     Messages that must arrive are counted per sender, so that one sender can't crowd out the commands of another. Keys
-    without a route have no limit. If there is too much telemetry, the newest waits until there is room (`later`),
-    because it holds the current values; a newer one replaces it. Too many messages that must arrive are dropped, and
-    some of them handed to `refused`, with the reason. Dropped messages are counted in `drops`, under their key.
+    without a route have no limit. If there is too much telemetry, the newest message waits until there is room
+    (`later`), because it holds the current values; a newer one replaces it. Excess messages that must arrive are
+    dropped, and some of them are passed to `refused` with the reason. Dropped messages are counted in `drops`, under
+    their key.
     """
 
     def __init__(
@@ -37,7 +41,7 @@ class Intake:
         self._held: dict[tuple[int, str], Delivery] = {}
 
     def take(self, delivery: Delivery) -> None:
-        """Hand it on, hold it back, or drop it."""
+        """Pass a delivery on, hold it back, or drop it."""
         route = delivery.subscription.route
         rate = route.rate if route else 0.0
         wait = self._wait(delivery, rate) if rate else 0.0
@@ -52,7 +56,7 @@ class Intake:
             self._hold(place, delivery, wait, rate)
 
     def forget(self) -> None:
-        """The connection is another: what was held back comes again, or is gone with its queue."""
+        """Forget what is held back: on a new connection it is delivered again, or is lost with its queue."""
         self._held.clear()
 
     def _wait(self, delivery: Delivery, rate: float) -> float:

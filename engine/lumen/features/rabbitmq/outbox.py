@@ -1,4 +1,4 @@
-"""What waits to be sent: bounded, so that a broker that is away does not fill the memory."""
+"""Messages that wait to be sent, bounded so that a broker's absence does not fill the memory."""
 
 import logging
 import threading
@@ -12,22 +12,18 @@ from lumen.language.causes import UNKNOWN_ORIGIN, MessageOrigin
 from lumen.upkeep.drops import DropLog
 
 MAX_PENDING_MESSAGES = 50_000
-"""Messages that may be lost; then the oldest give way."""
+"""The number of waiting messages that may be lost; beyond it the oldest are dropped."""
 MAX_PENDING_BYTES = 64 * 1024 * 1024
-"""Bodies of either kind [bytes]."""
+"""The total size of the bodies of either kind [bytes]."""
 MAX_PENDING_RELIABLE = 10_000
-"""Messages that must arrive; then `put` raises."""
+"""The number of waiting messages that must arrive; beyond it `put` raises."""
 LATE = "they were too old before they could be sent"
 
 _log = logging.getLogger(__name__)
 
 
 class OutgoingMessage(NamedTuple):
-    """A message on its way out; after `deadline` [s, monotonic] nobody wants it any more.
-
-    Of those with the same key at most `keep` wait, the newest (0: all). One that `must` arrive is sent until the broker
-    has it, and who receives it twice knows it by the id in its `origin`. `headers` travel with it.
-    """
+    """A message to be sent."""
 
     exchange: str
     key: str
@@ -36,23 +32,27 @@ class OutgoingMessage(NamedTuple):
     reply_to: str = ""
     correlation_id: str = ""
     deadline: float | None = None
+    """The time after which it is discarded [s, monotonic], None for never."""
     type: str = ""
     keep: int = 0
+    """The number of messages of the same key that may wait, the newest; 0 for all."""
     must: bool = False
+    """Whether it is sent until the broker confirms it; a receiver recognises a repetition by the id in `origin`."""
     origin: MessageOrigin = UNKNOWN_ORIGIN
     headers: Mapping[str, str | int] | None = None
+    """Headers that are sent with it."""
 
     @property
     def expiration(self) -> str | None:
-        """What is left to live, as AMQP has it: a text in [ms]."""
+        """The remaining time to live in AMQP's form: a text in [ms]."""
         return None if self.deadline is None else str(max(1, round(1000 * (self.deadline - time.monotonic()))))
 
 
 class Outbox:
-    """Any thread puts and takes, first what must arrive.
+    """A queue that any thread may fill and empty; messages that must arrive go first.
 
-    When it is full the oldest gives way; what must arrive never does: `put` raises BusError instead. That, and what
-    became too old before it could be sent, is counted in `drops`, by key. `came` is called when there is something new.
+    When it is full, the oldest messages that may be lost are dropped; for one that must arrive, `put` raises BusError.
+    Dropped and expired messages are counted in `drops`, by key. `came` is called for each new message.
     """
 
     def __init__(self, came: Callable[[], None] = lambda: None) -> None:
@@ -65,6 +65,7 @@ class Outbox:
         self._changed = threading.Condition()
 
     def put(self, message: OutgoingMessage) -> None:
+        """Add a message. Raises BusFullError if it must arrive and there is no room."""
         with self._changed:
             if message.must:
                 self._check_room(message)
@@ -79,7 +80,7 @@ class Outbox:
         self._came()
 
     def take(self, limit: int) -> list[OutgoingMessage]:
-        """The next messages still wanted, at most so many."""
+        """Remove and return the next messages that have not expired, at most `limit`."""
         with self._changed:
             now = time.monotonic()
             taken: list[OutgoingMessage] = []
@@ -94,7 +95,7 @@ class Outbox:
             return taken
 
     def put_back(self, messages: Iterable[OutgoingMessage]) -> None:
-        """These could not be sent: they are the next again. What newer ones have replaced meanwhile is forgotten."""
+        """Put back messages that could not be sent, in front; those replaced by newer ones meanwhile are discarded."""
         with self._changed:
             for message in reversed(list(messages)):
                 if message.must:
@@ -109,7 +110,7 @@ class Outbox:
                 self._weigh(message, +1)
 
     def emptied(self, timeout: float) -> bool:
-        """Wait until everything has been taken; whether it has, within `timeout` [s]."""
+        """Wait until the outbox is empty; return whether that happened within `timeout` [s]."""
         with self._changed:
             return self._changed.wait_for(lambda: not self, timeout)
 
@@ -117,7 +118,7 @@ class Outbox:
         return len(self._must) + len(self._may)
 
     def _replace(self, message: OutgoingMessage) -> None:
-        """The newest of a key replace the oldest."""
+        """Add the message, and drop the oldest of its key beyond `keep`."""
         waiting = self._newest.setdefault(message.key, deque())
         waiting.append(message)
         self._may.append(message.key)

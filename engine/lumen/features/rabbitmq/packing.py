@@ -1,6 +1,6 @@
-"""Images and joints as bytes on a broker: a picture as it is, angles as floats; what else is said stands in headers.
+"""Images and joints as bytes on a broker: the JPEG itself, or angles as floats; other fields are headers.
 
-Whoever subscribes here gets the body that the JSON form would have been.
+Subscribers receive the same body as in the JSON form.
 """
 
 import binascii
@@ -18,17 +18,17 @@ from lumen.language.data_url import JPEG_URL, DataUrl
 from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 
 Header = str | int
-"""What a header may hold: pika writes no floats, so that a time is a text."""
+"""The types of a header's value: pika writes no floats, so a time is a text."""
 TIME = "time"
 
 _SAME = {"dateModified": "dateCreated", "datePublished": "uploadDate"}
-"""Fields of an image that say what another one says."""
+"""Fields of an image that repeat another field."""
 _LISTS = ("angle", "stiffness", "temperature")
-"""The lists of a body of joints, one number for each joint; the last may be missing."""
+"""The lists in a body of joints, one number for each joint; the last may be missing."""
 
 
 class PackedBody(NamedTuple):
-    """A body's bytes, their media type, and what does not stand in them."""
+    """A body's bytes, their media type, and its remaining fields."""
 
     data: bytes
     content_type: str
@@ -36,7 +36,7 @@ class PackedBody(NamedTuple):
 
 
 def packed(body: Any, content_type: str) -> PackedBody | None:
-    """The body in that form; None where it is no image or no joints, or says what the form has no place for."""
+    """Return the body in that form; None if it is not an image or joints, or has fields that the form can't hold."""
     if not isinstance(body, Mapping):
         return None
     found = _image(body) if content_type == JPEG_TYPE else _joints(body) if content_type == FLOATS_TYPE else None
@@ -44,7 +44,7 @@ def packed(body: Any, content_type: str) -> PackedBody | None:
 
 
 def unpacked(data: bytes, content_type: str, headers: Mapping[str, Header]) -> dict[str, Any]:
-    """The body that was packed so; raises ValueError that says what is wrong."""
+    """Return the body from its packed form. Raises ValueError with the reason if it is invalid."""
     if len(data) > MAX_BODY_BYTES:
         raise ValueError(f"it has more than {MAX_BODY_BYTES:,} bytes")
     if content_type == JPEG_TYPE:

@@ -1,4 +1,4 @@
-"""The loop that pika's connection lives in. Waiting is apart from what is done then: others may use the connection."""
+"""The event loop of pika's connection. Waiting is apart from handling, so that others may use the connection."""
 
 import heapq
 import time
@@ -18,9 +18,9 @@ _numbers = count()
 
 
 class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typed
-    """What pika wants of a loop, turned from outside: `wait`, then `call`."""
+    """The loop that pika requires, turned from outside by `wait`, then `call`."""
 
-    READ, WRITE, ERROR = EVENT_READ, EVENT_WRITE, 0  # a selector tells of an error as of both
+    READ, WRITE, ERROR = EVENT_READ, EVENT_WRITE, 0  # a selector reports an error as readable and writable
 
     def __init__(self) -> None:
         self._selector = DefaultSelector()
@@ -33,7 +33,7 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
         self.add_handler(self._hearing.fileno(), self._heard, EVENT_READ)
 
     def wait(self, seconds: float) -> Events:
-        """What happens within so many seconds, or is there to be called; without changing anything."""
+        """Return the events of at most so many seconds, at once if a callback is pending; nothing is changed."""
         if self._callbacks:
             seconds = 0.0
         elif self._timers:
@@ -41,7 +41,7 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
         return self._selector.select(seconds)
 
     def call(self, events: Events) -> None:
-        """Do what is to be done about these events, what other threads asked for, and what is due."""
+        """Handle these events, then run callbacks of other threads and due timers."""
         for key, mask in events:
             if handler := self._handlers.get(key.fd):
                 handler(key.fd, mask)
@@ -53,34 +53,39 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
                 work()
 
     def add_callback(self, callback: Callable[[], object]) -> None:
-        """From any thread: call this, and let `wait` return."""
+        """From any thread: run this in the next `call`, and make `wait` return."""
         self._callbacks.append(callback)
-        with suppress(OSError):  # full, as after many: it is awake; or closed
+        with suppress(OSError):  # full means that it is awake already; or it is closed
             self._waking.send(b"x")
 
     def call_later(self, delay: float, callback: Callable[[], object]) -> Any:
+        """Run this in a `call` after so many seconds; return the handle for `remove_timeout`."""
         timer = [callback]
         heapq.heappush(self._timers, (time.monotonic() + delay, next(_numbers), timer))
         return timer
 
     def remove_timeout(self, timeout_handle: list[Callable[[], object]]) -> None:
-        """It is called no more; its time wakes nobody."""
+        """Cancel a timer, so that it wakes no `wait`."""
         timeout_handle.clear()
         while self._timers and not self._timers[0][2]:
             heapq.heappop(self._timers)
 
     def add_handler(self, fd: int, handler: Callable[[int, int], None], events: int) -> None:
+        """Call the handler when one of `events` happens on the file descriptor."""
         self._handlers[fd] = handler
         self._selector.register(fd, events)
 
     def update_handler(self, fd: int, events: int) -> None:
+        """Change the events that are watched on a file descriptor."""
         self._selector.modify(fd, events)
 
     def remove_handler(self, fd: int) -> None:
+        """Stop watching a file descriptor."""
         del self._handlers[fd]
         self._selector.unregister(fd)
 
     def close(self) -> None:
+        """Close the selector and the sockets that wake it."""
         self._selector.close()
         self._hearing.close()
         self._waking.close()

@@ -1,6 +1,6 @@
-"""pika's asynchronous connection, driven by the thread that owns it: no callback of ours runs but inside `turn`.
+"""pika's asynchronous connection, driven by the thread that owns it: our callbacks run only inside `turn`.
 
-That thread has the connection for itself but while it waits; then others may use it (`lend`), without waking it.
+Only while that thread waits may others use the connection (`lend`), without waking it.
 """
 
 import threading
@@ -24,13 +24,14 @@ from lumen.features.rabbitmq.poll_loop import PollLoop
 from lumen.features.rabbitmq.wire import MessageReader, WireConnection
 
 STALL_TIME = 0.5
-"""By how much a turn may take longer [s] before this process counts as having stood still."""
+"""How much longer than planned a turn may take [s] before this process counts as having been suspended."""
 
 
 class TurnClock:
-    """Follows the turns of a connection.
+    """Follows the turns of a connection, to estimate when messages arrived.
 
-    Who wakes up in the middle of a turn may see only in the next one what came in this one: both count from its begin.
+    A process that was suspended during one turn may see what arrived then only in the next, so both count from the
+    first one's beginning.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -39,13 +40,15 @@ class TurnClock:
         self._stood_since: float | None = None
 
     def begin(self, most: float) -> None:
-        """A turn begins, which takes `most` [s]."""
+        """Begin a turn that takes at most `most` [s]."""
         now = self._clock()
         self._stood_since = self._begun if self._stood(now) else None
         self._begun, self._most = now, most
 
     def arrival(self) -> float:
-        """When what is received now came at the earliest [s, by `clock`]: now, unless this process stood still."""
+        """Return the earliest time that data received now can have arrived [s, by `clock`]: now, unless the process was
+        suspended.
+        """
         now = self._clock()
         if self._stood_since is not None:
             return self._stood_since
@@ -56,12 +59,11 @@ class TurnClock:
 
 
 class PolledConnection:
-    """An open connection and its channel. Raises what pika raises, where it can't be opened or is lost.
+    """An open connection and its channel. Raises pika's exceptions if it can't be opened or is lost.
 
-    Unlike `BlockingConnection` it waits neither for each message to be sent nor for each confirm to come.
-
-    `blocked` names the resource that the broker lacks while it accepts nothing, else it is empty; `told` is called
-    with each change.
+    Unlike `BlockingConnection` it waits neither for each message to be sent nor for each confirmation. `blocked` names
+    the resource that the broker lacks while it accepts nothing, and is empty otherwise; `told` is called with each
+    change.
     """
 
     def __init__(self, parameters: Any, told: Callable[[str], None] = lambda blocked: None) -> None:
@@ -84,18 +86,18 @@ class PolledConnection:
 
     @property
     def server(self) -> dict[str, Any]:
-        """What the broker says of itself."""
+        """The broker's properties, such as its product and version."""
         return self._connection.server_properties or {}
 
     def open_channel(self) -> Any:
-        """A channel; the one before is gone."""
+        """Open a channel in place of the last one, and return it."""
         self.channel = self._open_channel()
         self.channel.add_on_close_callback(lambda _, reason: self._closed(reason))
         return self.channel
 
     @contextmanager
     def asking(self) -> Iterator[AskedChannel]:
-        """A channel of its own for questions, which closes where the broker refuses."""
+        """Open a separate channel for requests; a refusal by the broker closes only that one."""
         channel = AskedChannel(self, self._open_channel())
         try:
             yield channel
@@ -109,13 +111,15 @@ class PolledConnection:
         self.until(lambda: answers)
 
     def publish(self, exchange: str, key: str, properties: bytes, body: bytes, *, mandatory: bool) -> None:
-        """Send a message with the next turn; raises ValueError where AMQP can't carry it."""
+        """Send a message with the next turn. Raises ValueError if AMQP can't carry it."""
         if not self.channel.is_open:
             raise ChannelWrongStateError("the channel is closed")
         self._connection.send(self.channel.channel_number, exchange, key, properties, body, mandatory=mandatory)
 
     def confirm(self, has: Callable[[int, bool], None], lacks: Callable[[int, bool], None]) -> None:
-        """Have the broker say which of the messages sent from now on it has, by number, and by `True` all before."""
+        """Request confirmations: `has` and `lacks` are called with a message's number, and True if it includes all
+        before.
+        """
 
         def refused(frame: Any) -> None:
             lacks(frame.method.delivery_tag, frame.method.multiple)
@@ -124,7 +128,7 @@ class PolledConnection:
         self.ask(self.channel.confirm_delivery, refused)
 
     def consume(self, queue: str, reader: MessageReader, arguments: Mapping[str, Any] | None = None) -> str:
-        """Have messages of a queue read, of which the broker knows then; the tag by which to `cancel` that."""
+        """Start to consume a queue, wait for the broker's answer, and return the tag with which to `cancel`."""
         known: list[Any] = []
         tag: str = self.channel.basic_consume(queue, lambda *_: None, arguments=arguments, callback=known.append)
         self._connection.readers[tag.encode()] = reader
@@ -132,12 +136,14 @@ class PolledConnection:
         return tag
 
     def cancel(self, tag: str) -> None:
-        """Read no more; what comes meanwhile goes back to the queue."""
+        """Stop consuming; messages that arrive in the meantime return to the queue."""
         if self._connection.readers.pop(tag.encode(), None):
             self.ask(self.channel.basic_cancel, tag)
 
     def until(self, done: Callable[[], object]) -> None:
-        """Turn until `done`, at most for the broker's time to answer. Raises at once if the broker accepts nothing."""
+        """Turn until `done` is true, at most for the broker's time to answer. Raises at once if the broker accepts
+        nothing.
+        """
         deadline = time.monotonic() + BROKER_TIMEOUT
         while not done():
             if self.blocked:
@@ -147,9 +153,9 @@ class PolledConnection:
             self.turn(0.5)
 
     def turn(self, seconds: float, pause: float = 0.0) -> None:
-        """Let the connection live: at most so long, or until something happens or `wake` is called.
+        """Process events for at most `seconds`, or until something happens or `wake` is called.
 
-        Before that only `wake` is waited for, as long as `pause` [s]: what happens meanwhile is used at once.
+        First wait `pause` [s] for `wake` alone; events of that time are then processed at once.
         """
         self.clock.begin(pause + seconds)
         self._connection.flush()
@@ -167,7 +173,9 @@ class PolledConnection:
             raise self._error
 
     def lend(self, work: Callable[[], bool]) -> bool:
-        """From any thread: do this with the connection while its owner waits; what it says, or false: it is in use."""
+        """From any thread: run `work` with the connection while its owner waits; return its result, False if it is in
+        use.
+        """
         if not self._used.acquire(blocking=False):
             return False
         try:
@@ -177,36 +185,36 @@ class PolledConnection:
             self._used.release()
 
     def wake(self) -> None:
-        """From any thread: let `turn` return."""
+        """From any thread: make `turn` return."""
         self._woken.set()
         self._loop.add_callback(lambda: None)
 
     def later(self, work: Callable[[], None]) -> None:
-        """From any thread: have the thread that owns the connection do this in `work`, where it may ask the broker."""
+        """From any thread: let the owning thread run this in `work`, where it may send requests to the broker."""
         self._works.append(work)
         self.wake()
 
     def work(self) -> None:
-        """Do what others wanted done `later`, between two turns."""
+        """Run what others passed to `later`, between two turns."""
         while self._works:
             self._works.popleft()()
 
     def call_later(self, seconds: float, work: Callable[[], None]) -> None:
-        """Do this within a turn in so many seconds; it may not ask the broker."""
+        """Run this within a turn after so many seconds; it must not send requests to the broker."""
         self._loop.call_later(seconds, work)
 
     def rest(self, seconds: float) -> None:
-        """Turn for so long."""
+        """Process events for so many seconds."""
         rung: list[bool] = []
         self.call_later(seconds, lambda: rung.append(True))
         self.until(lambda: rung)
 
     def fail(self, error: BaseException) -> None:
-        """Within a callback: have the turn raise this."""
+        """Within a callback: make the turn raise this error."""
         self._error = error
 
     def close(self) -> None:
-        """End in good order where it can be; the loop is gone afterwards."""
+        """Close the connection properly if possible, and the loop in any case."""
         try:
             if self._connection is not None and self._connection.is_open:
                 self._error = None

@@ -1,4 +1,4 @@
-"""What a broker lets us do, found out without anybody else noticing."""
+"""Tests what a broker allows, without effects on its other users."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -23,13 +23,13 @@ from lumen.features.rabbitmq.queues import (
 from lumen.language.routes import Route
 
 FORGED_USER = "lumen doctor"
-"""Whom a probing message claims to be from."""
+"""The user that a test message pretends to be from."""
 ACCESS_REFUSED = 403
-"""AMQP's code for what a user may not do."""
+"""AMQP's code for a missing permission."""
 
 
 class BrokerProbe:
-    """A connection for questions; raises BusError, saying what to do, if the broker can't be used."""
+    """A connection for tests of a broker. Raises BusError, with the remedy, if the broker is unusable."""
 
     def __init__(self, url: str) -> None:
         self.address = BrokerAddress(url)
@@ -45,7 +45,7 @@ class BrokerProbe:
             raise
 
     def has_queue(self, name: str) -> bool:
-        """Whether there is a queue or a stream of that name."""
+        """Return whether there is a queue or a stream of that name."""
         try:
             with self._asking() as channel:
                 channel.queue_declare(name, passive=True)
@@ -54,7 +54,7 @@ class BrokerProbe:
         return True
 
     def reading(self, key: str) -> str:
-        """Why we may not read what is sent under this key; empty where we may."""
+        """Return why this user may not receive messages under this key; empty if it may."""
         try:
             with self._asking() as channel:
                 queue = channel.queue_declare("", exclusive=True).method.queue
@@ -65,16 +65,16 @@ class BrokerProbe:
         return ""
 
     def writing(self, key: str) -> str:
-        """Why we may not send under this key; empty where we may.
+        """Return why this user may not send under this key; empty if it may.
 
-        The message claims to be from somebody else, which the broker refuses after it has looked whether we may send
-        it: so it goes to nobody.
+        The message has the name of another user. The broker refuses that only after it has checked the permission to
+        send, so the message reaches nobody.
         """
         properties = pika.BasicProperties(user_id=FORGED_USER)
         try:
             with self._asking() as channel:
                 channel.send(EXCHANGE, key, properties)
-                channel.basic_qos(prefetch_count=1)  # the broker answers in order: after the message
+                channel.basic_qos(prefetch_count=1)  # the broker answers in order, so after the message
         except ChannelClosedByBroker as error:
             return str(error.reply_text) if error.reply_code == ACCESS_REFUSED else ""
         raise BusUnreachableError(f"the broker at {self.address} accepted a message in the name of `{FORGED_USER}`")
@@ -88,7 +88,7 @@ class BrokerProbe:
         return ""
 
     def served(self, key: str, route: Route) -> QueueStatus:
-        """How many wait and read in the queue of a route whose messages must arrive."""
+        """Return how many messages and consumers the queue of a route has whose messages must arrive."""
         try:
             with self._asking() as channel:
                 found = channel.queue_declare(queue_of(key, route).name, passive=True).method
@@ -117,6 +117,7 @@ class BrokerProbe:
         return ""
 
     def close(self) -> None:
+        """Close the connection."""
         self._connection.close()
 
     @contextmanager
@@ -137,9 +138,9 @@ class BrokerProbe:
     def _explained(self) -> Iterator[None]:
         try:
             yield
-        except ChannelClosedByBroker:  # it refuses, which is an answer
+        except ChannelClosedByBroker:  # a refusal is an answer
             raise
-        except Exception as error:  # pika has some that are neither AMQPError nor OSError
+        except Exception as error:  # pika also raises errors that are neither AMQPError nor OSError
             raise self.address.explain(error) from error
 
 

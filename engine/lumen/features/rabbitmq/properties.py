@@ -1,9 +1,8 @@
-"""What AMQP says of a message, read so that nothing in it can end the connection.
+"""Reads AMQP's properties of a message so that no content of theirs can end the connection.
 
-pika reads every header that a sender may invent, deep tables and dates beyond its own, and raises inside its reading of
-frames: the connection is gone with one message. Of the headers only a text called `cause` is read, where nothing but
-texts stands before it, and where in a stream the message stands; the others are passed over unread. Of the rest what is
-no text is left out, and named.
+pika decodes all headers, however deep their tables or odd their dates, and raises while it reads frames: a single
+message ends the connection. Here only two headers are decoded: a text called `cause`, if only texts come before it, and
+a message's offset in a stream. All others are skipped. Properties that are not valid text are left out, and named.
 """
 
 from collections.abc import Callable, Mapping
@@ -17,26 +16,22 @@ from pika import frame, spec
 from pika.data import encode_table
 
 _HEADER_START = spec.FRAME_HEADER_SIZE + 12
-"""Where in a frame the properties begin: behind the class, the weight and the length of the body."""
+"""The index of the properties in a header frame: after the class, the weight and the length of the body."""
 CAUSE_HEADER = "cause"
-"""The header that says what in a behaviour asked for a message."""
+"""The header with the place in a behaviour that caused a message."""
 OFFSET_HEADER = "x-stream-offset"
-"""The header by which RabbitMQ says where in a stream a message stands."""
+"""The header with a message's position in a RabbitMQ stream."""
 _FIELDS = (
     ("content_type", "text"), ("content_encoding", "text"), ("headers", "table"), ("delivery_mode", "byte"),
     ("priority", "byte"), ("correlation_id", "text"), ("reply_to", "text"), ("expiration", "text"),
     ("message_id", "text"), ("timestamp", "time"), ("type", "text"), ("user_id", "text"), ("app_id", "text"),
     ("cluster_id", "text"),
 )  # fmt: skip
-"""AMQP 0-9-1's properties of a message in their order, from the highest bit of the flags on."""
+"""AMQP 0-9-1's properties of a message in their order, from the highest bit of the flags."""
 
 
 class MessageProperties(NamedTuple):
-    """What we go by of a message's properties; `unreadable` names those that were left out.
-
-    `headers` is what the one that we read says: `CAUSE_HEADER`. `offset` is where in a stream it stands, -1 in none.
-    `table` are all of them, unread: `header_fields` reads them for who needs more.
-    """
+    """The properties of a message that Lumen uses."""
 
     content_type: str = ""
     correlation_id: str = ""
@@ -47,9 +42,13 @@ class MessageProperties(NamedTuple):
     app_id: str = ""
     delivery_mode: int = 0
     headers: str = ""
+    """The text of `CAUSE_HEADER`."""
     offset: int = -1
+    """The position in a stream, -1 outside of one."""
     table: bytes = b""
+    """All headers, undecoded: use `header_fields` to read more of them."""
     unreadable: tuple[str, ...] = ()
+    """The names of properties that could not be read."""
     content_encoding: str = ""
 
 
@@ -69,7 +68,7 @@ class TolerantConnection(pika.SelectConnection):  # type: ignore[misc]  # pika i
 
 
 def read_properties(data: bytes) -> MessageProperties:
-    """The properties in these bytes of a header's frame, whatever they are."""
+    """Return the properties in these bytes of a header frame; anything unreadable is named."""
     found: dict[str, Any] = {}
     unreadable: list[str] = []
     try:
@@ -90,9 +89,9 @@ def read_properties(data: bytes) -> MessageProperties:
 
 
 def write_properties(said: Mapping[str, Any]) -> bytes:
-    """Properties by their names in AMQP, as it has them; what is empty is left out.
+    """Return these properties, named as in AMQP, as bytes; empty ones are left out.
 
-    Raises ValueError for a text that is too long, or no Unicode.
+    Raises ValueError if a text is longer than 255 bytes or not valid Unicode.
     """
     flags, parts = 0, [b""]
     for bit, (name, kind) in zip(range(15, 1, -1), _FIELDS, strict=True):
@@ -104,13 +103,13 @@ def write_properties(said: Mapping[str, Any]) -> bytes:
 
 
 def short_text(text: str) -> bytes:
-    """A text of 255 bytes at most, as AMQP has it; raises ValueError for another."""
+    """Return AMQP's form of a text of at most 255 bytes. Raises ValueError if it is longer."""
     said = text.encode()
     return bytes((len(said),)) + said
 
 
 def _flags(data: bytes) -> tuple[int, int]:
-    """The flags of the first word, and where the last word ends: the lowest bit says that one follows."""
+    """Return the first word of the flags and the end of the last: the lowest bit means that another word follows."""
     at, word = 2, unpack_from(">H", data)[0]
     first = word
     while word & 1:
@@ -133,7 +132,7 @@ def _table(data: bytes, at: int) -> tuple[str | None, int]:
 
 
 def _cause(table: bytes) -> str:
-    """The text `cause` of a table, as long as texts come first: an entry is a name, an `S`, and a text."""
+    """Return the text `cause` of a table if only texts come before it: each entry is a name, an `S` and a text."""
     at = 0
     while at < len(table):
         named = at + 1 + table[at]
@@ -147,7 +146,7 @@ def _cause(table: bytes) -> str:
 
 
 def _offset(table: bytes) -> int:
-    """What `OFFSET_HEADER` of a table says, -1 where there is none: an entry is a name, a sign and its value."""
+    """Return the value of `OFFSET_HEADER` in a table, -1 if there is none: each entry is a name, a sign and a value."""
     name = OFFSET_HEADER.encode()
     at = 0
     with suppress(struct_error):
@@ -163,7 +162,7 @@ def _offset(table: bytes) -> int:
 
 
 def header_fields(table: bytes) -> dict[str, str | int]:
-    """The texts, whole numbers and truth values among the headers, as far as they can be read; the rest is left out."""
+    """Return the texts, integers and booleans among the headers, up to the first that can't be read."""
     found: dict[str, str | int] = {}
     at = 0
     with suppress(struct_error, IndexError, UnicodeDecodeError):
@@ -203,11 +202,11 @@ _LONG = frozenset((b"S", b"A", b"F", b"x"))
 _SIZES = {
     b"t": 1, b"b": 1, b"B": 1, b"s": 2, b"u": 2, b"I": 4, b"i": 4, b"f": 4, b"D": 5, b"l": 8, b"d": 8, b"T": 8, b"V": 0,
 }  # fmt: skip
-"""How long the values of the other signs are [bytes], as RabbitMQ writes them."""
+"""The sizes of the other signs' values [bytes], as RabbitMQ writes them."""
 _NUMBERS = {
     b"t": ">?", b"b": ">b", b"B": ">B", b"s": ">h", b"u": ">H", b"I": ">i", b"i": ">I", b"l": ">q",
 }  # fmt: skip
-"""How those are read that are whole numbers, or true or false."""
+"""The formats of those values that are integers or booleans."""
 _READERS: dict[str, Any] = {"text": _text, "table": _table, "byte": _byte, "time": _time}
 _WRITERS: dict[str, Callable[[Any], bytes]] = {
     "text": short_text, "table": _table_of, "byte": Struct("B").pack, "time": Struct(">Q").pack,

@@ -1,4 +1,4 @@
-"""A connection that sends, and knows of every message whether the broker has it."""
+"""The connection that sends messages and tracks which of them the broker has confirmed."""
 
 import logging
 import time
@@ -27,19 +27,19 @@ from lumen.language.routes import FLOATS_TYPE, JPEG_TYPE
 from lumen.upkeep.drops import DropLog
 
 MAX_UNCONFIRMED_MESSAGES = 1_000
-"""Messages that are sent and not confirmed yet; more wait in the outbox."""
+"""The number of messages that may be sent but not confirmed yet; more wait in the outbox."""
 MAX_BY_GUEST = 8
-"""How many messages that wait, after an outage perhaps, somebody who publishes another one sends with it."""
+"""The number of waiting messages, for example after an outage, that a thread sends along when it publishes one."""
 MAX_UNCONFIRMED_BYTES = 4 * 1024 * 1024
-"""Their bodies [bytes]."""
+"""The total size of the bodies of messages that may be sent but not confirmed yet [bytes]."""
 CONFIRM_TIME = 0.01
-"""For how long what the broker says of messages is left to gather while more are sent [s]."""
+"""How long the broker's confirmations are left to accumulate while more messages are sent [s]."""
 IDLE_TIME = 0.5
-"""How long the connection is left to itself while there is nothing to send [s]."""
+"""How long the connection waits for events if there is nothing to send [s]."""
 MAX_WARNED_KEYS = 1_000
-"""Keys that nobody takes and that were warned of; more are not."""
+"""The number of keys without a receiver that are warned of; further ones are not."""
 PROBE_PERIOD = 1.0
-"""How often it is tried whether somebody takes by now what nobody took before [s]."""
+"""The time between two attempts to find out whether a key without a receiver has one now [s]."""
 PERSISTENT_DELIVERY = 2
 """AMQP's delivery mode of a message that a broker writes to its disk."""
 
@@ -47,20 +47,22 @@ _log = logging.getLogger(__name__)
 
 
 class _Sent(NamedTuple):
-    """A message that was sent, of so many bytes, and what to send `again` where the connection is lost."""
+    """A message that was sent, until it is confirmed."""
 
     size: int
+    """The size of its body [bytes]."""
     again: OutgoingMessage | None
+    """What to send again if the connection is lost, None for nothing."""
 
 
 class Publisher(BrokerConnection):
-    """Sends what is in the outbox; what is there when the broker is away waits for it to come back.
+    """Sends the messages of the outbox; while the broker is away, they wait for it.
 
-    Who publishes sends, on its own thread; the connection's hears what the broker says of it, and sends what waited.
-    At most `MAX_UNCONFIRMED_MESSAGES` are sent without the broker's confirmation. When the connection is lost, those of
-    them that must arrive are the next again. What nobody takes is logged with the nearest of the `known` keys.
-    `journals` are the queues that keep what goes out until a module reads it. `returned` is called with each key whose
-    message nobody takes; without it only those come back that must arrive.
+    The thread that publishes a message also sends it; the connection's own thread receives confirmations and sends
+    messages that had to wait. At most `MAX_UNCONFIRMED_MESSAGES` are sent without confirmation. When the connection is
+    lost, those that must arrive are sent again first. Messages without a receiver are logged with the nearest of the
+    `known` keys. `journals` are the queues that keep outgoing messages until a module reads them. `returned` is called
+    with each key whose message has no receiver; without it, the broker returns only messages that must arrive.
     """
 
     def __init__(self, address: BrokerAddress, name: str, outage: OutageLog) -> None:
@@ -81,6 +83,7 @@ class Publisher(BrokerConnection):
         self.unsendable = DropLog(_log)
 
     def begin(self) -> None:
+        """Check the broker's version, declare the side queues and request confirmations."""
         self.address.check_version(self.connection.server)
         self._number, self._declared, self._refused = 0, set(), set()
         self._declare(SIDE_QUEUES, declare_side_queues)
@@ -89,7 +92,7 @@ class Publisher(BrokerConnection):
 
     @property
     def blocked(self) -> bool:
-        """Whether the broker accepts no messages from this connection now."""
+        """Whether the broker currently accepts no messages from this connection."""
         connection = self.connection
         return bool(connection and connection.blocked)
 
@@ -99,7 +102,10 @@ class Publisher(BrokerConnection):
         return SIDE_QUEUES in self._declared
 
     def serve(self) -> bool:
-        if self.connection.blocked:  # a message sent now would be used late: in the outbox its time to live counts
+        """Send waiting messages and process the broker's; return False once everything is sent and the end is
+        requested.
+        """
+        if self.connection.blocked:  # in the outbox a message's time to live counts; sent now, it would be used late
             self.connection.turn(IDLE_TIME)
             self.outbox.drops.tell()
             return not self.ending.is_set()
@@ -116,26 +122,27 @@ class Publisher(BrokerConnection):
         return bool(self.outbox or self._window) or not self.ending.is_set()
 
     def disconnect(self, connection: PolledConnection) -> None:
+        """Put unconfirmed messages that must arrive back into the outbox, and close the connection."""
         self._prepared = None
         lost, self._window, self._bytes = self._window, {}, 0
         self.outbox.put_back([sent.again for sent in lost.values() if sent.again])
         connection.close()
 
     def end(self, timeout: float) -> bool:
-        """Send the rest and end; whether that was done within `timeout` [s]."""
+        """Send the rest and end; return whether that was done within `timeout` [s]."""
         self.ending.set()
         if connection := self.connection:
             connection.wake()
         return self.join(timeout)
 
     def _send_now(self) -> None:
-        """Whoever has put something sends it; unless the connection is in use, then its thread does."""
+        """Send in the caller's thread; if the connection is in use, let its own thread send."""
         connection = self.connection
         if connection and not connection.lend(self._send_as_guest):
             connection.wake()
 
     def _send_as_guest(self) -> bool:
-        """Send what waits, if it is not much; false where the connection's thread has something to do."""
+        """Send a few waiting messages; return False if the connection's own thread must continue."""
         if self._prepared is not self.journals:
             return False
         try:
@@ -179,7 +186,7 @@ class Publisher(BrokerConnection):
             self.connection.publish(message.exchange, message.key, properties, message.body, mandatory=wanted)
         except (AMQPChannelError, AMQPConnectionError, OSError):
             raise
-        except Exception as error:  # it can't be written down: sent again, it would end the connection again
+        except Exception as error:  # AMQP can't carry it; sent again, it would end the connection again
             self.unsendable.add(message.key, f"AMQP cannot carry it: {error!r}")
             return
         self._number += 1
@@ -187,7 +194,7 @@ class Publisher(BrokerConnection):
         self._bytes += len(message.body)
 
     def _confirmed(self, number: int, several: bool) -> None:
-        """The broker has this message, and with `several` all before it."""
+        """Note that the broker has this message, and with `several` all before it."""
         self._settled(number, several)
 
     def _nacked(self, number: int, several: bool) -> None:
@@ -196,14 +203,16 @@ class Publisher(BrokerConnection):
         self.outbox.put_back([sent.again for sent in messages if sent.again])
 
     def _settled(self, number: int, several: bool) -> list[_Sent]:
-        """Messages of which the broker has said something."""
+        """Remove the messages that the broker has answered for from the window, and return them."""
         first = next(iter(self._window), 0) if several else number
         messages = [sent for n in range(first, number + 1) if (sent := self._window.pop(n, None))]
         self._bytes -= sum(sent.size for sent in messages)
         return messages
 
     def _returned(self, _: Any, method: Any, properties: Any, body: bytes) -> None:
-        """Nobody is there for a message; one that must arrive is put where somebody can find it."""
+        """Handle a message without a receiver: one that must arrive goes to the side queue, where operators can find
+        it.
+        """
         key = method.routing_key
         if method.exchange == UNROUTED:
             return
@@ -218,9 +227,9 @@ class Publisher(BrokerConnection):
             self.outbox.put(OutgoingMessage(UNROUTED, key, body, properties.content_type or "", headers=headers))
 
     def heard(self, key: str) -> bool:
-        """Whether anybody takes what is sent under this key, as far as was seen in the last PROBE_PERIOD.
+        """Return whether a process receives messages under this key, as seen within the last PROBE_PERIOD.
 
-        Where that is not known it is true: what is sent then finds out.
+        Return True if that is unknown: the next message then finds out.
         """
         self._probed.add(key)
         return time.monotonic() - self._missed.get(key, -PROBE_PERIOD) >= PROBE_PERIOD
@@ -230,13 +239,13 @@ class Publisher(BrokerConnection):
             self._missed[key] = time.monotonic()
 
     def unrouted(self, key: str) -> None:
-        """Somebody sent a message under this key, and nobody took it: log it where no route has the key."""
+        """Note that a message under this key had no receiver; log it if no route has the key."""
         self._miss(key)
         if key not in self.known:
             self.warn_once(key)
 
     def warn_once(self, key: str) -> None:
-        """Log once that nobody takes what is sent under this key."""
+        """Log, once per key, that no process receives messages under it."""
         if key in self._warned or len(self._warned) >= MAX_WARNED_KEYS:
             return
         self._warned.add(key)
@@ -245,7 +254,9 @@ class Publisher(BrokerConnection):
         _log.warning("no process receives messages on `%s`%s", key, hint if "mean" in hint else "")
 
     def _declare(self, name: str, work: Callable[[AskedChannel], None]) -> None:
-        """Declare something on the broker once; where it refuses, as it does to a user of few rights, all goes on."""
+        """Declare something on the broker once; a refusal, as for a user with few permissions, is logged and
+        ignored.
+        """
         if name in self._declared or name in self._refused:
             return
         try:

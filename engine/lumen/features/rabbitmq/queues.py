@@ -1,9 +1,9 @@
-"""What we declare on a broker: a queue for every way of being carried, and places for what nobody could use.
+"""The queues that Lumen declares on a broker: one for every way of carrying messages, and two for unusable ones.
 
-Telemetry has a queue that goes away with its reader and keeps the newest. A command has one that outlives a reader's
-absence for as long as the command is good for; then it is dead, with the others in `lumen.dead`. A journal that comes
-in has a quorum queue, one that goes out a stream, from which any number of modules may read. Nothing here grows without
-bound: what can't be kept is refused to the sender, or is the oldest of what may be lost.
+Telemetry has a queue that vanishes with its reader and keeps the newest messages. Commands have one that survives a
+reader's absence as long as a command is valid; expired ones go to `lumen.dead`. An incoming journal has a quorum queue,
+an outgoing one a stream, which any number of modules may read. All of them are bounded: what does not fit is refused to
+the sender, or displaces the oldest if it may be lost.
 """
 
 import hashlib
@@ -17,33 +17,34 @@ from lumen.language.routes import Carried, Route
 
 EXCHANGE = "amq.topic"
 DEAD_LETTERS = "lumen.dead"
-"""Where messages go that could not be used, with the reason in their headers."""
+"""The queue of unusable messages, with the reason in their headers."""
 UNROUTED = "lumen.nowhere"
-"""Where messages go that nobody waits for; the alternate exchange of `amq.topic` where a policy says so."""
+"""The queue of messages without a receiver; the alternate exchange of `amq.topic` if a policy sets it."""
 SIDE_QUEUES = f"{DEAD_LETTERS} and {UNROUTED}"
 
 MAX_LENGTH_WITHOUT_ROUTE = 20_000
-"""Messages in a queue for a key that no route has; then the oldest give way."""
+"""The length of a queue for a key without a route; the oldest messages are dropped beyond it."""
 MAX_LENGTH_TELEMETRY = 1_000
-"""Messages in a queue of telemetry whose route does not say how many to `keep`."""
+"""The length of a telemetry queue whose route has no `keep`."""
 MAX_LENGTH_COMMANDS = 100_000
-"""Messages in a queue of commands; then the broker refuses the sender."""
+"""The length of a queue of commands; beyond it, the broker refuses further ones."""
 MAX_JOURNAL_BYTES = 10**9
-"""Size of a journal's queue or stream [bytes]."""
+"""The size of a journal's queue or stream [bytes]."""
 MAX_SIDE_QUEUE_BYTES = 10**8
-"""Size of `lumen.dead` and of `lumen.nowhere` [bytes]."""
+"""The size of `lumen.dead` and of `lumen.nowhere` [bytes]."""
 MAX_QUEUE_NAME_BYTES = 255
-"""AMQP's bound on a short string; a longer name is replaced by its hash."""
+"""The longest short string of AMQP; a longer name is replaced by its hash."""
 HOUR = 60 * 60 * 1000
-"""[ms], as RabbitMQ counts."""
+"""One hour in RabbitMQ's unit [ms]."""
 UNUSED_EXPIRY = 10 * 60 * 1000
-"""After how long without a reader a queue of commands goes away [ms]."""
+"""The time without a reader after which a queue of commands is deleted [ms]."""
 QUORUM_SETTLE_TIME = 1.0
-"""How long a new quorum queue stays unbound [s]: RabbitMQ writes down half a second later which log is whose; killed
-before that, it loses what the queue held (docs/decisions)."""
+"""How long a new quorum queue stays unbound [s]. RabbitMQ saves which log belongs to the queue half a second later; if
+it is killed before, the queue's content is lost (docs/decisions).
+"""
 
 SIDE_EXCHANGE = "fanout"
-"""The type of the exchanges in front of the side queues: each message goes to the queue, whatever its key."""
+"""The type of the side queues' exchanges: each message reaches the queue, whatever its key."""
 SIDE_QUEUE_LIMITS: Mapping[str, Mapping[str, Any]] = {
     name: {
         "x-max-length": MAX_LENGTH_TELEMETRY,
@@ -52,7 +53,7 @@ SIDE_QUEUE_LIMITS: Mapping[str, Mapping[str, Any]] = {
     }
     for name, lifetime in ((DEAD_LETTERS, 7 * 24 * HOUR), (UNROUTED, HOUR))
 }
-"""The side queues, each with its arguments."""
+"""The arguments of the side queues, by name."""
 OTHERWISE = 406
 """AMQP's code for a queue or an exchange that exists with other arguments."""
 _OTHER_ARGUMENT = re.compile(
@@ -62,7 +63,7 @@ _OTHER_ARGUMENT = re.compile(
 
 @dataclass(frozen=True)
 class Queue:
-    """A queue on the broker; without a name it is ours alone, and gone with us."""
+    """A queue on the broker; one without a name belongs to this connection and ends with it."""
 
     key: str
     name: str = ""
@@ -71,16 +72,17 @@ class Queue:
 
     @property
     def quorum(self) -> bool:
+        """Whether it is a quorum queue."""
         return self.arguments.get("x-queue-type") == "quorum"
 
     def declare(self, channel: AskedChannel) -> None:
-        """Declare one that has a name, and bind it to its key."""
+        """Declare a queue with a name, and bind it to its key."""
         channel.queue_declare(self.name, durable=True, arguments=self.arguments)
         channel.queue_bind(self.name, EXCHANGE, self.key)
 
 
 def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXCHANGE) -> Queue:
-    """The queue for what comes in under a key; `number` tells those of the same key apart."""
+    """Return the queue for messages that arrive under a key; `number` distinguishes several of the same key."""
     if route is None or not route.must_arrive:
         newest = MAX_LENGTH_WITHOUT_ROUTE if route is None else route.keep or MAX_LENGTH_TELEMETRY
         return Queue(
@@ -105,13 +107,15 @@ def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXC
 
 
 def journal_of(key: str) -> Queue:
-    """The stream of a journal that goes out: a month or a gigabyte, from which modules read where they left off."""
+    """Return the stream of an outgoing journal: a month or a gigabyte, which each module reads from where it
+    stopped.
+    """
     arguments = {"x-queue-type": "stream", "x-max-age": "30D", "x-max-length-bytes": MAX_JOURNAL_BYTES}
     return Queue(key, _name(f"lumen.journal.{key}"), arguments=arguments)
 
 
 def declare_side_queues(channel: AskedChannel) -> None:
-    """Declare the places for what nobody could use: bounded, the oldest gives way."""
+    """Declare the queues for unusable messages and those without a receiver: bounded, the oldest are dropped."""
     for name, limits in SIDE_QUEUE_LIMITS.items():
         channel.exchange_declare(name, SIDE_EXCHANGE, durable=True)
         channel.queue_declare(name, durable=True, arguments=limits)

@@ -1,4 +1,4 @@
-"""A stream of RabbitMQ, read from where it was left: whoever was off hears what was said meanwhile."""
+"""Reads a RabbitMQ stream from where the last reading ended, so that messages of an absence are not missed."""
 
 from collections import deque
 from contextlib import closing
@@ -14,15 +14,15 @@ from lumen.features.rabbitmq.probe import BrokerProbe
 from lumen.features.rabbitmq.properties import MessageProperties
 
 PREFETCH = 200
-"""How many messages the broker sends ahead: a stream wants a bound."""
+"""The number of messages that the broker sends ahead: a stream requires a limit."""
 MOST_READ = 2000
-"""How many messages wait for `take`; then no more are asked for."""
+"""The number of messages that may wait for `take`; beyond it no more are requested."""
 TURN = 0.2
-"""How long the connection's thread waits for what comes, before it looks whether it is to end [s]."""
+"""How long the connection's thread waits for events before it checks whether to end [s]."""
 
 
 class StreamReader(BrokerConnection):
-    """Reads the stream `name` from the offset `first` on, on a thread of its own, through all outages of the broker."""
+    """Reads the stream `name` from the offset `first`, on a thread of its own, across outages of the broker."""
 
     def __init__(self, url: str, name: str, first: int = 0) -> None:
         address = BrokerAddress(url)
@@ -32,20 +32,22 @@ class StreamReader(BrokerConnection):
         self._last = 0
 
     def take(self) -> list[StreamEntry]:
-        """What was read since the last call, in the stream's order."""
+        """Return the entries read since the last call, in the stream's order."""
         return [self._read.popleft() for _ in range(len(self._read))]
 
     def close(self, timeout: float = 5.0) -> None:
-        """End; what was not taken is read again by the next one that begins there."""
+        """End; entries that were not taken are read again by a reader that begins there."""
         self.ending.set()
         self.join(timeout)
 
     def begin(self) -> None:
+        """Start to read at the next offset."""
         self.channel.basic_qos(prefetch_count=PREFETCH)
         self.channel.add_on_cancel_callback(self._cancelled)
         self.connection.consume(self._stream, self._came, arguments={"x-stream-offset": self._next})
 
     def serve(self) -> bool:
+        """Process events for a turn; return False once the end is requested."""
         if self._last and len(self._read) < MOST_READ:
             self.channel.basic_ack(self._last, multiple=True)
             self._last = 0
@@ -55,7 +57,7 @@ class StreamReader(BrokerConnection):
     def _came(self, number: int, _: bool, name: bytes, properties: MessageProperties, data: bytes) -> None:
         self._last = number
         offset = properties.offset if properties.offset >= 0 else self._next
-        if offset < self._next:  # a stream is sent from the beginning of the piece in which the offset lies
+        if offset < self._next:  # the broker sends whole chunks of a stream
             return
         self._next = offset + 1
         key = name.decode(errors="ignore")
@@ -70,7 +72,7 @@ class StreamReader(BrokerConnection):
 
 
 def read_stream(url: str, name: str, first: int) -> StreamReader | None:
-    """Read a stream from the offset `first` on; None if the broker has no such queue. Raises BusError."""
+    """Read a stream from the offset `first`; None if the broker has no such queue. Raises BusError."""
     with closing(BrokerProbe(url)) as probe:
         if not probe.has_queue(name):
             return None

@@ -1,4 +1,4 @@
-"""What is subscribed to over AMQP, and what comes of it."""
+"""Subscriptions over AMQP, and their deliveries."""
 
 import threading
 from collections.abc import Mapping
@@ -13,54 +13,65 @@ from lumen.ports import MessageHandler
 
 @dataclass(eq=False)
 class Subscription:
-    """A pattern, its handler, and its queue on the broker; `bound` is set once the broker has answered.
-
-    Until there is a handler (`prepare`) the queue only gathers. `received` counts the deliveries; of them `taken` were
-    not too many, and `handled` of those are done with; `dropped` were too many.
-    """
+    """A pattern, its handler, and its queue on the broker."""
 
     pattern: str
     handler: MessageHandler | None
+    """The function that receives the messages; None while the queue is only prepared and gathers them."""
     route: Route | None = None
     number: int = 0
+    """Distinguishes subscriptions of the same pattern."""
     exchange: str = EXCHANGE
     active: bool = True
+    """Whether it has not been removed."""
     queue: str = ""
+    """The name of its queue on the broker."""
     tag: str = ""
+    """The tag of its consumer on the broker."""
     refusal: str = ""
+    """The broker's reason for a refusal, empty without one."""
     epoch: int = 0
+    """The connection in which it was bound, counted from 1; 0 for none."""
     received: int = 0
+    """The number of deliveries."""
     taken: int = 0
+    """The number of deliveries within the rate of the route."""
     handled: int = 0
+    """The number of those that have been handled."""
     dropped: int = 0
+    """The number of deliveries that exceeded the rate."""
     bound: threading.Event = field(default_factory=threading.Event)
+    """Set once the broker has answered."""
 
     @property
     def must_arrive(self) -> bool:
+        """Whether its messages must arrive, by its route."""
         return self.route is not None and self.route.must_arrive
 
 
 class Delivery(NamedTuple):
-    """A message as it came at `at` [s, monotonic], `again` where the broker may have sent it before.
-
-    One that is `spent` is only to be acknowledged, in its turn. `number` and `epoch` say what to acknowledge.
-    """
+    """A message as it was received."""
 
     subscription: Subscription
     key: str
     body: bytes
     properties: MessageProperties
     number: int
+    """The number by which to acknowledge it."""
     epoch: int
+    """The connection in which it came: it can be acknowledged only there."""
     again: bool = False
+    """Whether the broker may have sent it before."""
     at: float = 0.0
+    """The time of its arrival [s, monotonic]."""
     spent: bool = False
+    """Whether it is only to be acknowledged, in its turn."""
 
 
 class Subscriptions:
-    """The subscriptions of one connection, and those that are prepared: nobody has subscribed to these keys yet.
+    """The subscriptions of one connection, and the prepared ones, whose keys have no handler yet.
 
-    Safe from any thread; nothing here waits.
+    Its methods can be called from any thread and do not block.
     """
 
     def __init__(self) -> None:
@@ -69,17 +80,17 @@ class Subscriptions:
         self._changing = threading.Lock()
 
     def active(self) -> list[Subscription]:
-        """Those that have a handler, in the order subscribed."""
+        """Return the subscriptions with a handler, in the order subscribed."""
         with self._changing:
             return list(self._active)
 
     def all(self) -> list[Subscription]:
-        """Those that have a handler, then the prepared ones."""
+        """Return the subscriptions with a handler, then the prepared ones."""
         with self._changing:
             return [*self._active, *self._prepared.values()]
 
     def add(self, pattern: str, handler: MessageHandler, route: Route | None, exchange: str = EXCHANGE) -> Subscription:
-        """A new one; its `number` tells it from others of the same pattern."""
+        """Add a subscription; its `number` distinguishes it from others of the same pattern."""
         with self._changing:
             numbers = {s.number for s in self._active if s.pattern == pattern}
             number = next(n for n in range(len(numbers) + 1) if n not in numbers)
@@ -88,7 +99,7 @@ class Subscriptions:
         return subscription
 
     def claim(self, pattern: str, handler: MessageHandler) -> Subscription | None:
-        """The prepared one of this pattern, which has this handler from now on; None where none is bound."""
+        """Give the prepared subscription of this pattern its handler and return it; None if none is bound."""
         with self._changing:
             subscription = self._prepared.pop(pattern, None)
             if subscription is None or not subscription.bound.is_set() or subscription.refusal:
@@ -98,7 +109,9 @@ class Subscriptions:
         return subscription
 
     def prepare(self, routes: Mapping[str, Route]) -> tuple[list[Subscription], list[Subscription]]:
-        """Those that are prepared for these keys now, and those prepared before that no key needs any more."""
+        """Prepare subscriptions for these keys; return them, and the earlier prepared ones that are no longer
+        needed.
+        """
         with self._changing:
             taken = {s.pattern for s in self._active}
             old, self._prepared = self._prepared, {}
@@ -107,7 +120,7 @@ class Subscriptions:
             return list(self._prepared.values()), list(old.values())
 
     def remove(self, subscription: Subscription) -> bool:
-        """Deactivate it; false where it is inactive already."""
+        """Deactivate a subscription; return False if it is inactive already."""
         with self._changing:
             if not subscription.active:
                 return False
@@ -116,7 +129,7 @@ class Subscriptions:
         return True
 
     def refuse(self, subscription: Subscription, reason: str) -> None:
-        """The broker refuses it: it is gone, prepared or not."""
+        """Remove a subscription that the broker refuses, prepared or not."""
         subscription.refusal, subscription.active = reason, False
         with self._changing:
             if subscription in self._active:

@@ -1,4 +1,6 @@
-"""What carries messages between a bus and its broker: a connection that sends, one that receives, and the handlers."""
+"""The path of messages between a bus and its broker: a sending connection, a receiving one, and the handlers'
+thread.
+"""
 
 import time
 import uuid
@@ -20,13 +22,15 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.ratelimit import RateLimiter
 
 ASIDE_RATE = 10.0
-"""How many messages a second that nobody could use are put aside of one key: a flood leaves room for others'."""
+"""The number of unusable messages per second that are put aside for each key: a flood leaves room for those of
+others.
+"""
 REPLY_LIFETIME = 30.0
-"""How long an answer waits for a broker that is away [s]."""
+"""How long a reply waits for a broker that is away [s]."""
 
 
 class Transport:
-    """A connection that sends, one that receives, and a thread for the handlers, which `name` tells from others."""
+    """A sending connection, a receiving one, and a thread for the handlers; `name` is the prefix of their names."""
 
     def __init__(self, address: BrokerAddress, outage: OutageLog, name: str = "") -> None:
         self.publisher = Publisher(address, f"{name}out", outage)
@@ -38,23 +42,23 @@ class Transport:
 
     @property
     def drops(self) -> tuple[DropLog, ...]:
-        """The dropped messages: too many, met by a fault of ours, with a repeated id, or impossible to send."""
+        """The logs of dropped messages: too many, a fault of Lumen, a repeated id, or impossible to send."""
         sent = self.publisher.outbox.drops, self.publisher.unsendable
         heard = self.dispatcher.guard.drops, self.dispatcher.unusable.drops, self.dispatcher.repeated
         return self.consumer.intake.drops, *heard, *sent
 
     def open(self) -> None:
-        """Raises BusError, saying what to do, where the broker can't be used."""
+        """Connect. Raises BusError, with the remedy, if the broker is unusable."""
         self.consumer.open()
         self.publisher.open()
 
     def begin(self) -> None:
-        """Open as soon as may be; waits for nothing."""
+        """Start connecting, without waiting for the result."""
         self.consumer.begin_alone()
         self.publisher.begin_alone()
 
     def answer(self, reply_to: str, correlation_id: str, body: Any, sender: str = "") -> None:
-        """Send to a key of ours, or to a queue: there a text as it is, as modules of 2015 expect it; else JSON."""
+        """Send a reply: a text to a queue is sent unchanged, as modules of 2015 expect it; everything else is JSON."""
         ours = reply_to.split(".")[0] in KEY_PREFIXES and not reply_to.startswith("amq.")
         text = isinstance(body, str) and not ours
         deadline = time.monotonic() + REPLY_LIFETIME
@@ -71,12 +75,12 @@ class Transport:
         )
 
     def close(self, deadline: float) -> None:
-        """Send what waits, and receive what of it comes back to us, until then [s, monotonic]."""
+        """Send what waits, and receive what of it is for us, until the deadline [s, monotonic]."""
         if not self.dispatcher.inside and not self.publisher.blocked:
             self._flush(deadline)
 
     def end(self, deadline: float) -> bool:
-        """End all threads; whether they have ended until then [s, monotonic]."""
+        """End all threads; return whether they have ended by the deadline [s, monotonic]."""
         parts = (self.publisher, self.consumer, self.dispatcher)
         ended = [part.end(deadline - time.monotonic()) for part in parts]
         for drops in self.drops:
@@ -84,7 +88,7 @@ class Transport:
         return all(ended)
 
     def _refused(self, delivery: Delivery, reason: str) -> None:
-        """Put aside what nobody could use, and answer the sender who wants an answer."""
+        """Put an unusable message aside, and reply to a sender that expects an answer."""
         properties = delivery.properties
         if self.publisher.has_side_queues and not self._aside.wait(delivery.key, ASIDE_RATE):
             headers = {"reason": reason[:1000], "key": delivery.key}
@@ -96,9 +100,10 @@ class Transport:
             self.answer(properties.reply_to, properties.correlation_id or "", f"message refused: {reason}")
 
     def _flush(self, deadline: float) -> None:
-        """Send a mark after everything else into each of our queues: when it has come, everything else has.
+        """Send a mark into each of our own queues, and wait until it arrives: then everything sent before it has
+        arrived.
 
-        Queues that others may read too have none: what is in them is not lost.
+        Queues that other processes may also read get no mark: messages in them are not lost.
         """
         outbox = self.publisher.outbox
         if self.publisher.connection is None and not outbox:

@@ -1,8 +1,8 @@
-"""pika's connection, which writes and reads messages itself.
+"""pika's connection with its own writing and reading of messages.
 
-Nearly all that travels are three methods: a message that is sent, one that comes, and the broker's word that it has
-one. pika makes an object of each of their frames and asks for each who waits for it, which takes most of the time of a
-message; here they are bytes. All the rest is pika's: logging in, channels, heartbeats, questions and answers.
+Nearly all traffic consists of three methods: publish, deliver and acknowledge. pika makes objects of their frames and
+looks up a handler for each, which takes most of a message's time; here they stay bytes. pika does everything else:
+login, channels, heartbeats, requests and answers.
 """
 
 from collections.abc import Callable
@@ -15,12 +15,12 @@ from pika import spec
 from lumen.features.rabbitmq.properties import MessageProperties, TolerantConnection, read_properties, short_text
 
 FLUSH_BYTES = 8 * 1024
-"""From how many bytes on frames are sent at once; what is less is sent at the next turn."""
+"""The number of bytes from which frames are sent at once; fewer wait for the next turn."""
 READ_BYTES = 64 * 1024
-"""How much is read with one call of the system, one for each turn: pika would ask until there is nothing more."""
+"""How much one system call reads, one per turn: pika would read until nothing is left."""
 
 MessageReader = Callable[[int, bool, bytes, MessageProperties, bytes], None]
-"""Called with a message: its number on the channel, whether it may have come before, its key, properties and body."""
+"""Called with a message's number on the channel, whether it may be a repetition, its key, properties and body."""
 
 _HEAD = spec.FRAME_HEADER_SIZE
 _DELIVER, _ACK = (pack(">I", method.INDEX) for method in (spec.Basic.Deliver, spec.Basic.Ack))
@@ -29,7 +29,7 @@ _END = bytes([spec.FRAME_END])
 
 
 class _Coming:
-    """A message of which frames have come."""
+    """A message that is partly received."""
 
     def __init__(self, method: bytes) -> None:
         self.consumer, at = _short(method, 4)
@@ -43,10 +43,10 @@ class _Coming:
 
 
 class WireConnection(TolerantConnection):
-    """Frames are sent together, by `flush`.
+    """A connection whose frames are sent together, by `flush`.
 
-    `readers` has what takes the messages of each consumer; `unread` is called with the number of one that nobody takes,
-    and `confirmed` with the number of a message that the broker has, and whether with it all before.
+    `readers` has the function for each consumer's messages, by its tag. `unread` is called with the number of a message
+    without one; `confirmed` with the number of a message that the broker has, and whether all before it are included.
     """
 
     _frame_buffer: bytes
@@ -63,7 +63,7 @@ class WireConnection(TolerantConnection):
         super().__init__(*args, **kwargs)
 
     def send(self, channel: int, exchange: str, key: str, properties: bytes, body: bytes, *, mandatory: bool) -> None:
-        """Send a message; raises ValueError for a name that is too long for AMQP, or no Unicode."""
+        """Send a message. Raises ValueError if a name is too long for AMQP or not valid Unicode."""
         method = b"".join((_PUBLISH, short_text(exchange), short_text(key), b"\1" if mandatory else b"\0"))
         header = pack(">HHQ", spec.Basic.INDEX, 0, len(body)) + properties
         frames = [_frame(spec.FRAME_METHOD, channel, method), _frame(spec.FRAME_HEADER, channel, header)]
@@ -72,7 +72,7 @@ class WireConnection(TolerantConnection):
         self._adapter_emit_data(b"".join(frames))
 
     def flush(self) -> None:
-        """Hand the frames to the system at once, where it takes them; the rest is sent when it has room."""
+        """Give the frames to the operating system as far as it accepts them; the rest is sent when it has room."""
         if self._frames:
             data, self._frames, self._size = b"".join(self._frames), [], 0
             if self._transport and not self.is_closed and (rest := data[self._sent(data) :]):
@@ -81,11 +81,11 @@ class WireConnection(TolerantConnection):
     def _proto_connection_made(self, transport: Any) -> None:
         super()._proto_connection_made(transport)
         self._plain = type(transport._sock) is socket
-        if self._plain:  # TLS keeps some of what it has read to itself, of which no poll knows
+        if self._plain:  # TLS buffers data that no poll reports
             transport._MAX_RECV_BYTES, transport._MAX_CONSUME_BYTES = READ_BYTES, 1
 
     def _sent(self, data: bytes) -> int:
-        """How much of it could be sent at once [bytes]; what keeps the rest from being sent, pika finds out."""
+        """Return how much of it could be sent at once [bytes]; pika handles the reason for any remainder."""
         transport = self._transport
         if not self._plain or transport.get_write_buffer_size():
             return 0
@@ -120,7 +120,7 @@ class WireConnection(TolerantConnection):
         self.bytes_received += at
 
     def _take(self, kind: int, data: bytes) -> bool:
-        """Use what stands in a frame; false for what is pika's."""
+        """Process a frame's content; return False if it is left to pika."""
         if kind == spec.FRAME_METHOD:
             if data.startswith(_ACK):
                 number, several = unpack_from(">QB", data, 4)
@@ -157,7 +157,7 @@ def _frame(kind: int, channel: int, data: bytes) -> bytes:
 
 
 def _short(data: bytes, at: int) -> tuple[bytes, int]:
-    """A short string, and where it ends."""
+    """Return a short string and the index of its end."""
     start = at + 1
     end = start + data[at]
     return data[start:end], end
