@@ -1,8 +1,8 @@
-"""The agent of a robot: it hears what the robot is to run, and gets it there by itself.
+"""The agent of a robot: it receives orders, and brings the robot to the ordered bundle by itself.
 
-It fetches the bundle by its hash, checks signature and hash, and has it linted for its own body, played on its own last
-visits, planned from the configuration at hand, taken between two visitors, and watched. Nothing here asks a clock what
-is newer, waits for the network, or trusts a message.
+It fetches the bundle by its hash and checks the signature. The reload then lints it for the robot's body, replays the
+last visits, plans the change from the present configuration, applies it between two visitors, and watches the result.
+The agent does not compare clocks, never waits for the network, and trusts no message without a signature.
 """
 
 import time
@@ -33,28 +33,31 @@ from lumen.features.fleet.signing import ORDER, verified
 from lumen.project.files import fingerprint
 
 MOST_TRIES = 2
-"""How often a process may end while a bundle is on probation, until the robot goes without it."""
+"""The number of times that a process may end during a bundle's probation before the robot gives up on it."""
 
 
 class FileTaker(FileTrier, Protocol):
-    """What takes files for a behaviour that runs."""
+    """Applies files to a running behaviour."""
 
     @property
     def on_probation(self) -> bool:
-        """Whether they have not proved themselves yet."""
+        """Whether the files that run are still on probation."""
 
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
-        """Have files taken between two visits; `answer` hears each verdict."""
+        """Apply files between two visits; `answer` receives each verdict."""
 
     def install(self, files: Mapping[str, bytes]) -> None:
-        """Bring the files that run into the project's folder, as soon as all of the house's robots there have them."""
+        """Write the files that run into the project's folder, as soon as all of the house's robots that share it have
+        them.
+        """
 
 
 class FleetAgent:
-    """Of one robot; `key` is whom it trusts. `tick` it; what it hears comes by `order` and `bundle`.
+    """The agent of one robot, which trusts the public key `key`. Call `tick` regularly, and `order` and `bundle` with
+    messages.
 
-    `save` writes its memory before it acts on what it has heard; `tell` hears what people want to know, and `incident`
-    what the centre is to know at once. What leaves the house names nobody and quotes nobody.
+    `save` writes its memory before it acts on a message. `tell` receives lines for people, and `incident` what the
+    centre should know at once. Nothing that leaves the house contains names or words of people.
     """
 
     def __init__(
@@ -86,11 +89,11 @@ class FleetAgent:
 
     @property
     def running(self) -> str:
-        """The bundle that runs, as the fleet calls it."""
+        """The bundle that runs, by its name in the fleet."""
         return self.memory.names.get(self._taker.running, self._taker.running)
 
     def order(self, body: Any) -> None:
-        """A message says what this house is to run."""
+        """Process a message with an order for this house."""
         match body:
             case {"order": str(text), "signature": str(signature)}:
                 pass
@@ -110,7 +113,7 @@ class FleetAgent:
         return None
 
     def bundle(self, body: Any) -> None:
-        """A message brings a bundle, which may be the one that is wanted."""
+        """Process a message with a part of a bundle, if that bundle is wanted."""
         wants = self.wants or self.trial.wants
         if not wants or not isinstance(body, Mapping) or body.get("hash") != wants:
             return
@@ -127,7 +130,7 @@ class FleetAgent:
         self.wants = self.trial.wants = ""
 
     def tick(self) -> None:
-        """Go on towards what is wanted."""
+        """Continue towards the ordered bundle."""
         memory, wanted = self.memory, self.memory.followed.wanted
         if self.state == PROBATION and self._taker.running != self._offered:
             self._fail(ROLLED_BACK, "the bundle failed its probation; the reason is in the house's journal")
@@ -155,7 +158,7 @@ class FleetAgent:
             self._go(goal, own=back)
 
     def presence(self, seconds: float, counted: Mapping[str, int]) -> RobotPresence:
-        """What it tells of the robot, after it has lived for so long [s] and counted this."""
+        """Return the robot's presence; add `seconds` of running and the new counts to its measures."""
         memory = self.memory
         if memory.counted != self._taker.running:
             memory.past, memory.now = memory.now, {}
@@ -175,7 +178,7 @@ class FleetAgent:
         )  # fmt: skip
 
     def _go(self, goal: str, *, own: bool) -> None:
-        """Fetch a bundle, or have it taken; `own` files have run here."""
+        """Fetch a bundle or offer it to the reload; `own` means that its files have run here unchanged."""
         self._asked = self.memory.order
         self.trouble = ""
         if self.memory.trying == goal and self.memory.tries >= MOST_TRIES:
@@ -204,7 +207,7 @@ class FleetAgent:
         self._taker.offer(files, self._answer)
 
     def _answer(self, verdict: Any) -> None:
-        """What came of the files that were offered."""
+        """Process the reload's verdict on the offered files."""
         match verdict:
             case {"verdict": "waiting", **more}:
                 self.state, self.trouble = WAITING, str(more.get("reason", ""))
@@ -237,13 +240,13 @@ class FleetAgent:
         self._tell(f"bundle {self._goal[:12]} is proved")
 
     def _install(self) -> None:
-        """Have proved files brought into the project's folder, until that is done."""
+        """Keep bringing proved files into the project's folder until they are there."""
         writing = self.memory.writing
         if writing and (files := self._taker.files(writing)) is not None and not self._folder.keep(files):
             self._taker.install(files)
 
     def _fail(self, state: str, why: str, goal: str = "") -> None:
-        """The robot goes without a bundle until another order comes."""
+        """Give up on a bundle until another order comes."""
         memory, about = self.memory, goal or self._goal
         if memory.failed.get(about, [None])[0] != self._asked:
             memory.failed[about] = [self._asked, state, why[:MAX_TEXT]]
@@ -255,7 +258,7 @@ class FleetAgent:
         self._save(memory)
 
     def _refuse(self, why: str) -> None:
-        """Something came that is not heeded: that is told once, until another order is."""
+        """Report why a message is rejected, once until the next accepted order."""
         if why not in self._told and len(self._told) < 10:
             self._told.add(why)
             self._tell(why)

@@ -1,4 +1,4 @@
-"""A bundle as it travels: the files of a project in a zip, called by their hash, and signed."""
+"""A bundle in transit: the files of a project in a zip, named by their hash, and signed."""
 
 import base64
 import binascii
@@ -15,22 +15,22 @@ from lumen.run.bundles import DamagedBundleError
 
 HASH = re.compile(r"[0-9a-f]{64}")
 MAX_BYTES = 12_000_000
-"""Of a packed bundle."""
+"""The largest packed bundle [bytes]."""
 PIECE = 500_000
-"""Of it in one message [bytes]."""
+"""The size of its parts in messages [bytes]."""
 
 
 class BadBundleError(UsageError):
-    """What came is no bundle, not the one that was meant, or nobody's who is trusted; the message says which."""
+    """A message with an invalid bundle, the wrong one, or one without a trusted signature; its text has the reason."""
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:
-    """Return the files as a zip, without fleet.yaml and what a run has chosen besides."""
+    """Return the files as a zip, without fleet.yaml and the choices made at a start."""
     return bundles.packed({path: files[path] for path in files if path != FLEET_FILE and belongs(path)})
 
 
 def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, Any]]:
-    """The bundle that these files are, signed, in messages that a bus takes. Raises UsageError if it is too large."""
+    """Return the signed bundle of these files as messages of acceptable size. Raises UsageError if it is too large."""
     hash, data = fingerprint(files), packed(files)
     if len(data) > MAX_BYTES:
         raise UsageError(
@@ -43,16 +43,17 @@ def messages_of(files: Mapping[str, bytes], signer: Signer) -> list[dict[str, An
 
 
 class BundleParts:
-    """Puts the parts of a bundle together as they come, in whatever order and however often; one bundle at a time."""
+    """Joins the parts of a bundle in any order, with repetitions; one bundle at a time."""
 
     def __init__(self) -> None:
         self._of: tuple[str, int] = ("", 0)
         self._parts: dict[int, bytes] = {}
 
     def take(self, body: Any, wanted: str, key: str) -> dict[str, bytes] | None:
-        """The files once all parts are there, which are the ones wanted and signed with the other half of the key.
+        """Add a part; return the files once all parts are there, else None.
 
-        None while a part is missing. Raises BadBundleError, and forgets what has come.
+        The bundle must be the one wanted, and signed by the key's owner. Raises BadBundleError, and forgets the parts
+        so far.
         """
         try:
             return self._take(body, wanted, key)
@@ -91,7 +92,7 @@ class BundleParts:
 
 
 def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
-    """Return the files in a zip, which have that hash. Raises BadBundleError."""
+    """Return the files in a zip. Raises BadBundleError if it is damaged or the files do not have that hash."""
     try:
         files = bundles.unpacked(data, MAX_PROJECT_BYTES)
     except DamagedBundleError as error:
@@ -104,6 +105,6 @@ def unpacked(data: bytes, wanted: str) -> dict[str, bytes]:
 
 
 def _inside(name: str) -> bool:
-    """Whether a file of that name is one of a project, and is written nowhere else."""
+    """Return whether a file of that name belongs to a project and stays inside its folder."""
     parts = name.split("/")
     return belongs(name) and "\\" not in name and not {"", ".", ".."} & {*parts} and "\0" not in name

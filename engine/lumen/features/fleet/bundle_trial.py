@@ -1,4 +1,4 @@
-"""A bundle that a robot tries and does not take: what would become of it here?"""
+"""Trials of a bundle: a robot predicts what it would change here, without switching to it."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
@@ -10,23 +10,25 @@ from lumen.features.fleet.rollouts.presence import DIFFER, MAX_TEXT, REFUSED, SA
 
 
 class FileTrier(Protocol):
-    """What says of files what would become of them."""
+    """Judges files without applying them."""
 
     @property
     def running(self) -> str:
         """The hash of the files that run."""
 
     def files(self, hash: str) -> Mapping[str, bytes] | None:
-        """The files of that hash, where they ran here."""
+        """Return the files of that hash if they have run here, else None."""
 
     def attempt(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
-        """Judge files as if they were taken: lint, the last visits, and the plan; `answer` hears the verdict."""
+        """Judge files as if they were applied: lint, replay of the last visits, and plan; `answer` receives the
+        verdict.
+        """
 
 
 class BundleTrial:
-    """Of one robot: `tick` it with the bundle that is to be tried.
+    """The trial of one robot; call `tick` with the bundle to try.
 
-    `said` is what came of it, empty until that is known; `wants` is its hash while it has to be fetched.
+    `said` is the result, empty until it is known; `wants` is the bundle's hash while it must be fetched.
     """
 
     def __init__(self, trier: FileTrier, folder: BundleFolder, tell: Callable[[str], None]) -> None:
@@ -36,7 +38,7 @@ class BundleTrial:
         self.said: dict[str, Any] = {}
 
     def tick(self, bundle: str, running: str) -> None:
-        """Go on with it; `running` is the bundle that runs, as the fleet calls it."""
+        """Continue the trial; `running` is the fleet's name of the bundle that runs."""
         if bundle != self._about:
             self._about, self._asked, self.said, self.wants = bundle, False, {}, ""
         if not bundle or self._asked:
@@ -77,7 +79,10 @@ class BundleTrial:
 
 
 def refusal(verdict: Mapping[str, Any]) -> str:
-    """Why files were refused: where lint found an error, else the reason. Recorded visits may name people."""
+    """Return the reason for a refusal: the place and code of lint's first error, else the verdict's reason.
+
+    Messages of lint are left out, since recorded visits may contain people's names.
+    """
     found = [row for row in verdict.get("diagnostics", ()) if row.get("severity") == "error"]
     if found:
         row = found[0]

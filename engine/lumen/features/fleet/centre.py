@@ -1,4 +1,4 @@
-"""A centre: it hears the robots, lets a rollout go on, and says what each house is to run."""
+"""A centre: it collects the robots' reports, advances a rollout, and tells each house what to run."""
 
 import time
 from collections import deque
@@ -25,20 +25,20 @@ from lumen.language.fleet_keys import KEPT, PRESENCE, bundle_key, desired_key, r
 from lumen.ports import Bus, Message
 
 TELL_PERIOD = 10.0
-"""How often every house is told what it is to run, whether that is news or not [s]."""
+"""The longest time between two orders to a house [s]; changes are sent at once."""
 BUNDLE_PERIOD = 20.0
-"""How often a house gets the same bundle, at most [s]."""
+"""The shortest time between sending the same bundle to a house twice [s]."""
 KEEP_PERIOD = 60.0
-"""How often it is written down how long a step was watched [s]."""
+"""The time between two records of how long a step has been watched [s]."""
 MAX_WAITING = 20_000
 
 
 class Centre:
-    """Of one fleet, on the centre's bus. `tick` it about once a second.
+    """The centre of one fleet, on the centre's bus. Call `tick` about once a second.
 
-    What it decides is in its journal before anybody hears of it; where that can't be written it decides nothing, and
-    `trouble` says why. `clock` gives the time [s since 1970]. Incidents and numbers come by the `stream`; where
-    there is none by the bus, and then none while nobody is the centre.
+    Every decision is in its journal before it is sent; if that can't be written, it decides nothing, and `trouble` has
+    the reason. `clock` gives the time [s since 1970]. Incidents and counts come by the `stream`; without one they come
+    by the bus, and are lost while no centre is running.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class Centre:
         self._undo = [bus.subscribe(f"{key}.*.*", self._came.append) for key in heard]
 
     def tick(self) -> None:
-        """Hear what came, go on with the rollout, tell the houses."""
+        """Process received messages, advance the rollout, and send orders."""
         now = self._clock()
         while self._came:
             self._hear(self._came.popleft(), now)
@@ -80,14 +80,14 @@ class Centre:
             self._order(now)
 
     def change(self, state: CentreState, what: str) -> None:
-        """Go on from another state, which a person wanted. Raises UsageError where it can't be written down."""
+        """Replace the state by one that a person decided. Raises UsageError if it can't be written to the journal."""
         if why := self._journal.write(what, state):
             raise UsageError(f"the centre's journal can't be written: {why}")
         self.state, self.trouble = state, ""
         self._tell(what)
 
     def overview(self) -> dict[str, Any]:
-        """How the fleet is, as JSON data."""
+        """Return the state of the fleet as JSON data."""
         told = overview(self.fleet, self.state, self.heard, self._clock())
         return told | {
             "incidents": list(self.log.incidents)[-20:],
@@ -98,6 +98,7 @@ class Centre:
         }
 
     def close(self) -> None:
+        """End the subscriptions and save the log."""
         for undo in self._undo:
             undo()
         self.log.save(now=True)
@@ -116,13 +117,13 @@ class Centre:
                 self._send(said.robot.partition("/")[0], said.wants, now)
 
     def _count(self, entry: StreamEntry, now: float) -> None:
-        """What is counted once; of a robot that is not of the fleet, nothing."""
+        """Count a message in the log; messages of robots outside of the fleet only advance the place in the stream."""
         known = robot_of(entry.key) in self._known
         if line := self.log.take(entry if known else entry._replace(body=None), now):
             self._tell(line)
 
     def _send(self, house: str, hash: str, now: float) -> None:
-        """The bundle that a robot of a house lacks."""
+        """Send a house a bundle that one of its robots lacks, unless it was sent recently."""
         if abs(now - self._sent.get((house, hash), -BUNDLE_PERIOD)) < BUNDLE_PERIOD:
             return
         files = self.bundles.files(hash)
@@ -157,12 +158,12 @@ class Centre:
             )
 
     def _publish(self, key: str, body: Any, ttl: float) -> None:
-        with suppress(BusError):  # it is told again
+        with suppress(BusError):  # it is sent again
             self._bus.publish(key, body, ttl=ttl)
 
 
 def _settled(state: CentreState) -> CentreState:
-    """Without what changes at each look."""
+    """Return the state without the values that change at each tick."""
     rollout = state.rollout and replace(state.rollout, watched=0.0, waited=0.0)
     return replace(state, looked=0.0, rollout=rollout)
 

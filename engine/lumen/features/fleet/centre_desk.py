@@ -1,4 +1,4 @@
-"""What people ask of a centre: messages on `fleet.order`, answered between two looks."""
+"""The centre's answers to requests: messages on `fleet.order`, answered once a tick."""
 
 from collections import deque
 from collections.abc import Mapping
@@ -23,7 +23,7 @@ ASKED = ("status", "publish", "rollout", "try", "pause", "go", "abort", "pin", "
 
 
 class CentreDesk:
-    """Answers each request with `{"ok": …}`, what was asked for, or the `reason` why not."""
+    """Answers each request with `{"ok": …}` and the result, or with the `reason` for a refusal."""
 
     def __init__(self, centre: Centre, bus: Bus) -> None:
         self._centre, self._bus = centre, bus
@@ -32,7 +32,7 @@ class CentreDesk:
         self._undo = bus.subscribe(ORDER, self._came.append)
 
     def tick(self, now: float) -> None:
-        """Answer what came; `now` is the centre's time [s since 1970]."""
+        """Answer the requests received; `now` is the centre's time [s since 1970]."""
         while self._came:
             message = self._came.popleft()
             try:
@@ -43,10 +43,11 @@ class CentreDesk:
                 self._bus.reply(message, answer)
 
     def close(self) -> None:
+        """End the subscription."""
         self._undo()
 
     def answer(self, body: Any, now: float) -> dict[str, Any]:
-        """What is told of a request. Raises UsageError or ValueError, saying why not."""
+        """Return the answer to a request. Raises UsageError or ValueError with the reason for a refusal."""
         centre, state = self._centre, self._centre.state
         by = str(body.get("by") or UNNAMED_PROGRAM)[:80] if isinstance(body, Mapping) else ""
         match body:
@@ -92,7 +93,7 @@ class CentreDesk:
         return {}
 
     def _named(self, name: str) -> str:
-        """The published bundle whose hash begins so."""
+        """Return the published bundle whose hash begins with `name`. Raises UsageError unless exactly one does."""
         found = [hash for hash in self._centre.bundles.hashes() if name and hash.startswith(name)]
         if len(found) != 1:
             what = "more than one published bundle has" if found else "no published bundle has"
@@ -102,7 +103,7 @@ class CentreDesk:
         return found[0]
 
     def _plan(self, said: Mapping[str, Any]) -> RolloutPlan:
-        """The steps that were asked for, else those of fleet.yaml."""
+        """Return the requested plan; what the request omits comes from fleet.yaml. Raises UsageError."""
         fleet, usual = self._centre.fleet, self._centre.fleet.rollout
         words, pause, condition = said.get("steps"), said.get("pause"), said.get("abort-if")
         steps = usual.steps

@@ -1,4 +1,4 @@
-"""What a centre has decided, line by line in a file: it is on the disk before any robot hears of it."""
+"""The journal of a centre's decisions, one per line: each is on the disk before any robot learns of it."""
 
 import json
 import os
@@ -13,17 +13,17 @@ from lumen.upkeep.private_folder import private_folder
 
 FILE = "centre.jsonl"
 TAIL = 4_000_000
-"""How much of its end is read for what was written last [bytes]."""
+"""How much of the file's end is read to find the last state [bytes]."""
 
 
 class CentreJournal:
-    """The journal in a folder, which is made when something is written first."""
+    """The journal in a folder, which is created with the first line."""
 
     def __init__(self, folder: Path) -> None:
         self.file = folder / FILE
 
     def last(self) -> CentreState | None:
-        """The state that was written last; a line that a crash has cut counts for nothing."""
+        """Return the last state in the journal; a line that a crash has cut off is ignored."""
         for row in reversed(self.rows()):
             try:
                 return state_from_json(row["state"])
@@ -32,7 +32,7 @@ class CentreJournal:
         return None
 
     def rows(self) -> list[Mapping[str, Any]]:
-        """What stands at its end, the newest last: `at`, `what` happened, and the `state` after it."""
+        """Return the last lines, the newest last, each with `at`, `what` happened, and the `state` after it."""
         try:
             with open(self.file, "rb") as opened:
                 opened.seek(max(0, self.file.stat().st_size - TAIL))
@@ -50,7 +50,7 @@ class CentreJournal:
         return found
 
     def write(self, what: str, state: CentreState) -> str:
-        """Add a line, and wait until the disk has it; why that could not be, else empty."""
+        """Add a line and wait until it is on the disk; return the error, else an empty text."""
         row = {"at": iso_time(time.time(), "seconds", offset=True), "what": what, "state": state_to_json(state)}
         try:
             private_folder(self.file.parent)
@@ -63,7 +63,7 @@ class CentreJournal:
         return ""
 
     def _torn(self) -> bool:
-        """Whether a crash has cut the last line."""
+        """Return whether a crash has cut off the last line."""
         if not self.file.exists() or not self.file.stat().st_size:
             return False
         with open(self.file, "rb") as opened:

@@ -1,4 +1,4 @@
-"""`lumen fleet`: many houses, and how they take other files."""
+"""`lumen fleet`: many houses, and their updates."""
 
 import argparse
 import getpass
@@ -47,6 +47,7 @@ ANSWER_TIMEOUT = 15.0
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `lumen fleet` to the parser."""
     add = parser.add_argument
     add("what", choices=WHATS, metavar="WHAT", help="; ".join(f"{what}: {says}" for what, says in WHATS.items()))
     add("name", nargs="?", metavar="NAME", help="rollout, try, diff: a bundle's hash; pin: HOUSE/ROBOT")
@@ -68,7 +69,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Return 0. Raises UsageError and BusError."""
+    """Run the command and return 0. Raises UsageError and BusError."""
     root = Path(options.project or ".")
     match options.what:
         case "keygen":
@@ -131,12 +132,12 @@ def _serve(options: argparse.Namespace, root: Path) -> int:
 
 
 def bus_name(url: str) -> str:
-    """An address without who uses it."""
+    """Return an address without its user and password."""
     return url.rpartition("@")[2]
 
 
 def _publish(options: argparse.Namespace, root: Path) -> dict[str, Any]:
-    """Lint first: what has errors is sent to nobody."""
+    """Lint the project and send it to the centre as a bundle; a project with errors is not sent."""
     found = version(options.name, root) if options.name else version(None, root)
     files = {path: content for path, content in found.files.items() if path != FLEET_FILE}
     answer: dict[str, Any] = {}
@@ -180,7 +181,9 @@ def _diff(options: argparse.Namespace, root: Path) -> int:
 
 
 def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], what: str = "") -> dict[str, Any]:
-    """What the centre says to it. Raises UsageError with its words where it refuses, BusError where none answers."""
+    """Return the centre's answer to a request. Raises UsageError with its reason if it refuses, BusError without an
+    answer.
+    """
     url = _address(options, root)
     bus = _connected(url, "lumen fleet")
     question = {"ask": what or options.what, "by": getpass.getuser(), **body}
@@ -196,7 +199,7 @@ def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], wha
 
 
 def _connected(url: str, sender: str) -> Bus:
-    """The centre's bus. Raises BusError with what is to be done."""
+    """Return the centre's bus. Raises BusError with the remedy."""
     try:
         return connect(url, sender=sender)
     except BusUnreachableError as error:

@@ -1,4 +1,4 @@
-"""Incidents and numbers of a fleet at its centre, each counted once: kept together with how far the stream was read."""
+"""The incidents and counts of a fleet at its centre, kept together with the place reached in the stream."""
 
 import time
 from collections import deque
@@ -15,13 +15,15 @@ from lumen.project.home import Home
 FILE = "log.json"
 MAX_INCIDENTS, MAX_IDS, MAX_BUNDLES = 200, 2000, 4
 SAVE_PERIOD = 10.0
-"""How often it is written [s]: who is killed between two reads what came meanwhile again, and counts from the file."""
+"""The time between two writes [s]. A process killed in between reads the same messages again, and counts from the
+file.
+"""
 
 
 class FleetLog:
-    """The log in the home of a centre; `next` is where in the stream it goes on.
+    """The log in the home of a centre; `next` is the stream's next offset to read.
 
-    A line that comes twice (a shovel sends anew what was not confirmed) is known by its id.
+    Repeated messages are recognised by their id: a shovel sends unconfirmed ones again.
     """
 
     def __init__(self, home: Home) -> None:
@@ -40,7 +42,7 @@ class FleetLog:
                 self.incidents.extend(incidents)
 
     def take(self, entry: StreamEntry, now: float) -> str:
-        """Count a message; the line that people are told of it, empty where there is none. `now` in [s since 1970]."""
+        """Count a message at `now` [s since 1970]; return a line about an incident, else an empty text."""
         if entry.offset >= 0:
             self.next, self._changed = entry.offset + 1, True
         if entry.id and entry.id in self._ids:
@@ -69,7 +71,7 @@ class FleetLog:
         return told
 
     def numbers(self, measures: Mapping[str, FleetMeasure]) -> list[dict[str, Any]]:
-        """What was counted with each bundle, that which was heard of last at the end."""
+        """Return the counts of each bundle, the most recently reported last."""
         return [
             {
                 "bundle": bundle,
@@ -81,7 +83,7 @@ class FleetLog:
         ]
 
     def save(self, *, now: bool = False) -> str:
-        """Write it, where there is news and enough time has passed; why that could not be, else empty."""
+        """Write the log if it changed and enough time has passed; return the error, else an empty text."""
         if not self._changed or not (now or time.monotonic() - self._saved > SAVE_PERIOD):
             return ""
         self._saved, self._changed = time.monotonic(), False

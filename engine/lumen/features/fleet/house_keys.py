@@ -1,4 +1,4 @@
-"""lumen.yaml of a bundle, as it is in a house: what is the house's own stays."""
+"""The lumen.yaml of a bundle, adapted to a house: the house's own keys stay."""
 
 import re
 from collections.abc import Mapping
@@ -11,26 +11,26 @@ from lumen.project.project_folders import MAIN_FILE
 HOUSE_KEYS = (
     "house", "robot", "robots", "hall", "stage", "units", "bus", "aliases", "timezone", "modules",
 )  # fmt: skip
-"""What lumen.yaml says of a house and its robots, beside the sections of features: no bundle changes it."""
+"""The keys of lumen.yaml about a house and its robots, besides those of features: bundles never change them."""
 
 _BLOCK = re.compile(r"^(?=[^\s#])", re.MULTILINE)
 _KEY = re.compile(r"""["']?([\w-]+)["']?\s*:""")
 
 
 def fitted(bundle: Mapping[str, bytes], here: Mapping[str, bytes]) -> dict[str, bytes]:
-    """The files of a bundle for a house where the files `here` run. Raises UsageError."""
+    """Return the files of a bundle, adapted to a house that runs the files `here`. Raises UsageError."""
     return {**as_started(bundle, here), MAIN_FILE: at_home(bundle.get(MAIN_FILE, b""), here.get(MAIN_FILE, b""))}
 
 
 def as_started(files: Mapping[str, bytes], here: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Files with what was said when those `here` were started, as with --model."""
+    """Return the files with the choices made when `here` was started, such as --model."""
     return {**files, **{path: mark for path, mark in here.items() if not belongs(path)}}
 
 
 def at_home(shared: bytes, own: bytes) -> bytes:
-    """The lumen.yaml of a bundle with the house's own keys in place of the bundle's.
+    """Return a bundle's lumen.yaml with the house's own keys in place of the bundle's.
 
-    Raises UsageError where one of them is not written with a key at the left edge of each block.
+    Raises UsageError if one of them does not have its top-level keys at the left edge.
     """
     of_house = {*HOUSE_KEYS, *(key.partition(".")[0] for key, row in table("sections").items() if row.of_house)}
     ours = {key: text for key, text in _blocks(own) if key in of_house}
@@ -40,7 +40,7 @@ def at_home(shared: bytes, own: bytes) -> bytes:
 
 
 def _blocks(content: bytes) -> list[tuple[str, str]]:
-    """The top-level keys with their texts; what stands before the first has none."""
+    """Return the top-level keys with their texts; the text before the first key has the key ""."""
     try:
         parts = _BLOCK.split(content.decode().replace("\r\n", "\n"))
     except UnicodeDecodeError:

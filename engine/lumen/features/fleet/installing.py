@@ -1,4 +1,4 @@
-"""The files of a proved bundle, brought into the project's folder as a whole: a crash between is made good."""
+"""Installs the files of a proved bundle in the project's folder, and completes that after a crash."""
 
 import os
 from collections.abc import Iterable, Iterator, Mapping
@@ -15,12 +15,12 @@ FOLDER = "fleet"
 
 
 def bundle_folder(root: Path) -> BundleFolder:
-    """Where the robots of a project keep bundles."""
+    """Return the folder in which the robots of a project keep bundles."""
     return BundleFolder(home_of(root) / FOLDER)
 
 
 def install(root: Path, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
-    """Make the project's files these; those that lie there then. Links and fleet.yaml stay as they are."""
+    """Replace the project's files by these; return the files that are then there. Links and fleet.yaml stay."""
     there, wanted = _own(read_files(root)), _own(files)
     for path, content in wanted.items():
         if there.get(path) != content:
@@ -32,13 +32,13 @@ def install(root: Path, files: Mapping[str, bytes]) -> Mapping[str, bytes]:
 
 
 def all_have(root: Path, hash: str, robots: Iterable[str]) -> bool:
-    """Whether all of these robots, whose exhibitions share the folder, were last known to run these files."""
+    """Return whether all of these robots, whose exhibitions share the folder, last reported to run these files."""
     known = {robot: memory for _, robot, memory in _memories(root)}
     return all(robot in known and known[robot].counted == hash for robot in robots)
 
 
 def finish(root: Path) -> None:
-    """Bring files into the project's folder that were on their way there when the process ended."""
+    """Complete the installation of files that was interrupted when the process ended."""
     found = list(_memories(root))
     for home, robot, memory in found:
         hash = memory.writing
@@ -50,25 +50,25 @@ def finish(root: Path) -> None:
 
 
 def written(home: Home, robot: str, memory: AgentMemory) -> None:
-    """The files are where they belong."""
+    """Remember that the files are installed."""
     memory.writing = ""
     keep(home, robot, memory)
 
 
 def _memories(root: Path) -> Iterator[tuple[Home, str, AgentMemory]]:
-    """What the agents of a folder's robots keep, each with its home and its robot's name."""
+    """Yield the agents' memories in a project's folder, each with its home and its robot's name."""
     for file in sorted(home_of(root).rglob(memory_file("*"))):
         home, robot = Home(file.parent), file.name.removeprefix("fleet-").removesuffix(".json")
         yield home, robot, remember(home, robot)
 
 
 def _own(files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Those that a bundle may change."""
+    """Return the files that a bundle may change."""
     return {path: content for path, content in files.items() if path != FLEET_FILE and belongs(path)}
 
 
 def _write(path: Path, content: bytes) -> None:
-    """As a whole or not at all; what can't be written is noticed by who reads the files then."""
+    """Write a file completely or not at all. Errors are ignored here: the next reading of the files shows them."""
     draft = path.with_name(f".{path.name}.new")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The bundles that a robot or a centre keeps, each as a file called by its hash."""
+"""The bundles that a robot or a centre keeps, each in a file named by its hash."""
 
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
@@ -13,15 +13,15 @@ MAX_FILE = 40_000_000
 
 
 class BundleFolder:
-    """Bundles in a folder, which is made when the first one comes. Nothing that a disk does raises."""
+    """Bundles in a folder, which is created with the first one. Errors of the disk never raise."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
     def keep(self, files: Mapping[str, bytes]) -> str:
-        """Write the files as a whole or not at all; return why that is impossible, empty if it is done.
+        """Write the files of a bundle, all or nothing; return the error, else an empty text.
 
-        A file of that name that is damaged is replaced.
+        A damaged file of that name is replaced.
         """
         hash = fingerprint(files)
         if self.files(hash) is not None:
@@ -34,7 +34,7 @@ class BundleFolder:
         return ""
 
     def files(self, hash: str) -> dict[str, bytes] | None:
-        """The files of that bundle, None where they are not there as they were."""
+        """Return the files of that bundle, None if they are missing or damaged."""
         if not HASH.fullmatch(hash):
             return None
         try:
@@ -43,14 +43,14 @@ class BundleFolder:
             return None
 
     def hashes(self) -> list[str]:
-        """Those that are kept, the newest last."""
+        """Return the hashes of the kept bundles, the newest last."""
         with suppress(OSError):
             found = sorted(self.folder.glob("*.zip"), key=lambda path: path.stat().st_mtime)
             return [path.stem for path in found if HASH.fullmatch(path.stem)]
         return []
 
     def prune(self, wanted: Iterable[str]) -> None:
-        """Delete all but these."""
+        """Delete all bundles but these."""
         for hash in {*self.hashes()} - {*wanted}:
             with suppress(OSError):
                 self._path(hash).unlink()

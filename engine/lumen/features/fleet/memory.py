@@ -1,4 +1,4 @@
-"""What a robot's agent keeps on its disk, so that a crash changes nothing of what it has promised."""
+"""The state of a robot's agent on its disk, so that it keeps its promises after a crash."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -8,34 +8,40 @@ from lumen.features.fleet.rollouts.orders import FollowedOrder
 from lumen.project.home import Home
 
 MAX_KEPT = 6
-"""Bundles of which it is remembered what they are called in the fleet."""
+"""The number of bundles whose names in the fleet are remembered."""
 
 
 @dataclass
 class AgentMemory:
-    """`names` says which bundle of the fleet files are, by their hash in this house; `before` are the files that ran
-    before those that run.
-
-    `failed` is what became of a bundle at an order, `done` the order that was fulfilled last. `trying` is the bundle
-    that is on probation, `tries` how often this process ended meanwhile. `writing` are files that are on their way into
-    the project's folder. `counts` are those of `now` and `before`.
-    """
+    """The persistent state of a robot's agent."""
 
     followed: FollowedOrder = field(default_factory=FollowedOrder)
+    """The last accepted order."""
     names: dict[str, str] = field(default_factory=dict)
+    """The fleet's name of the bundle for the hash of files in this house."""
     before: str = ""
+    """The hash of the files that ran before the present ones."""
     failed: dict[str, list[Any]] = field(default_factory=dict)
+    """For each failed bundle: the order at the time, the state, and the reason."""
     done: list[int] = field(default_factory=list)
+    """The last order that was fulfilled."""
     trying: str = ""
+    """The bundle that is on probation."""
     tries: int = 0
+    """How often this process ended during that probation."""
     writing: str = ""
+    """The hash of files that are being written into the project's folder."""
     now: dict[str, float] = field(default_factory=dict)
+    """Counts since the present files run."""
     past: dict[str, float] = field(default_factory=dict)
+    """Counts of the files before."""
     counted: str = ""
+    """The hash of the files that `now` counts for."""
     since: float = 0.0
+    """The time since which they run [s since 1970]."""
 
     def name(self, files: str, bundle: str) -> None:
-        """Files of that hash are this bundle, or what runs here in its place."""
+        """Remember that files of that hash are this bundle, as adapted to this house."""
         self.names.pop(files, None)
         self.names[files] = bundle
         for old in list(self.names)[:-MAX_KEPT]:
@@ -43,17 +49,17 @@ class AgentMemory:
 
     @property
     def order(self) -> list[int]:
-        """The order that is followed now."""
+        """The term and version of the order that is followed."""
         return [self.followed.term, self.followed.version]
 
 
 def memory_file(robot: str) -> str:
-    """The file of a robot's agent in the home of its project."""
+    """Return the name of a robot agent's file in the home of its project."""
     return f"fleet-{robot}.json"
 
 
 def remember(home: Home, robot: str) -> AgentMemory:
-    """What was kept; nothing where there is nothing that can be read."""
+    """Return the kept state; an empty one if there is none or it is unreadable."""
     data = home.read_json(memory_file(robot))
     if not isinstance(data, Mapping):
         return AgentMemory()
@@ -65,5 +71,5 @@ def remember(home: Home, robot: str) -> AgentMemory:
 
 
 def keep(home: Home, robot: str, memory: AgentMemory) -> str:
-    """Write it; why that could not be, else empty."""
+    """Write the state; return the error, else an empty text."""
     return home.write_json(memory_file(robot), asdict(memory))

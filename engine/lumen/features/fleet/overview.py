@@ -1,4 +1,4 @@
-"""How a fleet is, as `lumen fleet status --format json` prints it."""
+"""The state of a fleet, as `lumen fleet status --format json` prints it."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,11 +11,11 @@ from lumen.features.fleet.settings import Fleet
 from lumen.language.iso_time import iso_time
 
 MOST_SKEW = 30.0
-"""How wrong a robot's clock may be until that is told [s]."""
+"""The error of a robot's clock from which it is reported [s]."""
 
 
 def overview(fleet: Fleet, state: CentreState, heard: Mapping[str, HeardPresence], now: float) -> dict[str, Any]:
-    """Houses, robots and the rollout; `now` is the centre's time [s since 1970]."""
+    """Return houses, robots and the rollout; `now` is the centre's time [s since 1970]."""
     robots = [_robot(name, state, heard.get(name), fleet, now) for name in fleet.robots]
     houses = [
         {

@@ -1,4 +1,4 @@
-"""The agent beside a robot's brain: what joins it to the bus, the reload and the robot's home."""
+"""The part that connects a robot's fleet agent with the bus, the reload and the robot's home."""
 
 import os
 import time
@@ -33,12 +33,13 @@ from lumen.statechart import Step
 
 
 class MeasureCounter(Observer):
-    """`take` gives what was counted since it was called last."""
+    """Counts the fleet's measures from the steps of a behaviour."""
 
     def __init__(self, measures: Mapping[str, FleetMeasure]) -> None:
         self._measures, self._counts = measures, dict.fromkeys(measures, 0)
 
     def stepped(self, step: Step) -> None:
+        """Count the events and entered states of a step."""
         events = [event.name for event in (step.event, *step.raised) if event]
         for name, measure in self._measures.items():
             if measure.event:
@@ -47,21 +48,23 @@ class MeasureCounter(Observer):
                 self._counts[name] += sum(fnmatchcase(state, measure.enters) for state in step.entered)
 
     def take(self) -> dict[str, int]:
-        """How often each was counted since the last call."""
+        """Return the count of each measure since the last call."""
         found, self._counts = self._counts, dict.fromkeys(self._measures, 0)
         return found
 
 
 HOUSE_VARIABLE = "LUMEN_HOUSE"
 PERIOD = 10.0
-"""How often a robot tells of itself [s]."""
+"""The time between two messages about the robot's presence [s]."""
 NUMBERS_PERIOD = 3600.0
-"""How often it tells what was counted, for those who look back [s]; a bundle that ends is told at once."""
+"""The time between two messages with counts for long-term statistics [s]; they are also sent at once when a bundle
+ends.
+"""
 MAX_WAITING = 50
 
 
 class ReloadTaker:
-    """Has files taken by the reload of a running exhibition; `installed` is called when they are on the disk."""
+    """Applies files through the reload of a running exhibition; `installed` is called when they are on the disk."""
 
     def __init__(
         self, root: Path, reloader: Reloader, behavior: LiveBehavior, home: Home, installed: Callable[[], None]
@@ -71,25 +74,31 @@ class ReloadTaker:
 
     @property
     def running(self) -> str:
+        """The hash of the files that run."""
         return self._behavior.loop.project.hash
 
     @property
     def on_probation(self) -> bool:
+        """Whether the files that run are still on probation."""
         return self._reloader.on_probation
 
     def files(self, hash: str) -> Mapping[str, bytes] | None:
+        """Return the files of that hash if they are kept or in the project's folder, else None."""
         kept = self._store.files(hash)
         if kept is None and fingerprint(there := read_files(self._root)) == hash:
             return there
         return kept
 
     def offer(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
+        """Offer files to the reload; `answer` receives each verdict."""
         self._reloader.offer(files, answer)
 
     def attempt(self, files: Mapping[str, bytes], answer: Callable[[Any], None]) -> None:
+        """Judge files without applying them; `answer` receives the verdict."""
         self._reloader.offer(files, answer, dry=True)
 
     def install(self, files: Mapping[str, bytes]) -> None:
+        """Write files into the project's folder, once all robots that share it have them."""
         project, hash = self._behavior.loop.project, fingerprint(files)
         if project.told_apart and not all_have(self._root, hash, project.robots):
             return
@@ -103,7 +112,7 @@ class ReloadTaker:
 
 
 class FleetPart(Part):
-    """The agent of this robot; it stands beside the reload, whose `needs` it has."""
+    """The agent of this robot; it needs the same roles as the reload."""
 
     patient = True
 
@@ -135,9 +144,11 @@ class FleetPart(Part):
         self._undo = [self._bus.subscribe(key, self._came.append) for key in (desired_key(house), bundle_key(house))]
 
     def begin(self, now: float) -> None:
+        """Publish the robot's presence."""
         self._tell_presence()
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        """Process received orders and bundles, advance the agent, and publish the presence if it changed or is due."""
         while self._came:
             message = self._came.popleft()
             hear = self.agent.order if message.key == desired_key(self._house) else self.agent.bundle
@@ -149,6 +160,7 @@ class FleetPart(Part):
             self._tell_presence()
 
     def close(self) -> None:
+        """End the subscriptions."""
         for undo in self._undo:
             undo()
 
@@ -161,7 +173,7 @@ class FleetPart(Part):
             self._bus.publish(presence_key(self._house, self._robot), said.to_json(), ttl=60.0)
 
     def _tell_numbers(self, now: float) -> None:
-        """What was counted with the bundle before, once it is another one; with this one each hour."""
+        """Publish the counts of the previous bundle once another one runs; those of the present bundle each hour."""
         memory = self.agent.memory
         before, self._counting = self._counting, (self.agent.running, memory.since)
         ended = bool(before[0]) and before != self._counting
@@ -180,7 +192,9 @@ class FleetPart(Part):
 
 
 def make(services: Services) -> FleetPart | None:
-    """Make the agent of a robot that belongs to a fleet, unless `--reload off` leaves files alone."""
+    """Make the agent of a robot that belongs to a fleet; None for any other robot, in a story, or with `--reload
+    off`.
+    """
     directory, project = directory_of(services), services.plan.project
     if directory is None or directory.home is None or services.plan.story:
         return None
@@ -195,9 +209,10 @@ def make(services: Services) -> FleetPart | None:
 
 
 def fleet_of(root: Path, house: str, robot: str) -> tuple[Fleet, str] | None:
-    """The fleet that a robot belongs to, and its house; None where fleet.yaml has no such robot, or no key to trust.
+    """Return the fleet of a robot and its house; None if fleet.yaml does not list the robot or has no key.
 
-    The house is the one of that name; else the one that the environment names, or the only one with such a robot.
+    The house is the one named `house`, else the one that the environment variable names, or the only one with that
+    robot.
     """
     read, found = read_fleet(root)
     fleet = read.built if read else None

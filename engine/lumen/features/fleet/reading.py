@@ -18,7 +18,7 @@ BAD_SHARE = Code("bad-share", "fleet", ERROR, "a rollout step is not a valid sha
 
 
 def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None:
-    """The fleet in the data of fleet.yaml, which has the shape of fleet.schema.json but may lack any key."""
+    """Return the fleet in the data of fleet.yaml, which has the shape of fleet.schema.json but may lack any key."""
     if not isinstance(data, Mapping):
         return None
     centre, rollout = data.get("centre", {}).get("broker", ""), _rollout(data.get("rollout", {}), report)
@@ -26,7 +26,7 @@ def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None
 
 
 def read_fleet(root: Path) -> tuple[BuiltFile[Fleet] | None, list[Diagnostic]]:
-    """What fleet.yaml in that folder holds, None where there is none that can be read; and what is wrong with it."""
+    """Return the fleet of that folder, None if fleet.yaml is missing or unreadable, and the findings about it."""
     try:
         content = read_regular(root / FLEET_FILE, MAX_FILE_BYTES)
     except OSError:

@@ -1,4 +1,4 @@
-"""fleet.yaml: whether its names stand for something, its steps grow, and nobody reads along."""
+"""Rules for fleet.yaml: names that exist, steps that grow, encrypted connections."""
 
 import base64
 import binascii
@@ -31,7 +31,7 @@ KEY_BYTES = 32
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what is wrong with the fleet beside a project, where there is one."""
+    """Report errors in the fleet of a project, if it has one."""
     fleet, report = draft.beside.get(FLEET_FILE), draft.reports.get(FLEET_FILE)
     if isinstance(fleet, Fleet) and report is not None:
         check_fleet(fleet, report)
@@ -39,7 +39,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _at_home(draft: ProjectDraft, fleet: Fleet) -> None:
-    """The house that lumen.yaml names, and its robots there, are in the fleet."""
+    """Report a house of lumen.yaml, and robots there, that the fleet does not have."""
     settings, main = draft.settings, draft.main
     data = main.document.data if main else None
     if settings is None or main is None or not isinstance(data, Mapping) or "house" not in data:
@@ -56,7 +56,7 @@ def _at_home(draft: ProjectDraft, fleet: Fleet) -> None:
 
 
 def check_fleet(fleet: Fleet, report: DocumentReport) -> None:
-    """Report what is wrong with a fleet, whose file may have no project beside it."""
+    """Report errors in a fleet, whose folder need not contain a project."""
     _key(fleet, report)
     addresses: list[tuple[NodePath, str]] = [(("centre", "broker"), fleet.centre)] if fleet.centre else []
     addresses += [(("houses", name, "broker"), house.broker) for name, house in fleet.houses.items()]
@@ -111,7 +111,7 @@ def _known(names: Iterable[str], known: Iterable[str], what: str, where: NodePat
 
 
 def _steps(fleet: Fleet, report: DocumentReport) -> None:
-    """Each step has to reach more robots than the one before; a group may be as small as it likes after none."""
+    """Report steps by share that are not larger than the share before; groups may have any size."""
     last = 0.0
     for i, step in enumerate(fleet.rollout.steps):
         where: NodePath = ("rollout", "steps", i, "to")

@@ -1,4 +1,4 @@
-"""A centre that runs: its folder, its bus, and a look a second until somebody ends it."""
+"""A running centre: its folder, its bus, and a tick each second until it is ended."""
 
 import threading
 import time
@@ -24,12 +24,12 @@ from lumen.project.home import Home, home_of
 from lumen.upkeep.private_folder import private_folder
 
 LOOK_PERIOD = 1.0
-"""How often a centre looks at its fleet [s]."""
+"""The time between two ticks of a centre [s]."""
 FOLDER = "centre"
 
 
 def fleet_in(root: Path) -> Fleet:
-    """The fleet of that folder. Raises UsageError where there is none that can be used."""
+    """Return the fleet of that folder. Raises UsageError if fleet.yaml is missing or has errors."""
     read, found = read_fleet(root)
     if read is None and not found:
         raise UsageError(f"there is no fleet.yaml in {root.absolute()}: write one, as docs/fleet.md shows")
@@ -40,9 +40,9 @@ def fleet_in(root: Path) -> Fleet:
 
 
 class ServedCentre:
-    """The centre of the fleet in a folder, on a bus that it closes at its end. At `url` it looks for the stream.
+    """The centre of the fleet in a folder, on a bus that it closes at its end; the stream is read at `url`.
 
-    Raises UsageError where another process is it already, or the key is not the one of fleet.yaml.
+    Raises UsageError if another process is the centre already, or if the key is not the one of fleet.yaml.
     """
 
     def __init__(self, root: Path, signer: Signer, bus: Bus, tell: Callable[[str], None], url: str = "") -> None:
@@ -66,18 +66,18 @@ class ServedCentre:
         self._ending = threading.Event()
 
     def tick(self) -> None:
-        """Look once."""
+        """Answer requests and advance the centre once."""
         self._desk.tick(time.time())
         self.centre.tick()
 
     def run(self) -> None:
-        """Look until `end`."""
+        """Tick until `end` is called."""
         while not self._ending.is_set():
             self.tick()
             self._ending.wait(LOOK_PERIOD)
 
     def end(self) -> None:
-        """Let `run` return; safe in a signal handler."""
+        """Make `run` return; safe in a signal handler."""
         self._ending.set()
 
     def _opened(self, url: str, first: int, tell: Callable[[str], None]) -> Stream | None:
@@ -91,6 +91,7 @@ class ServedCentre:
         return stream
 
     def close(self) -> None:
+        """Close the stream, the centre and the bus, and release the folder."""
         self._desk.close()
         if self._stream:
             self._stream.close()

@@ -1,4 +1,4 @@
-"""A fleet: houses with their robots, groups of them, and how they get other files, step by step."""
+"""A fleet: houses with their robots, groups of them, and the plan for updating them step by step."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -6,47 +6,55 @@ from dataclasses import dataclass, field
 from lumen.language.diagnostics import NodePath
 
 EVERYBODY = "all"
-"""The step of a rollout that is every robot."""
+"""The target of a rollout's step that means every robot."""
 DEFAULT_PAUSE = 1800.0
-"""How long each step of a rollout is watched [s], where fleet.yaml does not say."""
+"""The default time to watch each step of a rollout [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class FleetHouse:
-    """A house: the address of its broker, the names of its robots, and labels to choose it by."""
+    """A house with its robots."""
 
     broker: str
+    """The address of its broker."""
     robots: tuple[str, ...] = ()
+    """The names of its robots."""
     labels: Mapping[str, str] = field(default_factory=dict)
+    """Labels by which groups choose it."""
 
 
 @dataclass(frozen=True, slots=True)
 class FleetGroup:
-    """Robots by name (`HOUSE/ROBOT`), those of whole houses, and those of houses that have all these labels."""
+    """A group: the union of robots, houses and labelled houses."""
 
     robots: tuple[str, ...] = ()
+    """Robots by name (`HOUSE/ROBOT`)."""
     houses: tuple[str, ...] = ()
+    """Houses all of whose robots belong to the group."""
     labels: Mapping[str, str] = field(default_factory=dict)
+    """Labels; all robots of houses with all of them belong to the group."""
 
 
 @dataclass(frozen=True, slots=True)
 class FleetMeasure:
-    """What is counted at each robot: an event by its name, or how often a state is entered (`*` for any part of one).
-
-    It is told for each hour, or for each time that the measure `per` has counted.
-    """
+    """A count at each robot, reported per hour or per count of another measure."""
 
     event: str = ""
+    """The name of the events to count (`*` for any part of it)."""
     enters: str = ""
+    """The state whose entries to count (`*` for any part of it)."""
     per: str = ""
+    """The measure to divide by; empty for hours."""
 
 
 @dataclass(frozen=True, slots=True)
 class StepTarget:
-    """Who is to have the bundle once a step is taken: a group, or a `share` of all robots (0 to 1)."""
+    """The robots that have the bundle after a step: those of a group, or a share of all robots."""
 
     group: str = ""
+    """The name of the group, empty for a share."""
     share: float = 0.0
+    """The share of all robots, from 0 to 1."""
 
     def __str__(self) -> str:
         return self.group or (EVERYBODY if self.share == 1.0 else f"{100.0 * self.share:g}%")
@@ -54,23 +62,25 @@ class StepTarget:
 
 @dataclass(frozen=True, slots=True)
 class RolloutPlan:
-    """Its steps, how long each is watched [s], and what sends all back; `abort_if` is empty where nothing does.
-
-    With `try_first` all robots try the bundle before the first one takes it.
-    """
+    """The steps of a rollout and their conditions."""
 
     steps: tuple[StepTarget, ...] = (StepTarget(share=1.0),)
     pause: float = DEFAULT_PAUSE
+    """How long each step is watched [s]."""
     abort_if: str = ""
+    """The condition that rolls all robots back, empty for none."""
     try_first: bool = False
+    """Whether all robots try the bundle before the first one switches to it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Fleet:
-    """What fleet.yaml says; `key` is the public key that bundles and orders are checked with, in base64."""
+    """The content of fleet.yaml."""
 
     centre: str = ""
+    """The address of the centre's broker."""
     key: str = ""
+    """The public key, in base64, with which robots check bundles and orders."""
     houses: Mapping[str, FleetHouse] = field(default_factory=dict)
     groups: Mapping[str, FleetGroup] = field(default_factory=dict)
     measures: Mapping[str, FleetMeasure] = field(default_factory=dict)
@@ -83,7 +93,7 @@ class Fleet:
         return tuple(f"{name}/{robot}" for name, house in self.houses.items() for robot in house.robots)
 
     def members(self, target: StepTarget) -> tuple[str, ...]:
-        """The robots that a step may be taken at: those of its group, or all of them."""
+        """Return the robots that a step may choose from: those of its group, or all."""
         group = self.groups.get(target.group)
         if group is None:
             return self.robots
@@ -96,7 +106,7 @@ class Fleet:
 
 
 def step_target(text: str) -> StepTarget | None:
-    """What `demo-1`, `10%` or `all` means; None for a share that is none (more than all, or nothing)."""
+    """Return the target that `demo-1`, `10%` or `all` means; None for a share outside of 0 % to 100 %."""
     if text == EVERYBODY:
         return StepTarget(share=1.0)
     if not text.endswith("%"):

@@ -1,4 +1,4 @@
-"""Signatures (ed25519, RFC 8032): who may say what robots run."""
+"""Signatures (ed25519, RFC 8032): they decide whose bundles and orders robots accept."""
 
 import base64
 import binascii
@@ -10,11 +10,11 @@ from lumen.errors import UsageError
 from lumen.extras import demand
 
 BUNDLE, ORDER = b"lumen bundle\n", b"lumen order\n"
-"""What is signed begins with one of these: a signature of one kind is none of another."""
+"""The prefixes of signed data, so that a signature of one kind is not valid for another."""
 
 
 def generate(file: Path) -> str:
-    """Write a new private key for its owner alone, and give the public one, in base64. Raises UsageError."""
+    """Write a new private key, readable only by its owner; return the public key in base64. Raises UsageError."""
     keys = _ed25519()
     key = keys.Ed25519PrivateKey.generate()
     text = base64.b64encode(key.private_bytes_raw())
@@ -30,7 +30,9 @@ def generate(file: Path) -> str:
 
 
 class Signer:
-    """Signs with the private key in a file; `public` is its other half. Raises UsageError where there is none."""
+    """Signs with the private key in a file; `public` is the public key. Raises UsageError if the file has no valid
+    key.
+    """
 
     def __init__(self, file: Path) -> None:
         keys = _ed25519()
@@ -43,12 +45,12 @@ class Signer:
         self.public = base64.b64encode(self._key.public_key().public_bytes_raw()).decode()
 
     def sign(self, kind: bytes, data: bytes) -> str:
-        """The signature, in base64."""
+        """Return the signature in base64."""
         return base64.b64encode(self._key.sign(kind + data)).decode()
 
 
 def verified(public: str, kind: bytes, data: bytes, signature: str) -> bool:
-    """Whether the other half of this public key has signed the data as one of that kind; no text makes it raise."""
+    """Return whether this public key's owner signed the data as that kind; invalid texts give False."""
     keys = _ed25519()
     try:
         key = keys.Ed25519PublicKey.from_public_bytes(base64.b64decode(public, validate=True))

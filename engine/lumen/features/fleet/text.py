@@ -1,4 +1,4 @@
-"""`lumen fleet status` for people."""
+"""The output of `lumen fleet status` and `lumen fleet log` as text."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -11,7 +11,7 @@ SHORT = 12
 
 
 def fleet_lines(found: Mapping[str, Any]) -> Iterator[str]:
-    """The rollout, each robot, and what is wrong."""
+    """Yield the rollout, each robot, and the centre's problems."""
     yield from _rollout(found["rollout"])
     yield from _trial(found["trying"])
     rows = [
@@ -41,7 +41,7 @@ def _trial(trying: Mapping[str, Any] | None) -> Iterator[str]:
 
 
 def log_lines(found: Mapping[str, Any]) -> Iterator[str]:
-    """The last incidents, how often each kind came, and what was counted with each bundle."""
+    """Yield the last incidents, the count of each kind, and the measures of each bundle."""
     for row in found["incidents"]:
         at = iso_time(row["at"], "seconds")
         yield f"{at}  {row['robot']}: {row['kind']}: {row['text']}"

@@ -1,4 +1,4 @@
-"""A command as steps, none of which waits: each hands over a call, and goes on when NAOqi has answered."""
+"""A command as a sequence of calls: each step yields a call and continues when NAOqi has answered."""
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
@@ -9,15 +9,15 @@ from lumen.errors import RobotError, RobotFailedError
 from lumen.features.naoqi.session import NaoqiCall
 
 CANCEL_TIMEOUT = 1.5
-"""How long what was cancelled may go on [s]: a walk ends after the step in the air."""
+"""How long a cancelled command may continue [s]: a walk ends after the step in the air."""
 
 ABORT_RETRY_PERIOD = 0.25
-"""How often the abort is repeated while the command goes on [s]: NAOqi may hear of the end before the beginning."""
+"""The time between two repetitions of the abort [s]: NAOqi may receive the end before the beginning."""
 
 
 @dataclass(frozen=True)
 class WhileWaiting:
-    """Wait for this call, and meanwhile do that at each tick."""
+    """Waits for a call, and calls a function at each tick meanwhile."""
 
     call: NaoqiCall
     each: Callable[[float], None]
@@ -25,14 +25,14 @@ class WhileWaiting:
 
 Awaited = NaoqiCall | WhileWaiting | None
 CallSteps = Generator[Awaited, Any, Any]
-"""What is waited for comes back as its result; `None` waits for the next tick and comes back as its time [s]."""
+"""Steps that yield a call and receive its result; `None` waits for the next tick and receives its time [s]."""
 
 
 class CallSequence:
     """An activity of the executor made of steps.
 
-    `abort` has NAOqi end it, `recover` are the steps thereafter. What does not end within `patience` [s] has
-    failed, so that nothing waits for it for ever.
+    `abort` makes NAOqi end it; `recover` are the steps afterwards. If it has not ended within `patience` [s] after it
+    was cancelled, it has failed, so that nothing waits for it forever.
     """
 
     def __init__(
@@ -49,6 +49,7 @@ class CallSequence:
         self._until = self._again = inf
 
     def advance(self, now: float) -> bool:
+        """Take the steps that are possible at `now` [s]; return True at the end. Raises RobotError if a call failed."""
         if self._cancelled:
             if not self._quiet(now):
                 return False
@@ -60,12 +61,13 @@ class CallSequence:
         return self._go(now)
 
     def cancel(self) -> None:
+        """Abort the command; `advance` then waits for its end."""
         if not self._cancelled:
             self._cancelled = True
             self._aborting = list(self._abort())
 
     def _quiet(self, now: float) -> bool:
-        """Whether NAOqi has ended it. Raises RobotError where it does not."""
+        """Return whether NAOqi has ended the command. Raises RobotError after `patience`."""
         if self._until == inf:
             self._until, self._again = now + self._patience, now + ABORT_RETRY_PERIOD
         call = self._wait.call if isinstance(self._wait, WhileWaiting) else self._wait
@@ -79,7 +81,7 @@ class CallSequence:
         return False
 
     def _go(self, now: float) -> bool:
-        """Take the steps that can be taken by now; whether that was the last."""
+        """Take the steps that are possible by now; return True after the last."""
         try:
             if not self._begun:
                 self._begun, self._wait = True, next(self._steps)

@@ -1,8 +1,8 @@
-"""Motions as NAOqi plays them: one call of `angleInterpolationBezier` for all joints and keys.
+"""Motions in NAOqi's form: one call of `angleInterpolationBezier` for all joints and keys.
 
-Bezier, cubic and linear tracks are carried over exactly: each of their segments is a cubic curve. Minimum jerk is of
-the fifth degree, and becomes as many cubic pieces, each with the right speed at both ends, as bring the error below
-`ERROR`; it is at most 360 d / (384 n^4) for a way d in n pieces.
+Bezier, cubic and linear tracks are converted exactly: each of their segments is a cubic curve. Minimum jerk is of the
+fifth degree, and becomes as many cubic pieces, each with the right speed at both ends, as keep the error below
+`MAX_CURVE_ERROR`; it is at most 360 d / (384 n^4) for a distance d in n pieces.
 """
 
 from collections.abc import Iterable, Iterator
@@ -15,20 +15,23 @@ from lumen.motion.trajectories import JointTrack
 MOTION_CYCLE = 0.02
 """ALMotion's period [s]."""
 MAX_CURVE_ERROR = 1e-3
-"""By how much a joint may leave a minimum-jerk track [rad]."""
+"""How far a joint may deviate from a minimum-jerk track [rad]."""
 MIN_PIECE_DURATION = 2 * MOTION_CYCLE
-"""A piece takes at least so long [s]."""
+"""The shortest piece [s]."""
 BEZIER_HANDLE = 3
-"""NAOqi's number for a handle that is given."""
+"""NAOqi's number for an explicit handle."""
 
 
 class CubicPiece(NamedTuple):
-    """A cubic from `start` for `duration` [s]: inner points at `t1`, `t2` [s] from its start, angles `a0` to `a3`."""
+    """A cubic curve with angles `a0` to `a3`."""
 
     start: float
+    """The time of its beginning [s]."""
     duration: float
     t1: float
+    """The time of its first inner point from its beginning [s]."""
     t2: float
+    """The time of its second inner point from its beginning [s]."""
     a0: float
     a1: float
     a2: float
@@ -44,10 +47,10 @@ class BezierCurves(NamedTuple):
 
 
 def curves(tracks: Iterable[JointTrack]) -> BezierCurves:
-    """These tracks for NAOqi; it begins each where the joint stands, which should be where the track begins.
+    """Return these tracks for NAOqi, which begins each at the joint's present angle; the track should begin there too.
 
-    Which handle NAOqi gives to that beginning is not documented. So the first key stands one of its cycles later, on
-    the way, and what it does before that can't be seen.
+    The handle that NAOqi gives to that beginning is not documented. So the first key is one of its cycles later, on the
+    way, and the movement before it is too short to be visible.
     """
     found = BezierCurves([], [], [])
     for track in tracks:
@@ -74,7 +77,9 @@ def _pieces(segment: Segment) -> Iterator[CubicPiece]:
 
 
 def _cubics(curve: Polynomial) -> Iterator[CubicPiece]:
-    """The polynomial in pieces with its own angles and speeds at their ends; one is enough up to the third degree."""
+    """Yield the polynomial in pieces with its own angles and speeds at their ends; one suffices up to the third
+    degree.
+    """
     most = max(1, int(curve.duration / MIN_PIECE_DURATION))
     way = abs(curve.c5) / 6
     pieces = min(most, ceil((360 / 384 * way / MAX_CURVE_ERROR) ** 0.25)) if way else 1
@@ -91,7 +96,7 @@ def _slope(c: Polynomial, u: float) -> float:
 
 
 def _split(piece: CubicPiece) -> list[CubicPiece]:
-    """The piece cut one cycle after its beginning, by de Casteljau; whole where it is too short for that."""
+    """Return the piece cut one cycle after its beginning, by de Casteljau's algorithm; uncut if it is too short."""
     if piece.duration < MIN_PIECE_DURATION:
         return [piece]
     u = _reached(piece, MOTION_CYCLE)
@@ -117,7 +122,7 @@ def _halves(u: float, p0: float, p1: float, p2: float, p3: float) -> tuple[Contr
 
 
 def _reached(piece: CubicPiece, time: float) -> float:
-    """The parameter at which the curve has come to that time [s] from its beginning."""
+    """Return the parameter at which the curve reaches that time [s] from its beginning."""
     low, high = 0.0, 1.0
     for _ in range(50):
         u = (low + high) / 2

@@ -1,4 +1,4 @@
-"""What NAOqi calls the devices of its two robots: NAO, and Pepper on its wheels. Pepper's names are from memory."""
+"""NAOqi's names of the devices of NAO and Pepper. Pepper's names are from memory, not tested."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,29 +22,32 @@ FORCE_SENSORS = tuple(
 
 
 def device(name: str) -> str:
-    """ALMemory's key of what a sensor measures."""
+    """Return ALMemory's key of a sensor's value."""
     return _DEVICE.format(f"{name}/Sensor")
 
 
 @dataclass(frozen=True)
 class Hardware:
-    """The devices of one kind of robot.
-
-    `touch` are those behind each tactile sensor, `sonars` those that the left and the right one are read from, `force`
-    those under the soles. `lights` maps our groups of lights to those of ALLeds. `breathing` are the chains that
-    NAOqi's breathing moves beside the head, which is ours. `edge` is what leaves the stage first, as far as `reach`
-    from the robot's place [m]. One that `gets_up` does so after a fall by itself.
-    """
+    """The devices of one kind of robot."""
 
     touch: Mapping[str, tuple[str, ...]]
+    """The devices behind each tactile sensor."""
     sonars: tuple[str, str]
+    """The devices of the left and the right sonar."""
     inertial: str
+    """The device of the inertial unit."""
     force: tuple[str, ...]
+    """The force sensors under the soles."""
     lights: Mapping[str, str]
+    """ALLeds' groups by Lumen's groups of lights."""
     breathing: tuple[str, ...]
+    """The chains, besides the head, that NAOqi's breathing moves."""
     edge: str
+    """The part that leaves the stage first."""
     reach: float
+    """How far that part is from the robot's position [m]."""
     gets_up: bool
+    """Whether the robot gets up by itself after a fall."""
 
 
 _HEAD_TOUCH = {
@@ -61,7 +64,7 @@ _FACE_LIGHTS = {
     "ears": "EarLeds", "left_ear": "LeftEarLeds", "right_ear": "RightEarLeds",
     "chest": "ChestLeds",
 }  # fmt: skip
-"""ALLeds' groups. Ears of both are blue only, as is NAO's head, and show of a colour how much blue is in it."""
+"""ALLeds' groups. The ears of both robots, and NAO's head, are only blue: of a colour they show its share of blue."""
 
 NAO = Hardware(
     touch={
@@ -102,7 +105,7 @@ PEPPER = Hardware(
     reach=0.25,
     gets_up=False,
 )
-"""Its one sonar that looks ahead is both the left and the right one of our message."""
+"""Its only sonar that points ahead serves as both the left and the right one."""
 
 
 def hardware_of(body: Body) -> Hardware:

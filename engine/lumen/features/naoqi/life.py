@@ -1,4 +1,6 @@
-"""Life on a real NAO: head and arms by `ALMotion.setAngles`, its eyes, and NAOqi's own where a style says so."""
+"""Lifelike movements of a real NAO: head and arms by `ALMotion.setAngles`, its eyes, and NAOqi's own if the style
+asks.
+"""
 
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
@@ -20,14 +22,14 @@ from lumen.robot.command_table import speech_duration
 from lumen.robot.life_layer import LifeLayer
 
 OURS_AFTER = 0.5
-"""How long after eyes were lit they are ours at the soonest [s]: what lights them is on its way."""
+"""How long after a light command the eyes stay untouched [s], because the command's calls may still be on their way."""
 
 UNLIT = "white"
-"""The colour of eyes that nobody has lit."""
+"""The colour of eyes that no command has lit."""
 
 
 class NaoqiEyes:
-    """Sends the colour that the eyes are to have, where it changes. `post` calls NAOqi."""
+    """Sends the eyes' colour when it changes. `post` calls NAOqi."""
 
     def __init__(self, post: Callable[..., NaoqiCall], body: Body) -> None:
         self._post, self._body = post, body
@@ -36,7 +38,7 @@ class NaoqiEyes:
         self._sent = NaoqiCall()
 
     def begins(self, command: RobotCommand, now: float) -> None:
-        """A command begins that may light them; `white` leaves them to us again."""
+        """Note that a command begins that may light the eyes; the colour `white` returns them to this class."""
         match command:
             case Leds(colours, seconds):
                 self._light(colours, now + seconds)
@@ -45,7 +47,7 @@ class NaoqiEyes:
                     self._light(cue.value, now + cue.time)
 
     def wear(self, colour: str, now: float) -> None:
-        """Have them in this colour, `off` where it blinks; empty where they stay as they are."""
+        """Show this colour in the eyes, `off` for a blink, white for an empty text, unless a command has lit them."""
         colour = colour or UNLIT
         if self._lit or now < self._lit_until or colour == self._worn or not self._sent.done:
             return
@@ -60,20 +62,20 @@ class NaoqiEyes:
 
 
 SEND_PERIOD = 0.1
-"""How often it is sent where the joints are wanted [s]; NAOqi goes on evenly in between."""
+"""The time between two updates of the joints' goals [s]; NAOqi interpolates in between."""
 
 SPEED = 0.3
-"""The part of their greatest speed with which joints go there."""
+"""The share of their greatest speed at which joints move there."""
 
 REST_AFTER = 0.5
-"""How long nothing else has to move the robot until it lives again [s]: NAOqi is still on its way."""
+"""How long no command may have moved the robot before it moves by itself again [s]: NAOqi finishes late."""
 
 
 class NaoqiLife:
-    """Adds the layer's offsets to where head and arms stood when the last command had ended.
+    """Adds the life layer's offsets to the angles of head and arms after the last command.
 
-    Legs are left alone unless the style says `naoqi: [legs]`: nobody has shown on a real robot that swaying is safe. A
-    robot lives from the first command that has it stand until it rests. `owner` names the command that moves a part.
+    Legs stay still unless the style has `naoqi: [legs]`, because swaying has not been tested on a real robot. The robot
+    lives from its first command to stand until it rests. `owner` returns the command that moves a part.
     """
 
     def __init__(self, session: NaoqiSession, owner: Callable[[str], str], body: Body) -> None:
@@ -90,15 +92,15 @@ class NaoqiLife:
 
     @property
     def body_language(self) -> bool:
-        """Whether NAOqi gestures as it speaks, in place of us."""
+        """Whether NAOqi makes the gestures of speech."""
         return self._has(NAOQI_SPEECH, "ALAnimatedSpeech")
 
     def live(self, command: Live) -> None:
-        """Be alive like this from now on."""
+        """Begin a style of life."""
         self.layer.live(replace(command, gestures=NO_GESTURES) if NAOQI_SPEECH in command.style.naoqi else command)
 
     def begins(self, command: RobotCommand, now: float) -> None:
-        """A command begins that may let it stand, rest or speak, or light its eyes."""
+        """Note that a command begins, which may make the robot stand, rest or speak, or light its eyes."""
         self._eyes.begins(command, now)
         match command:
             case Rest():
@@ -110,21 +112,21 @@ class NaoqiLife:
                 self.layer.say(command, speech_duration(text), now)
 
     def lose(self) -> None:
-        """The connection broke: NAOqi may have been restarted since, and neither breathes nor blinks."""
+        """Forget NAOqi's state: it may have been restarted since, and then neither breathes nor blinks."""
         self._breathes = self._blinks = False
         self._sent = NaoqiCall()
 
     def led(self, angles: Mapping[str, float], now: float) -> None:
-        """Somebody aims joints there [rad]: they stand elsewhere from now on; see `alive`."""
+        """Note that joints are aimed at these angles [rad], from which their offsets now count; see `alive`."""
         self.layer.led(angles, now)
         self._stands |= {joint: angle for joint, angle in angles.items() if joint in self._stands}
 
     def alive(self, angles: Mapping[str, float]) -> dict[str, float]:
-        """Where to send joints that somebody aims there [rad]: so much beside it as they live."""
+        """Return the angles to send for joints that are aimed there [rad]: with their offsets added."""
         return {joint: angle + self.layer.offsets.get(joint, 0.0) for joint, angle in angles.items()}
 
     def tick(self, now: float, heat: Mapping[str, float], percentage: float) -> None:
-        """Send where the joints are wanted at `now` [s], unless NAOqi is still busy with the last."""
+        """Send the joints' goals at `now` [s], unless NAOqi is still busy with the last."""
         free = frozenset(part for part in WHOLE_BODY if not self._owner(part))
         if not self._owner(VOICE):
             self.layer.hush(now)
@@ -161,13 +163,13 @@ class NaoqiLife:
             self._sent = self._post("ALMotion", "setAngles", list(goals), list(goals.values()), SPEED)
 
     def _look(self, now: float) -> None:
-        """Have the eyes in the colour of the moment; it is NAOqi that blinks, where the style says so."""
+        """Send the eyes' present colour; blinks are left to NAOqi if the style has NAOqi's."""
         colour = self.layer.eyes(now)
         if self._session.has("ALLeds") and not (colour == "off" and self._blinks):
             self._eyes.wear(colour, now)
 
     def _switch(self, *, lives: bool) -> None:
-        """Let NAOqi breathe and blink, or not: only where nothing else moves the robot."""
+        """Switch NAOqi's breathing and blinking; it breathes only while no command moves the robot."""
         breathes = lives and NAOQI_BREATHING in self.layer.style.naoqi
         if breathes != self._breathes:
             self._breathes = breathes
@@ -182,7 +184,7 @@ class NaoqiLife:
         return part in self.layer.style.naoqi and self._session.has(service)
 
     def _known(self) -> bool:
-        """Whether it is known where the joints stand, without what was added; it is asked for where it is not."""
+        """Return whether the joints' angles without offsets are known; request them if not."""
         if self._stands:
             return True
         if self._asked is None:
@@ -195,5 +197,5 @@ class NaoqiLife:
         return bool(self._stands)
 
     def _ours(self, free: Collection[str]) -> Collection[str]:
-        """The parts that we move: the head alone where NAOqi breathes."""
+        """Return the parts that Lumen moves: only the head while NAOqi breathes."""
         return {HEAD} & set(free) if self._breathes else free

@@ -1,4 +1,4 @@
-"""The robot's LEDs, by the names and colours that motions and behaviours use."""
+"""The robot's LEDs, by the names and colours of motions and behaviours."""
 
 from collections.abc import Iterator, Mapping
 
@@ -10,14 +10,14 @@ NAOQI_COLOURS: Mapping[object, int] = {
     "green": 0x00FF00, "orange": 0xFF6000, "purple": 0x8000FF, "pink": 0xFF4080, "turquoise": 0x20FFC0,
     "gold": 0xFFA000, "violet": 0x9020FF,
 }  # fmt: skip
-"""Colours that look on LEDs as their names say; all others are CSS's."""
+"""Colours that look on LEDs like their names; all others are CSS's."""
 
 CUE_FADE = 0.05
-"""How long a change takes that is at once [s]."""
+"""The duration of an immediate change [s]."""
 
 
 def fades(colours: object, body: Body, seconds: float = CUE_FADE) -> Iterator[tuple[str, int, float]]:
-    """The arguments of `ALLeds.fadeRGB` (group, 0xRRGGBB, [s]) for lights and colours; what it lacks is left."""
+    """Yield the arguments of `ALLeds.fadeRGB` (group, 0xRRGGBB, [s]) for each light; lights it lacks are skipped."""
     groups = hardware_of(body).lights
     for light, colour in colours.items() if isinstance(colours, Mapping) else ():
         shown = NAOQI_COLOURS.get(colour, rgb(colour))

@@ -1,4 +1,4 @@
-"""The robot's microphones: NAOqi hands what they hear to a service of ours, until we have enough of it."""
+"""The robot's microphones: NAOqi sends their sound to a service of ours until there is enough."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,26 +13,26 @@ from lumen.robot.sense_codec import RECORDING_RATE, recording_body
 
 AUDIO_DEVICE, MICROPHONE_SERVICE = "ALAudioDevice", "LumenMicrophones"
 FRONT_MICROPHONE, INTERLEAVED = 3, 0
-"""The microphone that points at the visitor: ALAudioDevice gives one of them at 16 kHz, all four at 48 kHz only."""
+"""The microphone that points at the visitor: ALAudioDevice offers a single one at 16 kHz, all four only at 48 kHz."""
 RECORDING_GRACE = 3.0
-"""How much longer than its duration a recording may take to come [s]."""
+"""How much longer than its duration a recording may take to arrive [s]."""
 
 
 class Microphones:
-    """Records from ALAudioDevice, one recording at a time; `notice` gets an event for each that was made."""
+    """Records from ALAudioDevice, one recording at a time; `notice` receives an event for each."""
 
     def __init__(self, session: NaoqiSession, notice: EventSink, clock: Callable[[], float]) -> None:
         self._session, self._notice, self._clock = session, notice, clock
         self._heard, self._wanted = bytearray(), 0
 
     def begin(self, command: Record) -> CallSequence:
-        """The recording under way. Raises RobotError where there is no microphone."""
+        """Begin a recording. Raises RobotError if there is no microphone."""
         if not self._session.has(AUDIO_DEVICE):
             raise SenseError(f"this robot has no {AUDIO_DEVICE}")
         return CallSequence(self._listen(command), self._hush)
 
     def _listen(self, command: Record) -> CallSteps:
-        """NAOqi calls `processRemote` of our service about six times a second; whatever came before does not count."""
+        """Record: NAOqi calls `processRemote` of our service about six times a second; earlier sound is discarded."""
         yield self._session.serve(MICROPHONE_SERVICE, self._service)
         yield self._session.post(
             AUDIO_DEVICE, "setClientPreferences", MICROPHONE_SERVICE, RECORDING_RATE, FRONT_MICROPHONE, INTERLEAVED
@@ -55,7 +55,7 @@ class Microphones:
         return [self._session.post(AUDIO_DEVICE, "unsubscribe", MICROPHONE_SERVICE)]
 
     def _service(self, qi: Any) -> object:
-        """What NAOqi calls, on a thread of qi's, one call at a time."""
+        """Return the service that NAOqi calls, on a thread of qi's, one call at a time."""
         microphones = self
 
         class Listener:
@@ -66,13 +66,13 @@ class Microphones:
         return Listener()
 
     def hear(self, samples: bytes) -> None:
-        """16 bits each, little-endian; none are kept beyond what is wanted."""
+        """Add samples of 16 bits, little-endian, as long as more are wanted."""
         if len(self._heard) < self._wanted:
             self._heard += samples
 
 
 class _Raw:
-    """qi's signature of bytes; without it they arrive as a text."""
+    """qi's signature of bytes; without it they arrive as text."""
 
     def __str__(self) -> str:
         return "r"

@@ -1,4 +1,4 @@
-"""Motions: checked, begun where the robot stands, and sent as one call."""
+"""Motions: checked, begun from the robot's present angles, and sent to NAOqi as one call."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 
@@ -17,7 +17,7 @@ from lumen.robot.joint_ways import APPROACH_TIME, RECOVERY_TIME, away, begun_fro
 
 
 class CuePlayer:
-    """The cues of a motion, each when its time has come."""
+    """Plays the cues of a motion, each at its time."""
 
     def __init__(self, post: PostCall, motion: MotionDefinition, body: Body, notice: EventSink) -> None:
         self._post, self._body = post, body
@@ -26,6 +26,7 @@ class CuePlayer:
         self._begin = 0.0
 
     def begin(self, now: float) -> None:
+        """Begin the motion's time at `now` [s]."""
         self._begin = now
 
     def __call__(self, now: float) -> None:
@@ -36,17 +37,19 @@ class CuePlayer:
 
 
 START_POSTURE_TOLERANCE = 0.1
-"""Legs that are nearer than this to the posture that a motion begins in need no way there [rad]."""
+"""Joints nearer than this to the motion's starting posture need no way there [rad]."""
 
 
 class MotionPlayer:
-    """Begins motions; `post` calls NAOqi, `notice` is called for what a motion says and sounds, `clock` is in [s]."""
+    """Begins motions; `post` calls NAOqi, `notice` receives a motion's words and sounds, `clock` returns the time
+    [s].
+    """
 
     def __init__(self, post: PostCall, body: Body, notice: EventSink, clock: Callable[[], float]) -> None:
         self._post, self._body, self._notice, self._clock = post, body, notice, clock
 
     def begin(self, motion: MotionDefinition, owned: Collection[str]) -> CallSequence:
-        """The motion under way; joints in the parts `owned` may be brought to its posture before and after."""
+        """Begin a motion; joints of the parts `owned` may be moved to its starting posture before and after."""
         shared = self._body.shared
         home = {name: angle for name, angle in home_angles(motion, self._body, owned).items() if name not in shared}
         joints = list(dict.fromkeys(shared.get(joint, joint) for joint in (*motion.tracks, *home)))
@@ -76,7 +79,7 @@ class MotionPlayer:
         beside(now)
 
     def _ready(self, motion: MotionDefinition) -> CallSteps:
-        """Raises RobotError where the robot is not in a posture to begin in."""
+        """Raise RobotError if the motors are off, or if the robot is not in a posture to begin in."""
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
             raise RobotRefusedError("the motors are off: `wake` first")
         if motion.start in UPRIGHT:
@@ -87,26 +90,26 @@ class MotionPlayer:
                 )
 
     def _stand(self, joints: list[str]) -> CallSteps:
-        """The commanded angles of these joints, which is where NAOqi begins."""
+        """Return the commanded angles of these joints, from which NAOqi begins."""
         if not joints:
             return {}
         angles = yield self._post("ALMotion", "getAngles", joints, False)
         return dict(zip(joints, angles, strict=True))
 
     def _recover(self, home: Mapping[str, float]) -> CallSteps:
-        """Back to where it began: killed on its way, a joint stops where it is."""
+        """Return the joints to the starting posture: a killed motion leaves them where they are."""
         if home:
             here = yield from self._stand(list(home))
             yield self._go(home, here, RECOVERY_TIME)
 
     def _go(self, goal: Mapping[str, float], here: Mapping[str, float], seconds: float) -> NaoqiCall:
-        """Straight there, in that time or as long as the slowest joint needs."""
+        """Move joints there in `seconds`, or in the time that the slowest joint needs."""
         way = {joint: angle - here[joint] for joint, angle in goal.items()}
         times = [[way_duration(way, self._body, seconds)]] * len(goal)
         return self._post("ALMotion", "angleInterpolation", list(goal), [[a] for a in goal.values()], times, True)
 
     def _inside(self, motion: MotionDefinition, here: Mapping[str, float]) -> dict[str, float]:
-        """Where each joint of the motion stands, inside its limits; one without a motor stands as its leader does."""
+        """Return each joint's present angle, within its limits; a joint without a motor has its leader's angle."""
         found = {}
         for joint in motion.tracks:
             limit = self._body.joints[joint]
@@ -114,6 +117,6 @@ class MotionPlayer:
         return found
 
     def _driven(self, tracks: Sequence[JointTrack]) -> list[JointTrack]:
-        """The tracks under the names of motors; where one has two, its own joint decides."""
+        """Return the tracks by the names of motors; if a motor has two tracks, its own joint's track counts."""
         shared, moved = self._body.shared, {track.joint for track in tracks}
         return [t._replace(joint=shared.get(t.joint, t.joint)) for t in tracks if shared.get(t.joint) not in moved]

@@ -1,4 +1,4 @@
-"""What the robot notices by itself, as NAOqi's events, and the thresholds of battery and heat."""
+"""Events that NAOqi raises by itself, and the thresholds of battery and heat."""
 
 import logging
 from collections import deque
@@ -13,34 +13,34 @@ from lumen.ports import Tactile
 
 FALLEN = "robotHasFallen"
 FALLING = ("robotIsFalling", "ALMotion/RobotIsFalling")
-"""What NAOqi 2.1 and 2.8 call the beginning of a fall."""
+"""The names of a beginning fall in NAOqi 2.1 and 2.8."""
 
 SOUND = "ALSoundLocalization/SoundLocated"
 SURE_SOUND = 0.5
-"""How sure NAOqi has to be of where a sound came from."""
+"""The least confidence of a sound's direction that is accepted."""
 
 FULL = "BatteryFullChargedFlagChanged"
 
 BATTERY_LOW, BATTERY_RECOVERED = 20, 25
-"""Charge [%] at which the robot raises `battery.low`, and may do so again."""
+"""The charges [%] at which the robot raises `battery.low`, and may raise it again."""
 MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
-"""Temperatures [degrees Celsius] at which it raises `motors.hot`, and may do so again."""
+"""The temperatures [degrees Celsius] at which it raises `motors.hot`, and may raise it again."""
 
 EVENT_SETTLE_TIME = 0.3
-"""How much younger than an event a look at the sensors has to be, to count more [s]."""
+"""How much newer than an event a sensor's reading must be to overrule it [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 def event_of(sensor: str) -> str:
-    """What ALMemory calls the touch of a sensor."""
+    """Return ALMemory's name of the touch of a sensor."""
     return f"{sensor}{'Pressed' if sensor.endswith(('Bumper', 'Button')) else 'Touched'}"
 
 
 class NaoqiEvents:
-    """Hears of touches, falls and a full battery, on threads of qi's; `take` is for the robot's own.
+    """Receives touches, falls and a full battery on qi's threads; `take` passes them to the robot's thread.
 
-    `pressed` says of every tactile sensor whether it is touched.
+    `pressed` has the state of every tactile sensor.
     """
 
     def __init__(self, sensors: Iterable[str]) -> None:
@@ -52,7 +52,7 @@ class NaoqiEvents:
         self._kept: list[Any] = []
 
     def listen(self, session: NaoqiSession) -> None:
-        """Subscribe to everything, in a new session; what can't be heard is logged."""
+        """Subscribe to all events in a new session; failures are logged."""
         self._kept = []
         for name in (*self.pressed, FALLEN, *FALLING, FULL):
             event = event_of(name) if name in self.pressed else name
@@ -69,15 +69,17 @@ class NaoqiEvents:
                 _log.warning("the robot does not look towards sounds: %s", error)
 
     def sounds(self) -> list[tuple[float, float]]:
-        """Where the newest sound came from: how far to the left and below of where the head points [rad]."""
+        """Return the direction of the newest sound: the angles left of and below the head's direction [rad]; then
+        forget it.
+        """
         found = list(self._sounds)
         self._sounds.clear()
         return found
 
     def take(self, now: float, felt: Tactile | None) -> list[tuple[str, bool]]:
-        """What has changed by `now` [s]: sensors pressed or let go of, falls, and the battery.
+        """Return the changes up to `now` [s]: sensors pressed or released, falls, and the battery.
 
-        Two events may overtake each other on their way; what was `felt` since puts that right.
+        Two events may overtake each other; the newer readings `felt` correct that.
         """
         if felt:
             for name, value in zip(felt.names, felt.values, strict=True):
@@ -93,7 +95,7 @@ class NaoqiEvents:
         return changed
 
     def _locate(self, value: Any) -> None:
-        """`[[s, us], [azimuth, elevation, confidence, energy], head's place, …]`, relative to the head."""
+        """Process `[[s, us], [azimuth, elevation, confidence, energy], head's place, …]`, relative to the head."""
         try:
             azimuth, elevation, confidence = map(float, value[1][:3])
         except (TypeError, ValueError, IndexError, KeyError):
@@ -115,6 +117,7 @@ class HealthAlerts:
         self._hot: set[str] = set()
 
     def battery(self, percentage: int, now: float) -> list[Event]:
+        """Return the event of a charge [%] at `now` [s], if any."""
         self._low = self._low and percentage < BATTERY_RECOVERED
         if self._low or percentage > BATTERY_LOW:
             return []
@@ -122,6 +125,7 @@ class HealthAlerts:
         return [Event("battery.low", {"percentage": percentage}, now)]
 
     def motors(self, temperatures: Mapping[str, float], now: float) -> list[Event]:
+        """Return an event for each motor that has become hot at `now` [s]."""
         self._hot = {joint for joint in self._hot if temperatures.get(joint, MOTOR_HOT) > MOTOR_COOLED}
         newly = [j for j, t in temperatures.items() if t >= MOTOR_HOT and j not in self._hot]
         self._hot.update(newly)

@@ -1,4 +1,4 @@
-"""A real NAO, reached through NAOqi. `qi` is imported when a robot is connected to, and not before."""
+"""A real NAO, reached through NAOqi. `qi` is imported only when a connection is made."""
 
 from lumen.errors import UsageError
 from lumen.features.naoqi.robot import NaoqiRobot
@@ -6,22 +6,24 @@ from lumen.language.stories import Visitor
 
 
 class PhysicalHall:
-    """A `Hall` in which visitors are real: whoever types speaks, and is seen only where a visual module sees them."""
+    """A `Hall` with real visitors: typed words are heard, and only a visual module sees people."""
 
     def place(self, visitor: Visitor | None) -> None:
-        """They stand wherever they stand."""
+        """Do nothing: real visitors place themselves."""
 
     def face(self) -> tuple[float, float] | None:
-        """The visual module says so, and not the hall."""
+        """Return None: only a visual module knows where a face is."""
         return None
 
     def touch(self, sensor: str, pressed: bool) -> None:
+        """Raise UsageError: a real robot is touched by hand."""
         raise UsageError(f"touch `{sensor}` of a real robot by hand")
 
     def sound(self) -> None:
-        """Whoever types is not heard."""
+        """Do nothing: typed words make no sound."""
 
     def plug(self, plugged: bool) -> None:
+        """Raise UsageError: a real robot is plugged in by hand."""
         raise UsageError("plug in a real robot by hand")
 
 

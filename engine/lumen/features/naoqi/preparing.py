@@ -1,4 +1,4 @@
-"""What is settled with NAOqi before the first command, after every connecting."""
+"""Prepares the robot after each connection, before the first command."""
 
 import logging
 import re
@@ -23,18 +23,18 @@ OPTIONAL_SERVICES = {
     "ALAutonomousLife": "make sure that no other program moves it",
     "ALSystem": "its version is unknown",
 }
-"""Services that a tour can do without, and what is missing then."""
+"""Services that a tour can do without, and what is missing without them."""
 OLDEST_NAOQI, TESTED_NAOQI = (2, 1), ((2, 1), (2, 8))
 AUTONOMOUS_LIFE_TIMEOUT = 10.0
-"""How long autonomous life may take to end [s]: it lets the robot finish what it does."""
+"""How long autonomous life may take to end [s]: it lets the robot finish its present activity."""
 
 _log = logging.getLogger(__name__)
 
 
 def prepare(session: NaoqiSession, body: Body, *, again: bool) -> None:
-    """Take the robot over: nothing else moves it, its reflexes are on, and what it did before a break has ended.
+    """Take the robot over: end autonomous life, switch on the reflexes and, after a lost connection, end old commands.
 
-    Raises RobotError where it is no robot that this body is of, or its NAOqi is too old.
+    Raises RobotError if the robot lacks joints of this body, or its NAOqi is too old.
     """
     _find(session)
     _check_version(session)
@@ -47,7 +47,7 @@ def prepare(session: NaoqiSession, body: Body, *, again: bool) -> None:
 
 
 def halt(session: NaoqiSession, joints: Sequence[str]) -> None:
-    """End what goes on, keeping balance: a walk by its last step, motions where they are, and words."""
+    """End what the robot does and keep its balance: a walk after its step, motions where they are, and speech."""
     session.post("ALMotion", "stopMove").wait(2.0)
     session.post("ALMotion", "killTasksUsingResources", list(joints)).wait(1.0)
     if session.has("ALTextToSpeech"):
@@ -79,7 +79,7 @@ def _check_version(session: NaoqiSession) -> None:
 
 
 def _check_joints(session: NaoqiSession, body: Body) -> None:
-    """Raises RobotError where the robot lacks a joint: a body without hands is another model."""
+    """Raise RobotError if the robot lacks a joint: a body without hands is another model."""
     names = list(map(str, session.ask("ALMotion", "getBodyNames", "Body")))
     for joint in body.joints:
         if joint not in names:
@@ -89,7 +89,7 @@ def _check_joints(session: NaoqiSession, body: Body) -> None:
 
 
 def _protect(session: NaoqiSession) -> None:
-    """NAOqi's reflexes on: the fall manager, the distance kept from obstacles, and stiffness that adapts."""
+    """Switch on NAOqi's reflexes: the fall manager, the distance to obstacles, and adaptive stiffness."""
     for method, *arguments in (
         ("setFallManagerEnabled", True),
         ("setExternalCollisionProtectionEnabled", "All", True),

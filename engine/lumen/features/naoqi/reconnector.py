@@ -1,4 +1,4 @@
-"""Keeps the connection: makes it again where it breaks, and reports both."""
+"""Keeps the connection: it reconnects when the connection breaks, and reports both."""
 
 import logging
 import threading
@@ -12,21 +12,24 @@ from lumen.features.naoqi.session import NaoqiSession
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 10.0
-"""How long until the first try to connect again, and at most until the next [s]: each waits twice as long."""
+"""The wait before the first attempt to reconnect, and the longest wait [s]; each is twice as long as the last."""
 
 _log = logging.getLogger(__name__)
 
 
 class ConnectionChange(NamedTuple):
-    """`robot.lost` or `robot.back`, how long the robot was away by then [s], and why."""
+    """A change of the connection."""
 
     name: str
+    """`robot.lost` or `robot.back`."""
     seconds: float
+    """How long the robot was away [s]."""
     reason: str
+    """Why it was lost."""
 
 
 class Reconnector:
-    """Opens a session and keeps it open; `take_over(again)` settles what has to be after each."""
+    """Opens a session and keeps it open; `take_over(again)` prepares the robot after each connection."""
 
     def __init__(
         self, session: NaoqiSession, take_over: Callable[[bool], None], first: float = FIRST_RETRY_DELAY
@@ -38,7 +41,7 @@ class Reconnector:
         self._thread = WatchedThread("lumen-naoqi", self._keep)
 
     def open(self) -> None:
-        """Connect for the first time. Raises RobotError where that is not possible."""
+        """Connect for the first time. Raises RobotError if that is impossible."""
         try:
             self._session.open()
             self._take_over(False)
@@ -49,7 +52,7 @@ class Reconnector:
         self._thread.start()
 
     def lose(self, reason: str) -> None:
-        """The connection broke; on whichever thread found out."""
+        """Note that the connection broke; called on any thread."""
         self._lost_at = time.monotonic()
         self._changes.append(ConnectionChange("robot.lost", 0.0, reason))
         if not self._ending.is_set():
@@ -57,10 +60,11 @@ class Reconnector:
         self._broken.set()
 
     def changes(self) -> list[ConnectionChange]:
-        """What has changed since the last call."""
+        """Return the changes since the last call."""
         return [self._changes.popleft() for _ in range(len(self._changes))]
 
     def close(self) -> None:
+        """End the attempts to reconnect and the thread."""
         self._ending.set()
         self._broken.set()
         self._thread.join(2.0)
@@ -85,7 +89,7 @@ class Reconnector:
             self._session.close()
             _log.info("the robot is still unreachable: %s", error)
             return
-        except Exception:  # a fault of ours must not end the trying
+        except Exception:  # a fault of ours must not end the attempts
             self._session.close()
             _log.exception("the robot could not be reached")
             return

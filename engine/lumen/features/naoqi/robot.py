@@ -1,4 +1,4 @@
-"""A real NAO or Pepper behind the `Robot` seam."""
+"""A real NAO or Pepper behind the `Robot` interface."""
 
 from collections.abc import Callable, Sequence
 
@@ -27,11 +27,11 @@ from lumen.robot.skill_runner import SkillRunner
 
 
 class NaoqiRobot(ExecutingRobot):
-    """The NAO, or the Pepper, at `url`, in real time: `clock` [s] stamps what it answers, notices and senses.
+    """The NAO or Pepper at `url`, in real time: `clock` returns the time of its answers, events and readings [s].
 
-    It is taken over at once: autonomous life ends, its reflexes stay on. Where the connection breaks, all commands have
-    failed, `robot.lost` is noticed, and `robot.back` once it was made again. `stage` bounds where it may walk, from
-    where it stands now. Raises RobotError where there is no robot, or none that this body is of.
+    Connecting takes the robot over: autonomous life ends, its reflexes stay on. When the connection breaks, all
+    commands fail and `robot.lost` is raised; `robot.back` follows once it is connected again. `stage` bounds where it
+    may walk, from its present place. Raises RobotError if there is no robot, or one of another kind than the body.
     """
 
     def __init__(
@@ -67,6 +67,7 @@ class NaoqiRobot(ExecutingRobot):
         }
 
     def start(self, id: str, command: RobotCommand) -> None:
+        """Begin a command; `Aim` and `Live` have no end and no answer."""
         if isinstance(command, Live):
             self._life.live(command)
             self._skills.body_language = self._life.body_language
@@ -80,6 +81,7 @@ class NaoqiRobot(ExecutingRobot):
             self._turn()
 
     def poll(self) -> Sequence[Event]:
+        """Return the events since the last call, and advance commands and life."""
         now = self._clock()
         self._feel(now)
         self._turn()
@@ -90,10 +92,11 @@ class NaoqiRobot(ExecutingRobot):
         return events
 
     def read(self, sense: Sense) -> Reading | None:
+        """Return the newest reading of a sense, None if there is none."""
         return self._senses[sense].newest
 
     def close(self) -> None:
-        """End what the robot does, let go of its senses, and end the threads; it stays as it stands."""
+        """End commands, senses and threads; the robot stays as it stands."""
         self._skill_runner.close()
         self._reconnector.close()
         for sense in self._senses.values():
@@ -113,7 +116,7 @@ class NaoqiRobot(ExecutingRobot):
         return activity
 
     def _take_over(self, again: bool) -> None:
-        """Settle with NAOqi what has to be; on whichever thread connects."""
+        """Prepare the robot after connecting; called on the connecting thread."""
         prepare(self._session, self.body, again=again)
         self._naoqi_events.listen(self._session)
         self._sensors.begin()
@@ -121,7 +124,7 @@ class NaoqiRobot(ExecutingRobot):
             self._area.meet(self._session.ask("ALMotion", "getRobotPosition", True))
 
     def _feel(self, now: float) -> None:
-        """Take note of what has happened since the last tick."""
+        """Process changes of the connection, touches, falls, sounds, battery and heat since the last tick."""
         for name, seconds, reason in self._reconnector.changes():
             if name == "robot.lost":
                 self._executor.fail(f"the connection to the robot is lost: {reason}")
@@ -145,7 +148,7 @@ class NaoqiRobot(ExecutingRobot):
         self._events += self._alerts.motors(self._sensors.heat, now)
 
     def _fall(self, name: str, now: float) -> None:
-        """Its commands end as the fall begins; `fallen` is raised once it is over."""
+        """End the commands when a fall begins; raise `fallen` once it is over."""
         self._skills.fallen = True
         self._executor.fail("the robot fell", fallen=True)
         if name == FALLEN:
@@ -153,7 +156,7 @@ class NaoqiRobot(ExecutingRobot):
             self._events.append(Event("fallen", {}, now))
 
     def _turn(self) -> None:
-        """Send the newest aim, for the joints that nobody owns, unless NAOqi is still busy with the last."""
+        """Send the newest aim of joints that no command owns, unless NAOqi is still busy with the last."""
         aim = self._aim
         if aim is None or not self._aimed.done or self._skills.fallen:
             return
@@ -164,7 +167,7 @@ class NaoqiRobot(ExecutingRobot):
             self._aimed = self._session.post("ALMotion", "setAngles", list(inside), list(inside.values()), aim.speed)
 
     def _live(self, now: float) -> None:
-        """Move a little what nothing else moves."""
+        """Add small lifelike movements to joints that nothing else moves."""
         battery = self._senses[Sense.BATTERY].newest
         percentage = battery.percentage if isinstance(battery, Battery) else 100
         if self._session.ready and not self._skills.fallen:

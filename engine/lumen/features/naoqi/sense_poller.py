@@ -1,4 +1,4 @@
-"""The five senses, each acquired by a thread of its own while commands execute."""
+"""The five senses, each read by a thread of its own while commands run."""
 
 import logging
 import threading
@@ -10,15 +10,15 @@ from lumen.ports import Reading
 from lumen.upkeep.threads import WatchedThread
 
 SENSE_RETRY_DELAY = 1.0
-"""How long a sense that failed is left alone [s]."""
+"""The pause after a failed reading [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class SensePoller:
-    """Asks for one sense over and over; `newest` is what came of it, None where the robot can't give it now.
+    """Reads one sense repeatedly; `newest` is the last reading, None if it failed.
 
-    Trouble costs that sense alone: it is logged once for each reason, and tried again every second.
+    A failure affects only that sense: it is logged once for each reason, and the sense is read again every second.
     """
 
     def __init__(self, name: str, session: NaoqiSession, acquire: Callable[[], Reading], period: float) -> None:
@@ -35,14 +35,15 @@ class SensePoller:
         self._thread.start()
 
     def fresh(self, timeout: float = 5.0) -> Reading | None:
-        """A reading that is acquired from now on; the newest, where none comes within `timeout` [s]."""
+        """Return a reading that begins after this call, or the newest if none comes within `timeout` [s]."""
         with self._changed:
-            self._wanted = wanted = self._rounds + 1 + self._busy  # the round that goes on began before
+            self._wanted = wanted = self._rounds + 1 + self._busy  # a round in progress began earlier
             self._hurry.set()
             self._changed.wait_for(lambda: self._rounds >= wanted, timeout)
         return self.newest
 
     def close(self) -> None:
+        """End the thread."""
         self._ending.set()
         self._hurry.set()
         self._thread.join(1.0)
@@ -60,7 +61,7 @@ class SensePoller:
             self._hurry.wait(pause)
 
     def _round(self) -> float:
-        """Acquire once; how long to wait until the next time [s]."""
+        """Read once; return the wait until the next reading [s]."""
         if not self._session.ready:
             self.newest = None
             return self._period
@@ -71,7 +72,7 @@ class SensePoller:
             if self._session.ready and str(error) != CONNECTION_LOST and not self._ending.is_set():
                 self._tell(str(error))
             return SENSE_RETRY_DELAY
-        except Exception as error:  # what the robot said is not what we understand: the next reading may be
+        except Exception as error:  # an answer of unexpected form: the next one may be valid
             self.newest = None
             _log.debug("a reading of the sense `%s` failed", self.name, exc_info=error)
             self._tell(repr(error))

@@ -1,4 +1,4 @@
-"""How each sense is read: ALMemory's keys, and the camera."""
+"""Readings of the senses: ALMemory's keys, and the camera."""
 
 import logging
 from collections import deque
@@ -21,18 +21,18 @@ TOP_CAMERA, RGB_COLOUR_SPACE = 0, 11
 RESOLUTIONS = {size: number for number, size in enumerate(SIZES)}
 DEFAULT_IMAGE_SIZE = Size(320, 240)
 CAMERA_RATE = 30
-"""Images a second: the route says how many of them are fetched."""
+"""The camera's images per second; the route's rate decides how many are fetched."""
 CLOCK_OFFSET_FRAMES = 100
-"""Of how many images the fastest decides the offset of the robot's clock to ours."""
+"""The number of images of which the fastest gives the offset between the robot's clock and ours."""
 
 _log = logging.getLogger(__name__)
 
 
 class NaoqiSensors:
-    """Reads a robot's senses; every method waits for NAOqi, and raises RobotError where it can't be read.
+    """Reads a robot's senses; its methods wait for NAOqi, and raise RobotError if a sense can't be read.
 
-    `heat` is how hot each motor was when the joints were read last [degrees Celsius]. `place` makes of what
-    `ALMotion.getRobotPosition` says where the robot is on its stage, `life` says how far its life moves joints.
+    `heat` are the motors' temperatures at the last reading of the joints [degrees Celsius]. `place` converts the result
+    of `ALMotion.getRobotPosition` to the place on the stage; `life` returns the offsets of lifelike movements.
     """
 
     def __init__(
@@ -61,7 +61,7 @@ class NaoqiSensors:
         self._behind: deque[float] = deque(maxlen=CLOCK_OFFSET_FRAMES)
 
     def readers(self) -> Mapping[str, tuple[Callable[[], Reading], float]]:
-        """Return a function for each sense, and how often to call it [s]: as often as the shipped routes publish it."""
+        """Return a function for each sense, and its period [s]: as often as the shipped routes publish the sense."""
         return {
             IMAGE: (self.image, 0.066),
             JOINT: (self.joints, 0.05),
@@ -71,7 +71,7 @@ class NaoqiSensors:
         }
 
     def begin(self) -> None:
-        """Forget what another session was about; what was left over of our own cameras is let go."""
+        """Forget the state of an earlier session, and end its subscriptions to the camera."""
         self._handle, self._numb = "", False
         self._behind.clear()
         if self._session.has("ALVideoDevice"):
@@ -82,12 +82,13 @@ class NaoqiSensors:
             self._session.post("ALSonar", "subscribe", SUBSCRIBER_NAME)
 
     def end(self) -> None:
-        """Let go of camera and sonars."""
+        """End the subscriptions to camera and sonars."""
         self._let_go(0.5)
         if self._session.has("ALSonar"):
             self._session.post("ALSonar", "unsubscribe", SUBSCRIBER_NAME).wait(0.5)
 
     def joints(self) -> Joints:
+        """Return the joints' angles and stiffness, with the robot's other internal senses."""
         now = self._clock()
         angles = self._numbers(self._session.ask("ALMotion", "getAngles", self._names, True), "getAngles")
         stiffness = self._numbers(self._session.ask("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
@@ -95,6 +96,7 @@ class NaoqiSensors:
         return Joints(now, tuple(self._names), angles, stiffness, *felt)
 
     def sonar(self) -> Sonar:
+        """Return the distances left and right [m]."""
         if not self._session.has("ALSonar"):
             raise SenseError("this robot has no ALSonar")
         now = self._clock()
@@ -104,12 +106,14 @@ class NaoqiSensors:
         return Sonar(now, float(left), float(right))
 
     def tactile(self) -> Tactile:
+        """Return which tactile sensors are pressed."""
         now = self._clock()
         found = iter(self._memory([key for keys in self._touches.values() for key in keys]))
         pressed = {name: sum(bool(next(found)) for _ in keys) > 0 for name, keys in self._touches.items()}
         return Tactile(now, self._body.tactile, tuple(int(pressed.get(name, False)) for name in self._body.tactile))
 
     def battery(self) -> Battery:
+        """Return the battery's charge, and whether it is plugged in and charging."""
         now = self._clock()
         charge, plugged, charging = self._memory([CHARGE, PLUGGED, CHARGING])
         if not isinstance(charge, int | float):
@@ -118,7 +122,7 @@ class NaoqiSensors:
         return Battery(now, percentage, plugged=bool(plugged) or bool(charging), charging=bool(charging))
 
     def image(self) -> Image:
-        """The newest frame of the top camera, at its time on our clock."""
+        """Return the newest image of the top camera, with its time on our clock."""
         if self._wanted != self._size:
             self._let_go()
             self._size = self._wanted
@@ -142,7 +146,9 @@ class NaoqiSensors:
         return Image(stamp + min(self._behind), shaped)
 
     def _feelings(self) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
-        """Motors' temperatures, inertial unit and soles, read at once; what this robot does not feel is left out."""
+        """Return the motors' temperatures, the inertial unit and the forces under the soles; those it lacks are left
+        out.
+        """
         try:
             found, motors = self._memory(self._felt), len(self._names)
         except RobotError as error:
@@ -159,7 +165,7 @@ class NaoqiSensors:
         return whole, _known(zip(INERTIAL, inertial, strict=True)), _known(zip(self._force, soles, strict=True))
 
     def _whereabouts(self) -> Whereabouts | None:
-        """Where the robot is by its odometry; None where it does not say."""
+        """Return the robot's place by its odometry; None if that is unavailable."""
         try:
             found = self._session.ask("ALMotion", "getRobotPosition", True)
             return self._place([float(found[i]) for i in range(3)])
@@ -167,7 +173,7 @@ class NaoqiSensors:
             return None
 
     def _let_go(self, patience: float = 0.0) -> None:
-        """Unsubscribe from the camera, and wait so long [s] for that."""
+        """Unsubscribe from the camera, and wait at most `patience` [s] for the answer."""
         if self._handle:
             self._session.post("ALVideoDevice", "unsubscribe", self._handle).wait(patience)
         self._handle = ""
@@ -182,7 +188,7 @@ class NaoqiSensors:
         return self._handle
 
     def _pixels(self, found: Any) -> tuple[bytes, float]:
-        """The bytes of a frame, and its time on the robot's clock [s]."""
+        """Return the bytes of a frame, and its time on the robot's clock [s]."""
         if not isinstance(found, Sequence) or len(found) < 7:
             raise SenseError("the camera gave no image: another program has unsubscribed it, or there is no camera")
         width, height, layers, _, seconds, microseconds, pixels = found[:7]
@@ -205,5 +211,5 @@ class NaoqiSensors:
 
 
 def _known(found: Iterable[tuple[str, Any]]) -> dict[str, float]:
-    """What is a number of what ALMemory has."""
+    """Return the values that are numbers."""
     return {name: round(float(value), 4) for name, value in found if isinstance(value, int | float)}

@@ -1,4 +1,4 @@
-"""The connection to NAOqi: calls that nobody waits for, and calls that a thread of its own may wait for."""
+"""The connection to NAOqi: calls that return at once, and calls that a separate thread may wait for."""
 
 import re
 import threading
@@ -10,7 +10,7 @@ from lumen.upkeep.threads import WatchedThread
 
 NAOQI_PORT = 9559
 CALL_TIMEOUT = 2.0
-"""How long a call that somebody waits for may take [s]: a robot that is silent for longer is taken for lost."""
+"""How long a waiting call may take [s]; a robot that is silent for longer counts as lost."""
 CONNECT_TIMEOUT = 5.0
 MAX_ERROR_LENGTH = 200
 
@@ -21,13 +21,15 @@ QI_MISSING = (
 
 CONNECTION_LOST = "the connection to the robot is lost"
 _QI_CONNECTION_LOST = ("Service removed", "Socket is not connected", "Socket disconnected", "Session closed")
-"""How qi says so."""
+"""qi's messages for a lost connection."""
 
 _SCHEME = re.compile(r"^[a-z]+://")
 
 
 def qi() -> Any:
-    """The package `qi`, which keeps its own log to itself. Raises RobotError, saying how to get it."""
+    """Return the package `qi`, with its own logging switched off. Raises RobotError with instructions if it is
+    missing.
+    """
     try:
         import qi as package
     except ImportError as error:
@@ -37,7 +39,7 @@ def qi() -> Any:
 
 
 def address(url: str) -> str:
-    """The whole address: `nao.local` is `tcp://nao.local:9559`. Raises RobotError for what is none."""
+    """Return the complete address: `nao.local` becomes `tcp://nao.local:9559`. Raises RobotError if it is invalid."""
     text = url.strip()
     whole = text if _SCHEME.match(text) else f"tcp://{text}"
     host, colon, port = whole.partition("://")[2].rpartition(":")
@@ -49,7 +51,7 @@ def address(url: str) -> str:
 
 
 def plain(error: object) -> str:
-    """NAOqi's words about what went wrong, in one line and without where in its code that was."""
+    """Return NAOqi's message about an error in one line, without its place in NAOqi's code."""
     text = " ".join(str(error).partition("\n\nAt:")[0].split())
     if text in _QI_CONNECTION_LOST:
         return CONNECTION_LOST
@@ -57,32 +59,34 @@ def plain(error: object) -> str:
 
 
 def _error_of(reason: str) -> RobotError:
-    """The error of a call that ended with this reason."""
+    """Return the error of a call that ended with this reason."""
     return RobotLostError(reason) if reason == CONNECTION_LOST else RobotFailedError(reason)
 
 
 class NaoqiCall:
-    """A call under way; `result` raises RobotError where NAOqi raised, or can't be reached any more."""
+    """A call in progress; `result` raises RobotError if NAOqi raised or can't be reached any more."""
 
     def __init__(self, future: Any = None, value: Any = None, error: str = "") -> None:
         self._future, self._value, self._error = future, value, error
 
     @property
     def done(self) -> bool:
+        """Whether the call has ended."""
         return self._future is None or bool(self._future.isFinished())
 
     @property
     def failed(self) -> bool:
-        """Whether it is over, and NAOqi raised."""
+        """Whether the call has ended with an error."""
         return bool(self._error) or (self._future is not None and self.done and bool(self._future.hasError()))
 
     def wait(self, seconds: float) -> bool:
-        """Whether it was done within so many seconds."""
+        """Wait at most so many seconds; return whether the call has ended."""
         if self._future is not None:
             self._future.wait(int(1000 * seconds))
         return self.done
 
     def result(self) -> Any:
+        """Return the call's value. Raises RobotError if it failed."""
         if self._error:
             raise _error_of(self._error)
         if self._future is None:
@@ -93,10 +97,10 @@ class NaoqiCall:
 
 
 class NaoqiSession:
-    """A session with the NAOqi at `url`, to be opened again after it was lost.
+    """A session with the NAOqi at `url`, which can be opened again after it was lost.
 
-    `up` is whether it stands, `ready` whether all is settled with the robot as well; `lost` is called once for each
-    time that it breaks, on any thread, with the reason. A robot that is silent for longer than `patience` [s] is lost.
+    `up` is whether it is connected, `ready` whether the robot is prepared as well. `lost` is called with the reason
+    each time that it breaks, on any thread. A robot that is silent for longer than `patience` [s] is lost.
     """
 
     def __init__(self, url: str, lost: Callable[[str], None] = lambda _: None, patience: float = CALL_TIMEOUT) -> None:
@@ -111,10 +115,11 @@ class NaoqiSession:
 
     @property
     def up(self) -> bool:
+        """Whether the session is connected."""
         return self._session is not None
 
     def open(self) -> None:
-        """Connect. Raises RobotError where nobody answers."""
+        """Connect. Raises RobotError if no robot answers."""
         session = self._qi.Session()
         future = session.connect(self.url, _async=True)
         future.wait(int(1000 * max(CONNECT_TIMEOUT, self._patience)))
@@ -131,7 +136,7 @@ class NaoqiSession:
         self._session = session
 
     def find(self, names: Iterable[str]) -> list[str]:
-        """Reach these services; those that the robot lacks."""
+        """Find these services; return those that the robot lacks."""
         missing = []
         for name in names:
             future = self._session.service(name, _async=True)
@@ -143,11 +148,11 @@ class NaoqiSession:
         return missing
 
     def has(self, service: str) -> bool:
-        """Whether the robot has that service, and can be reached."""
+        """Return whether the robot has that service and is connected."""
         return self.up and service in self._services
 
     def post(self, service: str, method: str, *arguments: Any) -> NaoqiCall:
-        """Call, without waiting; trouble of any kind is in the answer."""
+        """Call a method without waiting; errors are part of the result."""
         proxy = self._services.get(service)
         if not self.up:
             return NaoqiCall(error=CONNECTION_LOST)
@@ -160,7 +165,7 @@ class NaoqiSession:
         return self._called(future)
 
     def serve(self, name: str, make: Callable[[Any], object]) -> NaoqiCall:
-        """Be a service of that name to NAOqi, once in each session; `make` gets the package `qi`."""
+        """Register a service of that name with NAOqi, once in each session; `make` receives the package `qi`."""
         if not self.up:
             return NaoqiCall(error=CONNECTION_LOST)
         if name not in self._serving or self._serving[name].failed:
@@ -169,7 +174,8 @@ class NaoqiSession:
         return self._serving[name]
 
     def ask(self, service: str, method: str, *arguments: Any, patience: float = 0.0) -> Any:
-        """What NAOqi answers; for threads that may wait, `patience` [s] where it takes longer than others.
+        """Call a method and return NAOqi's answer; only for threads that may wait, at most `patience` [s] if that is
+        longer.
 
         Raises RobotError; a silent robot counts as lost.
         """
@@ -181,9 +187,9 @@ class NaoqiSession:
         return call.result()
 
     def subscribe(self, event: str, heard: Callable[[Any], None]) -> Any:
-        """Have `heard` called, on a thread of qi's, for each time that ALMemory raises that event.
+        """Call `heard`, on a thread of qi's, each time that ALMemory raises that event.
 
-        It ends when what is returned is let go of. Raises RobotError.
+        It ends when the returned object is released. Raises RobotError.
         """
         subscriber = self.ask("ALMemory", "subscriber", event)
         try:
@@ -193,7 +199,7 @@ class NaoqiSession:
         return subscriber
 
     def close(self) -> None:
-        """Let go; `lost` hears nothing of it."""
+        """Disconnect, without a call of `lost`."""
         session, self._session, self.ready = self._session, None, False
         if session is not None:
             session.close()
@@ -213,5 +219,5 @@ class NaoqiSession:
             if session is None or session is not self._session:
                 return
             self._session, self.ready = None, False
-        WatchedThread("lumen-naoqi-closing", session.close).start()  # it may wait for what does not answer
+        WatchedThread("lumen-naoqi-closing", session.close).start()  # it may wait for a robot that does not answer
         self._lost(reason)

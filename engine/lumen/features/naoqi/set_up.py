@@ -1,4 +1,4 @@
-"""A real robot with NAOqi."""
+"""Sets up a real robot with NAOqi."""
 
 from collections.abc import Mapping
 
@@ -11,7 +11,7 @@ NAO = "nao.local"
 
 
 def set_up(request: RobotRequest) -> Setup:
-    """Return the robot at the address that the option `url` names. Raises UsageError for a story."""
+    """Return the robot at the address in the option `url`. Raises UsageError for a story or another speed than 1."""
     if request.speed != "1":
         raise UsageError("a real robot runs in real time: leave out --speed")
     if request.story:
@@ -22,5 +22,5 @@ def set_up(request: RobotRequest) -> Setup:
 
 
 def set_up_house(requests: Mapping[str, RobotRequest]) -> dict[str, Setup]:
-    """Raise UsageError: one process has one connection."""
+    """Raise UsageError: a process has only one connection."""
     raise UsageError("each real robot needs its own process: pass `--robot-name NAME` and `--robot-url URL`")

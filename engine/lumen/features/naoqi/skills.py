@@ -1,4 +1,4 @@
-"""What a real NAO or Pepper can do: how each command begins, and how it ends early."""
+"""The abilities of a real NAO or Pepper: how each command begins, and how it ends early."""
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
@@ -31,28 +31,28 @@ LANGUAGE_NAMES = {
 
 
 def words(text: str) -> str:
-    r"""The text without anything that the voice would take for an order to itself, such as `\vol=100\` or `^run(…)`.
+    r"""Return the text without what the voice would interpret as commands, such as `\vol=100\` or `^run(…)`.
 
-    Visitors' names are in what is said, and `\…\` would change volume, speed or language from then on; `^…(…)` would
-    have ALAnimatedSpeech start behaviours.
+    Spoken texts contain visitors' names; `\…\` would change volume, speed or language from then on, and `^…(…)` would
+    make ALAnimatedSpeech start behaviours.
     """
     printable = "".join(sign if sign.isprintable() and sign not in "\\^" else " " for sign in text)
     return " ".join(printable.split())
 
 
 def language_of(code: str, spoken: Sequence[str]) -> str:
-    """NAOqi's name of the language, empty where the robot has no voice for it; `spoken` are those that it has."""
+    """Return NAOqi's name of the language, empty if it is not among the robot's languages `spoken`."""
     name = LANGUAGE_NAMES.get(code.partition("-")[0].lower(), code)
     return name if name in spoken else ""
 
 
 LOOK_TOLERANCE = 0.03
-"""A head that is nearer than this to where it should look is there [rad]."""
+"""A head that is nearer than this to its goal has reached it [rad]."""
 LOOK_GRACE = 1.0
-"""How much longer than it needs a look may take [s]."""
+"""How much longer than necessary a look may take [s]."""
 WAKE_SPEED = 0.5
 SOUND_FOLDER = "/home/nao/lumen"
-"""Where the exhibition's sounds are on the robot: NAOqi plays files of its own disk."""
+"""The folder of the exhibition's sounds on the robot: NAOqi plays only files on its own disk."""
 
 _log = logging.getLogger(__name__)
 
@@ -73,7 +73,7 @@ class NaoqiSkills:
         self.body_language = False
 
     def begin(self, command: NativeCommand, now: float) -> CallSequence:
-        """The command under way. Raises RobotError where the robot can't."""
+        """Begin a command. Raises RobotError if the robot can't."""
         match command:
             case Say():
                 return CallSequence(self._say(command), lambda: [self._post("ALTextToSpeech", "stopAll")])
@@ -131,7 +131,7 @@ class NaoqiSkills:
         yield self._post("ALAudioPlayer", "playFile", f"{SOUND_FOLDER}/{file}")
 
     def _leds(self, colours: Mapping[str, str], seconds: float) -> CallSequence:
-        """A fade can't be called back: where it is cancelled, another one of no time takes its place."""
+        """Begin a fade; a cancelled one is replaced by an immediate one, because NAOqi can't stop it."""
         return CallSequence(
             self._fade(colours, seconds),
             lambda: [self._post("ALLeds", "fadeRGB", *fade) for fade in fades(colours, self._body)],
@@ -156,7 +156,7 @@ class NaoqiSkills:
         if not (yield self._post("ALMotion", "robotIsWakeUp")):
             if not self.fallen:
                 raise RobotRefusedError("the motors are off: `wake` first")
-            yield self._post("ALMotion", "setStiffnesses", "Body", 1.0)  # the fall manager had let go of the motors
+            yield self._post("ALMotion", "setStiffnesses", "Body", 1.0)  # the fall manager has switched the motors off
         if not (yield self._post("ALRobotPosture", "goToPosture", name, float(speed))):
             raise RobotFailedError(f"the robot could not reach the posture {name}")
         self.fallen = False

@@ -1,4 +1,4 @@
-"""Where the robot may go: its stage, by its own odometry, and what must not be in its way."""
+"""The area in which the robot may walk: its stage, by its own odometry, and obstacles."""
 
 from collections.abc import Callable, Mapping, Sequence
 from math import cos, hypot, sin
@@ -11,21 +11,21 @@ from lumen.ports import Sonar, Whereabouts
 from lumen.robot.hazards import danger
 
 FALL_DRIFT = 0.6
-"""How far the robot may have slid while it fell and got up again [m], as the simulated one does."""
+"""How far the robot may have slid in a fall and while getting up [m], the same as for the simulated robot."""
 MOST_BETWEEN_LOOKS = 0.5
-"""A robot that has come farther than this between two looks did not walk there: its odometry began anew [m]."""
+"""A larger distance between two readings of the position means that the odometry was reset [m]."""
 MAX_STAGE_DRIFT = 0.03
-"""By how much the way to a place may leave the stage [m]."""
+"""How far a walk to a place may leave the stage [m]."""
 
 GroundPose = Sequence[float]
-"""x, y [m] and theta [rad] as `ALMotion.getRobotPosition` has them."""
+"""x, y [m] and theta [rad], as from `ALMotion.getRobotPosition`."""
 
 
 class WalkingArea:
-    """Knows where the robot was when it was met first, which is the origin of the stage.
+    """Keeps the robot's first position, which is the origin of the stage.
 
-    `pressed` says which sensors are touched, `echo` what the sonars hear now, None where they are silent;
-    `hardware` how far the robot reaches.
+    `pressed` has the state of the tactile sensors; `echo` returns the sonars' reading, None without one; `hardware` has
+    the robot's reach.
     """
 
     def __init__(
@@ -41,11 +41,11 @@ class WalkingArea:
         self._reckoning = DeadReckoning()
 
     def meet(self, place: GroundPose) -> None:
-        """The robot stands there; the first time counts."""
+        """Note the robot's position; the first one is the origin."""
         self._origin = self._origin or place
 
     def whereabouts(self, place: GroundPose) -> Whereabouts:
-        """Where the robot is on the stage, which stands there now; it is asked often, and adds up the doubt."""
+        """Return the robot's place on the stage from NAOqi's; call it often, since it also sums up the uncertainty."""
         self.meet(place)
         assert self._origin is not None
         x, y = self._on_stage(place)
@@ -57,23 +57,23 @@ class WalkingArea:
         return self._reckoning.whereabouts
 
     def fell(self) -> None:
-        """The robot has fallen: nothing measures how far it slides until it stands again."""
+        """Note a fall: nothing measures how far the robot slides until it stands again."""
         self._reckoning.slid += FALL_DRIFT
 
     def danger(self) -> str:
-        """Why the robot must not walk now; empty where nothing is in the way."""
+        """Return why the robot must not walk now; empty if nothing is in the way."""
         echo = self._echo()
         return danger(self._pressed, (d for d in (echo.left, echo.right) if d > 0.0) if echo else ())
 
     def check_way(self, here: GroundPose, way: GroundPose) -> None:
-        """Raises RobotError where a walk by `way` from `here` would leave the stage, farther than the robot has."""
+        """Raise RobotError if a walk by `way` from `here` would leave the stage, farther than the robot already has."""
         x, y, theta = here
         ahead = x + way[0] * cos(theta) - way[1] * sin(theta), y + way[0] * sin(theta) + way[1] * cos(theta)
         if reason := self.outside((*ahead, theta), here):
             raise RobotRefusedError(f"{reason}: the robot did not start walking")
 
     def outside(self, there: GroundPose, before: GroundPose, drift: float = 0.0) -> str:
-        """Why it must not be `there`; empty where the stage has room, or it is no farther out than it was `before`."""
+        """Return why the robot must not be `there`; empty if it stays on the stage, or no farther out than `before`."""
         if self.stage is None or self._origin is None:
             return ""
         reached, stood = self._on_stage(there), self._on_stage(before)

@@ -1,4 +1,4 @@
-"""Walks: NAOqi's `moveTo` and `move`, watched over by our own eyes on stage, sonars and bumpers."""
+"""Walks: NAOqi's `moveTo` and `move`, while Lumen watches the stage, the sonars and the bumpers."""
 
 from collections.abc import Callable
 from math import hypot, isfinite
@@ -11,24 +11,24 @@ from lumen.features.naoqi.walking_area import MAX_STAGE_DRIFT, GroundPose, Walki
 from lumen.language.commands import Move, Walk
 
 MAX_WALK_DISTANCE = 10.0
-"""A walk farther than this [m] is a mistake."""
+"""The longest walk that is accepted [m]."""
 ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.1, 0.2
-"""A walk that ends farther than this from where it should [m], [rad] has failed, where NAOqi does not say itself."""
+"""A walk that ends farther than this from its goal [m], [rad] has failed, if NAOqi does not report the result."""
 POSITION_CHECK_PERIOD = 0.2
-"""Time between two looks at where the robot is [s]."""
+"""The time between two checks of the robot's position [s]."""
 SITTING_FAMILIES = ("Sitting", "SittingOnChair", "Belly", "Back", "Left", "Right", "UpsideDown", "Kneeling", "Lifted")
-"""Families of postures that nobody walks in; those that begin with `Lying` are others."""
+"""Families of postures from which the robot can't walk, besides those that begin with `Lying`."""
 
 PostCall = Callable[..., NaoqiCall]
 
 
 def grounded(family: object) -> bool:
-    """Whether NAOqi says that the robot is not on its feet, or its wheels."""
+    """Return whether the posture family means that the robot is not on its feet or wheels."""
     return str(family) in SITTING_FAMILIES or str(family).startswith("Lying")
 
 
 class WalkMonitor:
-    """Looks around while the robot walks, and stops it; `reason` says why."""
+    """Checks for hazards while the robot walks, and stops it; `reason` is why."""
 
     def __init__(self, post: PostCall, area: WalkingArea, here: GroundPose) -> None:
         self.reason = ""
@@ -44,7 +44,7 @@ class WalkMonitor:
             self._post("ALMotion", "stopMove")
 
     def _astray(self, now: float) -> str:
-        """Why it must not go on from where it is."""
+        """Return why it must not continue from where it is, empty if it may."""
         if self._where is None:
             if now >= self._look:
                 self._where, self._look = self._post("ALMotion", "getRobotPosition", True), now + POSITION_CHECK_PERIOD
@@ -65,7 +65,7 @@ class NaoqiWalks:
         self._post, self._area = post, area
 
     def begin(self, command: Walk | Move) -> CallSequence:
-        """The walk under way. Raises RobotError, and moves nothing, for one that must not begin."""
+        """Begin a walk. Raises RobotError, and moves nothing, if it must not begin."""
         numbers = (command.x, command.y, command.theta) if isinstance(command, Walk) else (
             command.vx, command.vy, command.vtheta)  # fmt: skip
         if not all(map(isfinite, numbers)):
@@ -78,7 +78,7 @@ class NaoqiWalks:
         return CallSequence(doing, lambda: [self._post("ALMotion", "stopMove")])
 
     def _standing(self) -> CallSteps:
-        """Where the robot stands; raises RobotError where it does not."""
+        """Return the robot's position. Raises RobotError if it does not stand or its motors are off."""
         family = yield self._post("ALRobotPosture", "getPostureFamily")
         if grounded(family):
             raise RobotRefusedError(f"the robot is {family}: send it to Stand first")
@@ -101,7 +101,7 @@ class NaoqiWalks:
             raise RobotFailedError("the robot stopped before it arrived: something is in its way")
 
     def _arrived(self, here: GroundPose, way: tuple[float, float, float]) -> CallSteps:
-        """Whether it is where it should be, by its odometry: `moveTo` of NAOqi 2.1 does not say."""
+        """Return whether the robot is at its goal by its odometry: `moveTo` of NAOqi 2.1 does not report it."""
         there = yield self._post("ALMotion", "getRobotPosition", True)
         went, turned = hypot(there[0] - here[0], there[1] - here[1]), there[2] - here[2]
         return abs(went - hypot(*way[:2])) <= ARRIVAL_TOLERANCE and abs(turned - way[2]) <= HEADING_TOLERANCE

@@ -1,1 +1,1 @@
-"""A fleet, pure: how a rollout goes on, what a robot takes, what they tell each other."""
+"""The logic of a fleet, without I/O: rollouts, the orders that robots accept, and their reports."""

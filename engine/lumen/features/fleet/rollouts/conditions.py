@@ -1,4 +1,4 @@
-"""`abort-if`: an expression over measures, in which `before` is the same measure with the files before."""
+"""`abort-if`: an expression over measures, in which `before` is the same measure for the previous files."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -13,10 +13,12 @@ COMPARISONS = frozenset(("<", "<=", ">", ">=", "==", "!="))
 
 
 class ConditionFault(NamedTuple):
-    """What is wrong with a condition, at this character from 0."""
+    """An error in a condition."""
 
     offset: int
+    """The index of its first character."""
     length: int
+    """The number of its characters."""
     message: str
     hint: str
 
@@ -27,7 +29,7 @@ class _Replacement(NamedTuple):
 
 
 def condition_faults(source: str, measures: Mapping[str, object]) -> list[ConditionFault]:
-    """Everything wrong with names in a condition, or its first fault of syntax; empty where it can be compiled."""
+    """Return all errors of names in a condition, or its first syntax error; empty if it can be compiled."""
     try:
         tree = parse_expression(source)
     except ExpressionError as error:
@@ -43,7 +45,7 @@ def condition_faults(source: str, measures: Mapping[str, object]) -> list[Condit
 
 
 def meant(source: str, measures: Mapping[str, object]) -> str:
-    """The condition as an expression about `context.now` and `context.before`, which hold measures by name.
+    """Return the condition as an expression about `context.now` and `context.before`, which hold measures by name.
 
     `errors > 2 * before` becomes `context.now.errors > 2 * context.before.errors`. Raises ExpressionError.
     """
@@ -57,7 +59,7 @@ def meant(source: str, measures: Mapping[str, object]) -> str:
 def holds(
     source: str, measures: Mapping[str, object], now: Mapping[str, float], before: Mapping[str, float]
 ) -> bool | None:
-    """Whether a condition holds; None where that hangs on a measure that is not known (absent in `now`, `before`)."""
+    """Return whether a condition holds; None if it depends on an unknown measure (absent in `now` or `before`)."""
     guard = compile_guard(meant(source, measures))
     try:
         return bool(guard(Scope(context={"now": now, BEFORE: before})))
@@ -68,7 +70,7 @@ def holds(
 def _replacements(
     node: ExpressionNode, measures: Mapping[str, object], around: frozenset[str]
 ) -> Iterator[_Replacement | ConditionFault]:
-    """What each name stands for; `around` are the measures that the comparison around it names."""
+    """Yield the replacement of each name; `around` are the measures in the comparison that contains it."""
     match node:
         case Identifier(name=name):
             yield _named(node, name, measures, around)

@@ -1,4 +1,4 @@
-"""Measures of several robots together, with the files that they have and with those before."""
+"""Measures of several robots together."""
 
 from collections.abc import Iterable, Mapping
 
@@ -7,7 +7,7 @@ from lumen.features.fleet.settings import FleetMeasure
 
 
 def rates(counts: Iterable[Mapping[str, float]], measures: Mapping[str, FleetMeasure]) -> dict[str, float]:
-    """Each measure for an hour of a robot, or for each time that another has counted; absent where nothing is known."""
+    """Return each measure per hour of a robot, or per count of another measure; unknown ones are absent."""
     rows = list(counts)
     found = {}
     for name, measure in measures.items():

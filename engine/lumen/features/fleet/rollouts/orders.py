@@ -1,4 +1,4 @@
-"""What a centre wants its houses to run, and which of that a robot heeds."""
+"""A centre's orders to its houses, and which of them a robot accepts."""
 
 import json
 from collections.abc import Mapping
@@ -6,32 +6,33 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 NOT = "!"
-"""`!HASH` wants anything but that bundle: what the robot ran before it."""
+"""The prefix in `!HASH`, which wants any bundle but that: the one that the robot ran before it."""
 
 
 @dataclass(frozen=True, slots=True)
 class DesiredState:
-    """What each robot of a house is to run, by its name: a hash, or `!HASH`.
-
-    A `centre` counts its orders by `version`. Whoever takes over from another centre begins a higher `term`. `trying`
-    is a bundle that each robot is to try and not to take, empty where there is none.
-    """
+    """An order: what each robot of a house should run."""
 
     centre: str
+    """The centre's id."""
     term: int
+    """Grows when a centre takes over from another."""
     version: int
+    """Counts the centre's orders."""
     house: str
     robots: Mapping[str, str] = field(default_factory=dict)
+    """A hash, or `!HASH`, by the robot's name."""
     trying: str = ""
+    """A bundle that each robot should try without switching to it, empty for none."""
 
     def text(self) -> str:
-        """As JSON text, which is what is signed."""
+        """Return the order as JSON text, which is what is signed."""
         data = {name: getattr(self, name) for name in self.__slots__}
         return json.dumps(data, sort_keys=True, separators=(",", ":"))
 
 
 def desired_from(text: str) -> DesiredState | None:
-    """The order that a text is, None for what is none."""
+    """Return the order in a text, None if it is invalid."""
     try:
         data = json.loads(text)
     except (ValueError, RecursionError):
@@ -47,25 +48,25 @@ def desired_from(text: str) -> DesiredState | None:
 
 @dataclass(frozen=True, slots=True)
 class FollowedOrder:
-    """The last order that a robot heeded; `wanted` is what it is to run, empty where it may run what it does.
-
-    `trying` is the bundle that it is to try.
-    """
+    """The last order that a robot accepted."""
 
     centre: str = ""
     term: int = 0
     version: int = 0
     wanted: str = ""
+    """The bundle that it should run, empty if it may keep its own."""
     trying: str = ""
+    """The bundle that it should try."""
 
     def to_json(self) -> dict[str, Any]:
+        """Return the order as JSON data."""
         return {name: getattr(self, name) for name in self.__slots__}
 
 
 def heed(followed: FollowedOrder, desired: DesiredState, robot: str) -> tuple[FollowedOrder, str]:
-    """What a robot follows once it has heard an order, and why it does not heed this one: empty where it does.
+    """Return the order that a robot follows after it received `desired`, and why it rejects that: empty if it does not.
 
-    No clock is asked: an order is newer by its term and version, however late it comes. Signatures were checked.
+    No clock matters: term and version decide which order is newer. The signature must have been verified.
     """
     wanted = desired.robots.get(robot, "")
     newer = replace(followed, centre=desired.centre, term=desired.term, version=desired.version, wanted=wanted)

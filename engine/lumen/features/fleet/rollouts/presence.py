@@ -1,4 +1,4 @@
-"""What a robot tells its centre of itself every ten seconds, as JSON data: no names, no words, no images."""
+"""The report that a robot sends its centre every ten seconds, as JSON data: without names, words or images."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,11 +12,11 @@ PROVED, PROBATION, WAITING, FETCHING, CHECKING, REFUSED, ROLLED_BACK, BROKEN = (
     "proved", "probation", "waiting", "fetching", "checking", "refused", "rolled back", "edited",
 )  # fmt: skip
 STATES = (PROVED, PROBATION, WAITING, FETCHING, CHECKING, REFUSED, ROLLED_BACK, BROKEN)
-"""How far a robot is with the bundle that it is to have; `edited`: somebody changed its files by hand."""
+"""The states of a robot with the bundle that it should run; `edited` means that its files were changed by hand."""
 
 SAME, DIFFER = "same", "differ"
 TRIED = (SAME, DIFFER, REFUSED)
-"""What comes of a bundle that a robot tries: its last visits come out as they were, some do not, or it is refused."""
+"""The results of trying a bundle: its last visits came out the same, some differ, or the bundle is refused."""
 
 HOURS = "hours"
 """The measure that is always counted: how long a bundle has run [h]."""
@@ -24,39 +24,49 @@ HOURS = "hours"
 
 @dataclass(frozen=True, slots=True)
 class RobotPresence:
-    """`bundle` runs; with the bundle `about` the robot is as far as `state` says, `trouble` says why no farther.
-
-    `centre`, `term` and `version` are of the order that it follows. `wants` is the hash of a bundle that it lacks.
-    `tried` is what came of a bundle that was tried and not taken, empty where none was: `bundle`, `verdict` (one of
-    `TRIED`), how many visits were `played` and how many came out the `same`, and `why` it is refused.
-    `played` of its last visits were played with the bundle, and `same` of them came out as they were.
-    `now` and `before` are counts since `bundle` runs, and of the bundle before. `clock` is what its clock says [s since
-    1970].
-    """
+    """The presence of a robot."""
 
     robot: str
+    """The robot, as `HOUSE/ROBOT`."""
     bundle: str = ""
+    """The bundle that runs."""
     state: str = PROVED
+    """The robot's state with the bundle `about`."""
     about: str = ""
     trouble: str = ""
+    """The reason why it does not get farther."""
     wants: str = ""
+    """The hash of a bundle that it lacks."""
     centre: str = ""
+    """The centre that it follows."""
     term: int = 0
+    """The term of the order that it follows."""
     version: int = 0
+    """The version of that order."""
     now: Mapping[str, float] = field(default_factory=dict)
+    """Counts since `bundle` runs."""
     before: Mapping[str, float] = field(default_factory=dict)
+    """Counts of the bundle before."""
     clock: float = 0.0
+    """The time of its clock [s since 1970]."""
     since: float = 0.0
+    """The time since which `bundle` runs [s since 1970]."""
     played: int = 0
+    """The number of its last visits that were replayed with the bundle."""
     same: int = 0
+    """The number of those that came out the same."""
     tried: Mapping[str, Any] = field(default_factory=dict)
+    """The result of a trial, empty without one: `bundle`, `verdict` (one of `TRIED`), `played`, `same`, and `why` it is
+    refused.
+    """
 
     def to_json(self) -> dict[str, Any]:
+        """Return the presence as JSON data, without the robot's name."""
         return {name: getattr(self, name) for name in self.__slots__ if name != "robot"}
 
 
 def presence_from(robot: str, body: Any) -> RobotPresence | None:
-    """The presence that a message tells, None for one that is none."""
+    """Return the presence in a message's body, None if it is invalid."""
     if not isinstance(body, Mapping):
         return None
     texts = {name: body.get(name, "") for name in ("bundle", "state", "about", "trouble", "wants", "centre")}
@@ -82,7 +92,7 @@ def _tried(data: Any) -> bool:
 
 
 def measures_from(data: Any) -> dict[str, float] | None:
-    """Counts by their name, None for what is none."""
+    """Return counts by their name, None if the data is invalid."""
     return dict(data) if _measures(data) else None
 
 

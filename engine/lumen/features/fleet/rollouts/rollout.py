@@ -1,7 +1,7 @@
-"""A rollout: a bundle comes to more and more robots, or back from all of them.
+"""A rollout: it gives a bundle to more and more robots, or takes it back from all of them.
 
-What holds at every moment, whatever is late, lost, killed or doubled: no more robots may run a bundle that is not
-proved than the step at hand allows. So a robot that was told to have it counts until it was heard to be back.
+The invariant, whatever is late, lost, killed or duplicated: no more robots run an unproved bundle than the present step
+allows. So a robot that was given the bundle counts until it has reported that it is back.
 """
 
 from collections.abc import Iterable
@@ -17,13 +17,13 @@ from lumen.features.fleet.rollouts.trying import HeardRobots, begin_steps, fresh
 from lumen.features.fleet.settings import Fleet, RolloutPlan, StepTarget
 
 LONGEST_LOOK = 30.0
-"""How much time one look may count [s]: a clock that is set, or a centre that was dead, hurries nothing."""
+"""The longest time that one tick may count [s], so that a changed clock or a dead centre skips no waiting."""
 PATIENCE = 900.0
-"""For how long beyond twice its pause a step may fail to be proved before a person is asked [s]."""
+"""How long beyond twice its pause a step may remain unproved before a person is asked [s]."""
 
 
 def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:
-    """The state a moment later; what is new in it has to be written down before anybody is told."""
+    """Return the state at `now`; changes must be written to the journal before they are sent."""
     passed = min(max(now - state.looked, 0.0), LONGEST_LOOK) if state.looked else 0.0
     state = _released(_overruled(replace(state, looked=now), heard), heard)
     rollout = state.rollout
@@ -41,7 +41,9 @@ def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> Ce
 
 
 def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now: float) -> CentreState:
-    """With another rollout, which the next step begins. Raises ValueError, saying why, where there can be none now."""
+    """Return the state with a new rollout, which the next `step` begins. Raises ValueError with the reason if it can't
+    be.
+    """
     if state.overruled:
         raise ValueError(state.overruled)
     if state.rollout and state.rollout.under_way:
@@ -56,7 +58,7 @@ def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now:
 
 
 def abort(state: CentreState, why: str) -> CentreState:
-    """All go back: to what was wanted of them before, or else to what they ran."""
+    """Return the state with all robots sent back: to what was wanted of them before, or else to what they ran."""
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
         return state
@@ -70,23 +72,24 @@ def abort(state: CentreState, why: str) -> CentreState:
 
 
 def decide(state: CentreState, decision: str, why: str = "") -> CentreState:
-    """What a person says of the rollout under way: `paused`, or `going` (on). Raises ValueError where there is none."""
+    """Return the state after a person's decision: `paused` or `going`. Raises ValueError without a rollout under
+    way.
+    """
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
         raise ValueError("no rollout is under way")
     if rollout.plan.try_first and not rollout.tried and rollout.state == PERSON and decision == GOING:
         return begin_steps(state, replace(rollout, reason=why))
     settled = rollout.state == PERSON and decision == GOING
-    if settled:  # what nobody knew a person has said: this step is good
+    if settled:  # a person has decided the open question: this step is good
         return _onward(state, replace(rollout, state=GOING, reason=why))
     return replace(state, rollout=replace(rollout, state=decision, reason=why))
 
 
 def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
-    """The state of a centre that replaces one that is gone, or goes on with an old copy of its folder.
+    """Return the state of a centre that replaces one that is gone, or continues from an old copy of its folder.
 
-    Its orders are of a new term. A rollout that was under way waits for a person, and whoever may have got more of it
-    since counts as exposed: everybody who was not heard, and everybody who runs it.
+    Its orders have a new term. A rollout under way waits for a person; robots that have not reported count as exposed.
     """
     term = max([state.term, *(row.presence.term for row in heard.values())]) + 1
     state = replace(state, term=term, version=state.version + 1, overruled="")
@@ -97,7 +100,7 @@ def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def allowed(plan: RolloutPlan, at: int, fleet: Fleet) -> int:
-    """How many robots may run the bundle in that step: as many as this step or one before it has."""
+    """Return how many robots may run the bundle in that step: the most of this step and those before it."""
     return max(_size(target, fleet) for target in plan.steps[: at + 1])
 
 
@@ -107,7 +110,7 @@ def _size(target: StepTarget, fleet: Fleet) -> int:
 
 
 def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
-    """A centre whose robots have heard newer orders than it knows of orders nothing more."""
+    """Return the state marked as overruled if a robot follows a newer order than this centre has sent."""
     for robot, row in heard.items():
         said = row.presence
         if said.term > state.term:
@@ -121,7 +124,7 @@ def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def _released(state: CentreState, heard: HeardRobots) -> CentreState:
-    """Without the robots that were heard to be back, or whose bundle is proved by now."""
+    """Return the state without exposed robots that have reported to be back, or whose bundle is proved."""
 
     def back(robot: str, bundle: str, version: int) -> bool:
         said = heard[robot].presence if robot in heard else None
@@ -133,7 +136,7 @@ def _released(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def _failed(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> str:
-    """Why the bundle is bad, empty while nothing says so."""
+    """Return why the bundle is bad, empty as long as nothing shows it."""
     for robot in rollout.assigned:
         said = heard[robot].presence if robot in heard else None
         new = said is not None and said.version > rollout.version
@@ -163,9 +166,9 @@ def _told(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> str:
 
 
 def _assigned(state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:
-    """With as many robots told to have the bundle as the step has and there is room for.
+    """Return the state with the bundle given to as many robots as the step has and as may be exposed.
 
-    Who may still run what was taken back takes room, and is chosen once it was heard to be back.
+    A robot that may still run a withdrawn bundle counts, and is chosen only after it has reported to be back.
     """
     target = rollout.plan.steps[rollout.at]
     room = allowed(rollout.plan, rollout.at, fleet) - len({*state.exposed, *rollout.assigned})
@@ -188,7 +191,7 @@ def _assigned(state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRo
 
 
 def _spread(robots: Iterable[str]) -> list[str]:
-    """One of each house in turn: what goes wrong in one house shows beside another."""
+    """Return the robots house by house in turn, so that a problem of one house shows beside the others."""
     houses: dict[str, list[str]] = {}
     for robot in robots:
         houses.setdefault(robot.partition("/")[0], []).append(robot)
@@ -198,7 +201,7 @@ def _spread(robots: Iterable[str]) -> list[str]:
 def _judged(
     state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float, passed: float
 ) -> CentreState:
-    """Good, bad, or a person decides: once the step was watched for its pause."""
+    """Judge a step that has been watched for its pause: continue, or ask a person if the result is unknown or late."""
     said = [fresh(heard, robot, now) for robot in rollout.assigned]
     there = [each for each in said if each]
     proved = [each for each in there if each.bundle == rollout.bundle and each.state == PROVED]
@@ -224,7 +227,7 @@ def _ask(state: CentreState, rollout: Rollout, why: str) -> CentreState:
 
 
 def _onward(state: CentreState, rollout: Rollout) -> CentreState:
-    """The next step, or the end: then the bundle is proved."""
+    """Return the state at the next step, or at the end, when the bundle is proved."""
     if rollout.at + 1 < len(rollout.plan.steps):
         return replace(state, rollout=replace(rollout, at=rollout.at + 1, watched=0.0, waited=0.0))
     proved = tuple(dict.fromkeys((*state.proved, rollout.bundle)))

@@ -1,4 +1,4 @@
-"""Where a centre and its rollout stand, as values that a journal can keep."""
+"""The state of a centre and its rollout, as values for a journal."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
@@ -13,59 +13,69 @@ UNDER_WAY = (GOING, PAUSED, PERSON)
 
 @dataclass(frozen=True, slots=True)
 class Rollout:
-    """A bundle on its way: at step `at` of its plan, wanted of the `assigned` robots, which only become more.
-
-    `watched` is for how long most of them have run it [s], `waited` for how long this step has been under way, both
-    counted while the centre lived. `reason` says why it stands as it does. `prior` is what was wanted of the assigned
-    before, `version` that of the orders before it. `tried` is whether the robots were waited for that try it first.
-    """
+    """A bundle that is being rolled out."""
 
     bundle: str
+    """Its hash."""
     plan: RolloutPlan
     at: int = 0
+    """The index of the present step."""
     assigned: tuple[str, ...] = ()
+    """The robots that were given the bundle; their number only grows."""
     watched: float = 0.0
+    """How long most of them have run it in this step while the centre ran [s]."""
     waited: float = 0.0
+    """How long this step has been under way while the centre ran [s]."""
     state: str = GOING
     reason: str = ""
+    """The reason for its state."""
     begun: float = 0.0
+    """The time of its beginning [s since 1970]."""
     version: int = 0
+    """The version of the last order before it."""
     prior: Mapping[str, str] = field(default_factory=dict)
+    """What was wanted of the assigned robots before."""
     tried: bool = False
+    """Whether the trials before the first step are over."""
 
     @property
     def under_way(self) -> bool:
+        """Whether it is neither aborted nor finished."""
         return self.state in UNDER_WAY
 
 
 @dataclass(frozen=True, slots=True)
 class CentreState:
-    """What a centre knows and wants.
-
-    `wanted` is what each robot is to run (a hash, or `!HASH`), by HOUSE/ROBOT. `exposed` are the robots that may run a
-    bundle that is not proved, with the bundle and the version that took it back, 0 while none did. `proved` are bundles
-    whose rollout was finished. `pinned` robots take part in none; `looked` is when it was looked last [s]. `trying` is
-    the bundle that all are to try.
-    """
+    """The state of a centre."""
 
     centre: str
+    """The centre's id."""
     term: int = 1
+    """Counts the centres that took over from each other."""
     version: int = 0
+    """Counts the orders of a term."""
     wanted: Mapping[str, str] = field(default_factory=dict)
+    """The bundle that each robot should run (a hash, or `!HASH`), by HOUSE/ROBOT."""
     exposed: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+    """The robots that may run an unproved bundle: the bundle, and the version that took it back, 0 for none."""
     proved: tuple[str, ...] = ()
+    """The bundles whose rollout was finished."""
     pinned: tuple[str, ...] = ()
+    """The robots that are left out of rollouts."""
     rollout: Rollout | None = None
     looked: float = 0.0
+    """The time of the last tick [s]."""
     overruled: str = ""
+    """Why this centre gives no more orders, empty if it does."""
     trying: str = ""
+    """The bundle that all robots should try."""
 
     def attempt(self, bundle: str) -> "CentreState":
-        """With a bundle that all robots try and do not take, or (empty) none any more: another version."""
+        """Return the state with a bundle that all robots try, empty for none; a change has a new version."""
         return self if bundle == self.trying else replace(self, trying=bundle, version=self.version + 1)
 
     def want(self, wanted: Mapping[str, str]) -> "CentreState":
-        """With something else wanted of some robots: another version."""
+        """Return the state with these robots' bundles changed; a change has a new version."""
         if wanted.items() <= self.wanted.items():
             return self
         return replace(self, wanted={**self.wanted, **wanted}, version=self.version + 1)
@@ -73,18 +83,19 @@ class CentreState:
 
 @dataclass(frozen=True, slots=True)
 class HeardPresence:
-    """A presence, and when the centre heard it by its own clock [s]."""
+    """A presence and the centre's time at its arrival [s]."""
 
     presence: RobotPresence
     at: float
 
 
 def state_to_json(state: CentreState) -> dict[str, Any]:
+    """Return the state as JSON data."""
     return asdict(state)
 
 
 def state_from_json(data: Mapping[str, Any]) -> CentreState:
-    """The state that was written. Raises KeyError, TypeError or ValueError where it is none."""
+    """Return the state from its JSON data. Raises KeyError, TypeError or ValueError if the data is invalid."""
     row = dict(data)
     row["proved"], row["pinned"] = tuple(row["proved"]), tuple(row["pinned"])
     row["exposed"] = {robot: (str(bundle), int(version)) for robot, (bundle, version) in row["exposed"].items()}

@@ -1,6 +1,6 @@
-"""Before the first robot takes a bundle all of them try it: linted for their bodies, played on their own last visits.
+"""Trials before a rollout: all robots lint a bundle for their bodies and replay their own last visits with it.
 
-No visit leaves its house: what comes back is whether they came out as they were.
+No visit leaves its house: robots report only whether the visits came out the same.
 """
 
 from collections.abc import Mapping
@@ -11,9 +11,9 @@ from lumen.features.fleet.rollouts.state import GOING, PERSON, CentreState, Hear
 from lumen.features.fleet.settings import Fleet
 
 FRESH = 60.0
-"""For how long a robot counts as there after it was heard [s]."""
+"""How long a robot counts as present after its last report [s]."""
 TRYING = 600.0
-"""How long robots that are there may try a bundle, before a person is asked [s]."""
+"""How long present robots may try a bundle before a person is asked [s]."""
 
 HeardRobots = Mapping[str, HeardPresence]
 
@@ -21,10 +21,11 @@ HeardRobots = Mapping[str, HeardPresence]
 def tried(
     state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float, passed: float
 ) -> CentreState:
-    """The state a moment later: the first step begins once all that are there have tried the bundle, and none refuses.
+    """Return the state at `now`: the first step begins once all present robots have tried the bundle and none refuses
+    it.
 
-    Where one refuses it, or they take too long, a person decides. Other visits than before are no reason: they may be
-    what the bundle is for.
+    If a robot refuses it, or the trials take too long, a person decides. Visits that differ do not stop it, because
+    they may be the purpose of the bundle.
     """
     there = _there(state, rollout, fleet, heard, now)
     came = outcomes(rollout.bundle, there)
@@ -42,23 +43,23 @@ def tried(
 
 
 def begin_steps(state: CentreState, rollout: Rollout) -> CentreState:
-    """What was tried goes on with its first step."""
+    """Return the state with the rollout at the beginning of its first step."""
     return replace(state, rollout=replace(rollout, state=GOING, tried=True, waited=0.0, version=state.version))
 
 
 def outcomes(bundle: str, there: Mapping[str, RobotPresence]) -> dict[str, Mapping[str, object]]:
-    """What came of it for each robot that has tried that bundle."""
+    """Return the result of each robot that has tried that bundle."""
     return {robot: said.tried for robot, said in there.items() if said.tried.get("bundle") == bundle}
 
 
 def counted(bundle: str, heard: HeardRobots) -> dict[str, int]:
-    """How many robots have come to which verdict."""
+    """Return the number of robots for each verdict."""
     rows = outcomes(bundle, {robot: row.presence for robot, row in heard.items()}).values()
     return {verdict: sum(row["verdict"] == verdict for row in rows) for verdict in TRIED}
 
 
 def fresh(heard: HeardRobots, robot: str, now: float) -> RobotPresence | None:
-    """What a robot said of itself where that was just now, else None."""
+    """Return a robot's presence if it is recent, else None."""
     found = heard.get(robot)
     return found.presence if found and abs(now - found.at) <= FRESH else None
 
@@ -66,7 +67,7 @@ def fresh(heard: HeardRobots, robot: str, now: float) -> RobotPresence | None:
 def _there(
     state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float
 ) -> dict[str, RobotPresence]:
-    """Who may come to have the bundle, and was heard just now."""
+    """Return the presences of the robots that the rollout can reach and that have reported recently."""
     wanted = dict.fromkeys(robot for target in rollout.plan.steps for robot in fleet.members(target))
     found = ((robot, fresh(heard, robot, now)) for robot in wanted if robot not in state.pinned)
     return {robot: said for robot, said in found if said}
