@@ -1,4 +1,4 @@
-"""Something that people who are not there have to know."""
+"""An alert: something that people elsewhere must know."""
 
 import platform
 from datetime import datetime
@@ -8,37 +8,37 @@ from lumen.features.alerts.settings import KINDS
 from lumen.language.iso_time import iso_time
 
 TEST = "test"
-"""The kind of those that are sent to see whether they arrive."""
+"""The kind of test alerts."""
 
 
 class Alert(NamedTuple):
-    """What happened, in a line made of our own words: of a visitor, or of what they said, it holds nothing.
-
-    `about` tells those of one kind apart (the part that is gone); of the same kind and `about` all after the first are
-    counted in `times` since `first`, where they were held back. Times are Unix times.
-    """
+    """An event in a line of Lumen's own words, without names or words of visitors."""
 
     kind: str
     text: str
     about: str = ""
+    """Distinguishes alerts of one kind, such as the part that is lost."""
     at: float = 0.0
+    """The Unix time of the event [s]."""
     first: float = 0.0
+    """The Unix time of the first equal event that was held back [s]."""
     times: int = 1
+    """The number of equal events since `first`."""
 
     def after(self, earlier: "Alert") -> "Alert":
-        """This one, with those before it that were held back."""
+        """Return this alert, merged with the equal ones before it that were held back."""
         return self._replace(first=earlier.first, times=earlier.times + self.times)
 
 
 class Origin(NamedTuple):
-    """Who tells: the exhibition, its robot, and which parts of it this process is."""
+    """The sender of an alert: the exhibition, its robot, and the parts of it in this process."""
 
     exhibition: str
     robot: str
     parts: tuple[str, ...] = ()
 
     def body(self, alert: Alert) -> dict[str, Any]:
-        """The alert as JSON; `text` alone says it all, as chat programs want it."""
+        """Return the alert as JSON data; `text` alone is complete, as chat programs expect."""
         return {
             "kind": alert.kind,
             "text": self.line(alert),
@@ -54,13 +54,13 @@ class Origin(NamedTuple):
         }
 
     def line(self, alert: Alert) -> str:
-        """`NAO: it fell and has not got up (3 times since 10:02)`."""
+        """Return a line such as `NAO: it fell and has not got up (3 times since 10:02)`."""
         held = f" ({alert.times} times since {_clock(alert.first)})" if alert.times > 1 else ""
         return one_line(f"{self.robot}: {alert.text}{held}")
 
 
 def one_line(text: str) -> str:
-    """The text on one line, without signs that would steer a terminal or a mail's head."""
+    """Return the text on one line, without characters that control a terminal or a mail's header."""
     return " ".join("".join(sign if sign.isprintable() else " " for sign in text).split())[:500]
 
 

@@ -1,4 +1,4 @@
-"""`lumen alerts test`: whether those who are told of troubles can be reached."""
+"""`lumen alerts test`: checks that the recipients of alerts can be reached."""
 
 import argparse
 import json
@@ -12,6 +12,7 @@ from lumen.project.own_project import own_project
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `lumen alerts` to the parser."""
     add = parser.add_argument
     add(
         "what",
@@ -23,7 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where all were reached; raises UsageError where nobody is to be told."""
+    """Return 0 if all recipients were reached, else 1. Raises UsageError if there are none."""
     root = own_project(options.project)
     settings = main_settings(root)
     if settings is None or not (alerts := settings.section(Alerts)).to:

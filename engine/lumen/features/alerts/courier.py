@@ -1,4 +1,4 @@
-"""Tells one recipient, on a thread of its own: rationed, quiet when that is wanted, tried again where it fails."""
+"""Delivers alerts to one recipient on a thread of its own: limited in rate, silent in quiet hours, with retries."""
 
 import threading
 import time
@@ -14,11 +14,11 @@ from lumen.upkeep.backoff import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 LONGEST_WAIT = 30.0
-"""How often it is looked whether quiet hours are over [s]."""
+"""The time between two checks whether quiet hours are over [s]."""
 
 
 class Ration:
-    """Takes alerts and gives out those that are due; what is the same is one, with a count, while it is held back."""
+    """Limits the rate of alerts: equal ones that are held back become one, with a count."""
 
     def __init__(self, interval: float) -> None:
         self._interval = interval
@@ -26,12 +26,13 @@ class Ration:
         self._given: dict[tuple[str, str], float] = {}
 
     def take(self, alert: Alert) -> None:
+        """Add an alert; an equal one that is held back is merged with it."""
         key = (alert.kind, alert.about)
         earlier = self._held.pop(key, None)
         self._held[key] = alert.after(earlier) if earlier else alert
 
     def due(self, now: float, *, quiet: bool) -> Iterator[Alert]:
-        """What may be told at `now` [s, monotonic], first what was taken first; it counts as told."""
+        """Yield the alerts that may be sent at `now` [s, monotonic], in their order, and count them as sent."""
         if quiet:
             return
         self._given = {key: at for key, at in self._given.items() if now - at < self._interval}
@@ -40,12 +41,12 @@ class Ration:
             yield self._held.pop(key)
 
     def rest(self) -> Iterator[Alert]:
-        """All that is held back."""
+        """Yield all alerts that are held back."""
         while self._held:
             yield self._held.pop(next(iter(self._held)))
 
     def wait(self, now: float) -> float | None:
-        """In how many seconds something may be due, None where nothing is held back."""
+        """Return the time until an alert may be due [s], None if none is held back."""
         if not self._held:
             return None
         soonest = min(self._given.get(key, now) + self._interval * (key in self._given) for key in self._held)
@@ -53,24 +54,25 @@ class Ration:
 
 
 MAX_PENDING_ALERTS = 100
-"""Alerts that wait for the thread; then the oldest are dropped."""
+"""The number of alerts that may wait for the thread; beyond it the oldest are dropped."""
 FIRST_RETRY, LONGEST_RETRY = 1.0, 300.0
-"""How long it is waited before it is tried again [s]: at first, then twice as long each time, at most."""
+"""The first and the longest wait before another attempt [s]; each is twice as long as the last."""
 RETRY_FOR = 3_600.0
-"""How long an alert is tried to be delivered [s]."""
+"""How long delivery of an alert is attempted [s]."""
 
 Deliver = Callable[[Alert], None]
-"""Tells it, and waits for that; raises UndeliveredError."""
+"""Delivers an alert and waits for the result. Raises UndeliveredError."""
 
 
 def time_of_day() -> TimeOfDay:
+    """Return the local time of day."""
     return datetime.now().time()
 
 
 class Courier:
-    """Takes alerts without waiting for anybody (`put`), and delivers them one at a time.
+    """Accepts alerts without waiting (`put`), and delivers them one at a time.
 
-    `tell` hears, a line for each outage, why somebody could not be reached. `clock` is monotonic [s].
+    `tell` receives a line for each outage with its reason. `clock` is monotonic [s].
     """
 
     def __init__(
@@ -94,14 +96,14 @@ class Courier:
         self._thread.start()
 
     def put(self, alert: Alert) -> None:
-        """Have it told, where it is of a kind that is wanted."""
+        """Deliver an alert if the recipient wants its kind."""
         if alert.kind in self.recipient.kinds:
             with self._changed:
                 self._came.append(alert)
                 self._changed.notify_all()
 
     def end(self, until: float) -> None:
-        """Tell what waits, also what was held back, by that time at the latest [s, monotonic]; waits for nothing."""
+        """Deliver all waiting alerts by that time [s, monotonic], then end; returns at once."""
         with self._changed:
             self._ending, self._until = True, until
             self._changed.notify_all()
@@ -116,7 +118,7 @@ class Courier:
                 self._tell_until_told(alert)
 
     def _ended(self) -> bool:
-        """Wait until there is something to do; whether that is to end."""
+        """Wait until there is something to do; return whether that is to end."""
         with self._changed:
             if not (self._came or self._ending):
                 self._changed.wait(self._ration.wait(self._clock()))
@@ -150,7 +152,7 @@ class Courier:
                 return
 
     def _paused(self, seconds: float) -> bool:
-        """Wait before the next attempt; false where it would be after the end."""
+        """Wait before the next attempt; return False if it would be after the end."""
         with self._changed:
             deadline = self._clock() + seconds
             while not self._ending and self._clock() < deadline:

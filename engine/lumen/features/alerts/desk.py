@@ -1,4 +1,4 @@
-"""Who is told of what: each alert goes to all who want its kind."""
+"""Passes each alert to all recipients who want its kind."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -12,7 +12,7 @@ from lumen.features.alerts.settings import AlertChannel, Alerts, Mail, Program, 
 
 
 def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> None:
-    """Tell somebody; waits for the network. Raises UndeliveredError, which says why it did not arrive."""
+    """Deliver an alert, waiting for the network. Raises UndeliveredError with the reason."""
     match channel:
         case Webhook(url):
             from lumen.features.alerts.webhook import post  # each with libraries that few exhibitions need
@@ -29,7 +29,7 @@ def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> 
 
 
 def address(channel: AlertChannel) -> str:
-    """Where it goes, without what may be a secret: a webhook's host, not its path."""
+    """Return the recipient's address without secrets: a webhook's host, not its path."""
     match channel:
         case Webhook(url):
             return f"the webhook {url if url.startswith('$') else '/'.join(url.split('/')[:3])}"
@@ -44,10 +44,10 @@ CLOSE_TIMEOUT = 10.0
 
 
 class AlertDesk:
-    """Has people told who are not there; nothing here waits but `close`, and `test`.
+    """Sends alerts to people who are elsewhere; only `close` and `test` wait.
 
-    `tell` hears who could not be reached, and why. `root` is the project's folder. Texts are made of our own words: no
-    name of a visitor and nothing of what they said is in them.
+    `tell` receives failures with their recipients. `root` is the project's folder. Texts are Lumen's own: they contain
+    no visitor's name or words.
     """
 
     def __init__(self, alerts: Alerts, origin: Origin, root: Path, tell: Callable[[str], None]) -> None:
@@ -56,14 +56,14 @@ class AlertDesk:
         self.use(alerts)
 
     def __call__(self, kind: str, text: str, about: str = "") -> None:
-        """Tell that this happened now; `about` tells apart what else is of the same kind."""
+        """Send an alert about something that happened now; `about` distinguishes alerts of the same kind."""
         now = time.time()
         alert = Alert(kind, one_line(text), about, now, now)
         for courier in self._couriers:
             courier.put(alert)
 
     def use(self, alerts: Alerts) -> None:
-        """Tell these from now on; what others are being told they are told."""
+        """Use these recipients from now on; alerts that are being delivered are still delivered."""
         if alerts == self._alerts:
             return
         old, self._alerts = self._couriers, alerts
@@ -75,7 +75,9 @@ class AlertDesk:
             courier.end(time.monotonic() + CLOSE_TIMEOUT)
 
     def test(self) -> Iterator[tuple[str, str]]:
-        """Tell each of them something, whatever the hour, and wait: whom, and why it did not arrive, else empty."""
+        """Send a test alert to each recipient, also in quiet hours, and wait; yield the address and the error, empty if
+        none.
+        """
         now = time.time()
         alert = Alert(TEST, "this is a test: you will receive this robot's alerts", "", now, now)
         for recipient in self._alerts.to:
@@ -86,7 +88,7 @@ class AlertDesk:
                 yield address(recipient.channel), one_line(str(error))
 
     def close(self) -> None:
-        """Have told what waits, for ten seconds at most; harmless when repeated."""
+        """Deliver waiting alerts, for at most ten seconds; further calls do nothing."""
         until = time.monotonic() + CLOSE_TIMEOUT
         couriers, self._couriers = self._couriers, []
         self._alerts = Alerts()

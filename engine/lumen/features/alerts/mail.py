@@ -1,4 +1,4 @@
-"""An alert as a mail."""
+"""Alerts as emails."""
 
 import json
 import os
@@ -14,11 +14,11 @@ from lumen.features.alerts.settings import Mail
 MAIL_TIMEOUT = 20.0
 """How long the server may be silent [s]."""
 USER, PASSWORD = "LUMEN_SMTP_USER", "LUMEN_SMTP_PASSWORD"
-"""The environment variables with whose contents the server is logged in to; nobody is where the first is not set."""
+"""The environment variables with the user and the password of the mail server; without a user there is no login."""
 
 
 def send_mail(mail: Mail, line: str, body: dict[str, Any]) -> None:
-    """Send it to all of them. Raises UndeliveredError where the server takes it for none, or not for some."""
+    """Send the mail to all recipients. Raises UndeliveredError if the server refuses it for any of them."""
     message = EmailMessage()
     message["Subject"], message["From"], message["To"] = f"[Lumen] {line}", mail.sender, ", ".join(mail.to)
     message["Date"], message["Message-ID"] = formatdate(), make_msgid(domain="lumen.invalid")
@@ -45,7 +45,7 @@ def send_mail(mail: Mail, line: str, body: dict[str, Any]) -> None:
 
 
 def _connected(mail: Mail) -> smtplib.SMTP:
-    """The server, encrypted as is wanted and logged in to where there is a name; raises what smtplib raises."""
+    """Return the connected server, encrypted and logged in as configured. Raises what smtplib raises."""
     name = os.environ.get(USER, "")
     if name and mail.security == "none":
         raise ValueError(f"the password in {PASSWORD} is not sent unencrypted: write `security: starttls` or `tls`")

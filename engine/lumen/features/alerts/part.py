@@ -1,4 +1,4 @@
-"""What of an exhibition people have to know who are not there."""
+"""The part that sends alerts about an exhibition's trouble to people who are elsewhere."""
 
 import shutil
 import threading
@@ -33,7 +33,7 @@ TIME_TO_RISE = 60.0
 
 
 class FallWatch:
-    """Hears what the robot is told and what it answers; `tick` says once of each fall that it is not got up from."""
+    """Follows the robot's commands and answers; `tick` reports each fall once if the robot does not get up."""
 
     def __init__(self) -> None:
         self._fallen: float | None = None
@@ -41,11 +41,13 @@ class FallWatch:
         self._failed = False
 
     def performing(self, command: Command) -> None:
+        """Note a command that makes the robot get up."""
         match command:
             case Start(id, Posture() | Wake()):
                 self._rising.add(id)
 
     def answered(self, event: Event, now: float) -> None:
+        """Note a fall, or the end of an attempt to get up."""
         kind, _, id = event.name.partition(".command.")
         if event.name == "fallen" and self._fallen is None:
             self._fallen, self._failed, self._rising = now, False, set()
@@ -56,7 +58,7 @@ class FallWatch:
                 self._fallen, self._failed = None, False
 
     def tick(self, now: float) -> str:
-        """Why it does not get up, empty where it stands, may still get up, or that was said."""
+        """Return why the robot does not get up; empty if it stands, may still get up, or that was reported."""
         if self._fallen is None:
             return ""
         why = "it fell and can't get up" if self._failed else "it fell and has not got up"
@@ -67,13 +69,13 @@ class FallWatch:
 
 
 LEAST_ROOM = 100_000_000
-"""How much room a disk has to have [bytes]: the database, the journal and a bundle need that in a bad month."""
+"""The free space that a disk must have [bytes]: the database, the journal and a bundle need that in a bad month."""
 LOOK_INTERVAL = 60.0
-"""How often it is looked [s]; on a thread, for a disk of the network may take its time."""
+"""The time between two checks [s], made on a thread because a network disk may be slow."""
 
 
 class DiskWatch:
-    """`trouble` says how little room there is where `folder` is, empty where there is enough."""
+    """Checks the free space of the disk with `folder`; `trouble` describes a shortage, and is empty without one."""
 
     def __init__(self, folder: Path) -> None:
         self.trouble = ""
@@ -83,7 +85,7 @@ class DiskWatch:
         self._thread.start()
 
     def close(self) -> None:
-        """Nobody waits for a disk that does not answer."""
+        """End the thread, without waiting for a disk that does not answer."""
         self._ending.set()
         self._thread.join(0.1)
 
@@ -95,7 +97,7 @@ class DiskWatch:
 
 
 def room(folder: Path) -> str:
-    """What is wrong with the room on the disk of that folder, or of the nearest above it that is there."""
+    """Return what is wrong with the disk of that folder, or of its nearest existing parent; empty if nothing is."""
     while not folder.exists() and folder != folder.parent:
         folder = folder.parent
     try:
@@ -106,17 +108,17 @@ def room(folder: Path) -> str:
 
 
 BROKER_PATIENCE = 5.0
-"""How long a broker may be away before that is told [s]: it comes back from a restart within that."""
+"""How long a broker may be away before that is reported [s]: a restart takes less."""
 BRAIN_PATIENCE = 5.0
-"""How long a robot's brain may be [s]."""
+"""How long a robot's brain may be away [s]."""
 
 
 class AlertPart(Part, Observer):
-    """Has people told by a desk, which it owns: what robot, brain, broker and disk do that they should not.
+    """Reports trouble with the robot, the brain, the broker and the disk to an alert desk, which it owns.
 
-    It watches the loop of the brain, where that is here. A robot whose brain is somewhere else tells of itself only
-    where there is none. `kept` says why the records of the run can't be written, `stopped` whether a person stopped the
-    robot.
+    It watches the brain's loop if that is in this process. A robot whose brain is elsewhere reports about itself only
+    if no brain is connected. `kept` returns why the run's records can't be written, `stopped` whether a person stopped
+    the robot.
     """
 
     patient = True
@@ -146,6 +148,7 @@ class AlertPart(Part, Observer):
         self._stopped: bool | None = None
 
     def recovered(self, found: Resumption | FreshStart) -> None:
+        """Report that the earlier run ended unexpectedly."""
         if isinstance(found, Resumption):
             if not found.told:
                 self._desk("crashed", f"it ended unexpectedly, and continues after {found.away:.0f} s")
@@ -153,23 +156,28 @@ class AlertPart(Part, Observer):
             self._desk("crashed", "it ended unexpectedly, and starts from the beginning")
 
     def stepped(self, step: Step) -> None:
+        """Report a stop by a person."""
         if step.event and step.event.name == "stop" and _by_person(step.event):
             self._desk("stopped", "a person stopped it")
 
     def performing(self, command: Command, now: float) -> None:
+        """Follow a command that begins."""
         self._falls.performing(command)
 
     def answered(self, event: Event) -> None:
+        """Follow an answer or event of the robot."""
         self._falls.answered(event, self._now)
         self._notice(event)
 
     def noticed(self, event: Event) -> None:
+        """Report the robot's events if no brain is connected."""
         if self._presence and self._presence.find(BRAIN) is None:
             self._notice(event)
             if event.name == "fallen":
                 self._desk("fallen", "it fell, and no brain is connected to get it up")
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        """Report falls, lost parts, and trouble with the broker, the brain and the disk."""
         self._now = now
         if why := self._falls.tick(now):
             self._desk("fallen", why)
@@ -183,15 +191,19 @@ class AlertPart(Part, Observer):
         self._look_at_disk("records", self._kept())
 
     def use(self, project: Project) -> None:
+        """Use the recipients of another bundle."""
         self._desk.use(project.section(Alerts))
 
     def helpless(self, reason: str) -> None:
+        """Report that the robot rests because Lumen could not be stopped any more."""
         self._desk("crashed", "a part of Lumen failed. The robot rests, because nobody could have stopped it any more")
 
     def part_stopped(self, part: str) -> None:
+        """Report that a part failed."""
         self._desk("lost", f"{part} failed and is not running", part)
 
     def close(self) -> None:
+        """End the check of the disk and deliver waiting alerts."""
         self._disk.close()
         self._desk.close()
 
@@ -200,7 +212,7 @@ class AlertPart(Part, Observer):
             self._desk(*found)
 
     def _look_for_broker(self) -> None:
-        """Robot and brain tell of the broker; the others need not all say the same."""
+        """Report trouble with the broker, in the processes of robot and brain only, so that it is reported once."""
         if not {ROBOT_PART, BRAIN} & set(self._parts):
             return
         blocked, before = self._blockable.blocked if self._blockable else "", self._blocked
@@ -216,7 +228,7 @@ class AlertPart(Part, Observer):
             self._away = float("inf")
 
     def _look_for_brain(self) -> None:
-        """A robot misses its brain, but for one that has ended as it should."""
+        """Report to people that the robot's brain is gone, unless it has ended properly."""
         if self._presence is None or BRAIN in self._parts or ROBOT_PART not in self._parts:
             return
         if self._presence.find(BRAIN):
@@ -230,17 +242,17 @@ class AlertPart(Part, Observer):
             self._desk("lost", "the brain no longer responds, and the robot rests", BRAIN)
 
     def _look_for_stop(self) -> None:
-        """A robot that is stopped without a brain, which else tells of it."""
+        """Report a stop of a robot without a brain, which would otherwise report it."""
         before, self._stopped = self._stopped, self._person_stopped()
         if self._stopped and before is False and self._presence and self._presence.find(BRAIN) is None:
             self._desk("stopped", "a person stopped it")
 
     def _left(self, part: str) -> bool:
-        """Whether who was that part has ended as it should."""
+        """Return whether that part has ended properly."""
         return self._presence is not None and self._presence.left(part)
 
     def _look_at_disk(self, about: str, trouble: str) -> None:
-        """A trouble is told when it begins."""
+        """Report a problem of the disk when it begins."""
         if trouble and not self._troubles.get(about):
             self._desk("disk", trouble, about)
         self._troubles[about] = trouble
@@ -267,7 +279,9 @@ def make(services: Services) -> AlertPart:
 
 
 def tell_of_failure(failure: RunFailure) -> Callable[[], None]:
-    """Tell people that a run failed, as the files say, else as the last good ones do; return what waits for that."""
+    """Send an alert that a run failed, to the recipients in the present files or the last good ones; return its
+    `close`.
+    """
     alerts = failure.settings.section(Alerts) if failure.settings else Alerts()
     if not alerts.to and (good := failure.last_good()):
         alerts = good.section(Alerts)
@@ -278,9 +292,9 @@ def tell_of_failure(failure: RunFailure) -> Callable[[], None]:
 
 
 def told_of(event: Event) -> tuple[str, str, str] | None:
-    """The kind, text and subject of what is told of an event, None where that is nothing.
+    """Return the kind, text and subject of the alert about an event, None if it needs no alert.
 
-    An event may come from anywhere on the bus: of its data no texts are told, and only what numbers should be there.
+    An event may come from anywhere on the bus, so only numbers of its data are quoted.
     """
     part, _, what = event.name.partition(".")
     match part, what:
@@ -301,6 +315,6 @@ def _number(event: Event, key: str) -> str:
 
 
 def _by_person(stop: Event) -> bool:
-    """Whether a person stopped it; what else does is told as what it is."""
+    """Return whether a person stopped the robot; other causes have alerts of their own."""
     by = stop.data.get("by") if isinstance(stop.data, dict) else None
     return by not in (ENGINE, RUN_BEFORE)

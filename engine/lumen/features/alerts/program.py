@@ -1,4 +1,4 @@
-"""An alert as the standard input of somebody's program."""
+"""Alerts as the standard input of a program."""
 
 import json
 import os
@@ -12,11 +12,13 @@ from typing import Any
 from lumen.errors import UndeliveredError
 
 PROGRAM_TIMEOUT = 30.0
-"""How long it may take [s]; then it is killed, with all that it has started."""
+"""How long the program may take [s]; then it is killed, with all processes that it has started."""
 
 
 def run_program(command: Sequence[str], body: dict[str, Any], root: Path) -> None:
-    """Run it in the project's folder and wait for its end. Raises UndeliveredError where that is not 0."""
+    """Run the program in the project's folder and wait for its end. Raises UndeliveredError unless its exit code
+    is 0.
+    """
     name = command[0]
     if os.path.basename(name) != name:
         name = str(root / name)
@@ -47,7 +49,7 @@ def run_program(command: Sequence[str], body: dict[str, Any], root: Path) -> Non
 
 
 def _end(process: "subprocess.Popen[bytes]") -> None:
-    """Nothing that it has started outlives it."""
+    """Kill the program and all processes that it has started."""
     if process.poll() is None or hasattr(os, "killpg"):
         with suppress(OSError):
             os.killpg(process.pid, signal.SIGKILL) if hasattr(os, "killpg") else process.kill()

@@ -1,4 +1,4 @@
-"""`alerts:` of lumen.yaml, from its data to `Alerts`."""
+"""The section `alerts:` of lumen.yaml, read into `Alerts`."""
 
 from collections.abc import Mapping
 from datetime import time
@@ -24,7 +24,7 @@ WHERE: NodePath = ("alerts",)
 
 
 def read_alerts(main: Mapping[str, Any], report: DocumentReport) -> Alerts:
-    """Return whom to tell, from the data of lumen.yaml; a recipient whose way was refused is left out."""
+    """Return the recipients of alerts in the data of lumen.yaml; one without a valid channel is left out."""
     data = main["alerts"]
     interval = duration(data, "interval", report, WHERE, positive=True)
     usual = _quiet(data)
@@ -57,7 +57,7 @@ def _channel(row: Mapping[str, Any]) -> AlertChannel | None:
 
 
 def _quiet(data: Mapping[str, Any]) -> QuietHours | None:
-    """`22:00-07:00`; `never` and nothing are none."""
+    """Return the hours in `22:00-07:00`; None for `never` or nothing."""
     text = data.get("quiet", "never")
     if text == "never":
         return None

@@ -1,4 +1,4 @@
-"""People are told that files were refused, who are not there to read it."""
+"""The part that sends alerts about refused files."""
 
 from collections.abc import Callable, Sequence
 
@@ -12,9 +12,9 @@ from lumen.run.services import Services
 
 
 class RefusalPart(Part):
-    """Tells of each report of a reloader that files were refused, or taken back.
+    """Reports each time that a reloader refuses files or rolls them back.
 
-    `tell` takes the kind of an alert and its text: places and codes, no more of what is in the files.
+    `tell` receives the kind of an alert and its text, which contains only places and codes from the files.
     """
 
     patient = True
@@ -24,6 +24,7 @@ class RefusalPart(Part):
         self._last: ReloadReport | None = None
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        """Report a new refusal."""
         report = self._reloader.last
         if report is not None and report is not self._last:
             self._last = report
@@ -37,7 +38,7 @@ def make(services: Services) -> RefusalPart:
 
 
 def refusal(report: ReloadReport) -> str:
-    """What is told of a report, empty where that is nothing."""
+    """Return the alert's text about a report, empty if it needs no alert."""
     if report.verdict == "rolled back":
         return "the saved files failed while they were in use: the previous files are active again"
     if report.verdict != "refused":

@@ -1,4 +1,4 @@
-"""Whom an exhibition tells of what goes wrong while nobody looks, of what, when, and how."""
+"""The recipients of alerts, with the kinds, times and ways of their alerts."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -19,24 +19,24 @@ KINDS: Mapping[str, str] = {
     "battery": "the robot's battery is low",
     "hot": "the robot's motors are hot",
 }
-"""What can be told, by the word for it."""
+"""The kinds of alerts, with their descriptions."""
 
 DEFAULT_INTERVAL = 900.0
-"""How long the same is told once only [s], where the project does not say."""
+"""The default time in which an alert is not repeated [s]."""
 SMTP_PORTS: Mapping[str, int] = {"starttls": 587, "tls": 465, "none": 25}
-"""The usual port for each way of a mail to be secured."""
+"""The usual port for each kind of a mail server's encryption."""
 
 
 @dataclass(frozen=True, slots=True)
 class Webhook:
-    """A POST with JSON to `url`; `$NAME` is the URL that the environment variable of that name holds."""
+    """A POST with JSON to `url`; `$NAME` stands for the URL in the environment variable of that name."""
 
     url: str
 
 
 @dataclass(frozen=True, slots=True)
 class Mail:
-    """A mail by SMTP; `security` is one of `SMTP_PORTS`."""
+    """A mail by SMTP; `security` is a key of `SMTP_PORTS`."""
 
     host: str
     port: int
@@ -47,7 +47,7 @@ class Mail:
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """A program with its arguments, which gets JSON on its standard input; no shell reads them."""
+    """A program with its arguments, which receives JSON on its standard input; no shell is involved."""
 
     command: tuple[str, ...]
 
@@ -57,13 +57,13 @@ AlertChannel: TypeAlias = Webhook | Mail | Program
 
 @dataclass(frozen=True, slots=True)
 class QuietHours:
-    """From one time of day to another, over midnight where the second is the earlier one."""
+    """The hours from one time of day to another, across midnight if the second is earlier."""
 
     begin: time
     end: time
 
     def hold(self, now: time) -> bool:
-        """Whether it is quiet at this time of day."""
+        """Return whether this time of day is in the quiet hours."""
         if self.begin <= self.end:
             return self.begin <= now < self.end
         return now >= self.begin or now < self.end
@@ -71,17 +71,19 @@ class QuietHours:
 
 @dataclass(frozen=True, slots=True)
 class Recipient:
-    """Somebody who is told: how, of which `kinds`, and when not."""
+    """A recipient of alerts."""
 
     channel: AlertChannel
     kinds: tuple[str, ...] = tuple(KINDS)
+    """The kinds of alerts to send."""
     quiet: QuietHours | None = None
+    """The hours in which alerts are held back, None for none."""
     where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Alerts:
-    """Who is told; each of them the same once in `interval` [s]."""
+    """The recipients; each gets the same alert at most once in `interval` [s]."""
 
     to: tuple[Recipient, ...] = ()
     interval: float = DEFAULT_INTERVAL

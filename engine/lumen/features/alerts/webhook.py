@@ -1,4 +1,4 @@
-"""An alert as a POST with JSON."""
+"""Alerts as a POST with JSON."""
 
 import json
 import os
@@ -12,20 +12,21 @@ from lumen.errors import UndeliveredError
 POST_TIMEOUT = 10.0
 """How long the server may be silent [s]."""
 PASSING = (408, 425, 429, *range(500, 600))
-"""The statuses of HTTP after which it may be taken the next time."""
+"""The HTTP statuses after which another attempt may succeed."""
 TOKEN = "LUMEN_ALERT_TOKEN"
-"""The environment variable whose content goes with each webhook, as `Authorization: Bearer`."""
+"""The environment variable with the token that is sent to each webhook, as `Authorization: Bearer`."""
 
 
 class _Stay(urllib.request.HTTPRedirectHandler):
-    """Nothing is sent to where a server points: it may be anywhere, and a POST would become a GET."""
+    """Follows no redirect: it may lead anywhere, and a POST would become a GET."""
 
     def redirect_request(self, *arguments: Any) -> None:
+        """Return None: do not redirect."""
         return None
 
 
 def post(url: str, body: dict[str, Any]) -> None:
-    """Send it, and be content with any status of 200 to 299. Raises UndeliveredError."""
+    """Send the body; any status from 200 to 299 is a success. Raises UndeliveredError."""
     if url.startswith("$"):
         url = _of_variable(url[1:])
     head = {"Content-Type": "application/json", "User-Agent": "lumen"}
@@ -44,12 +45,12 @@ def post(url: str, body: dict[str, Any]) -> None:
         raise UndeliveredError(f"the server can't be reached: {error.reason}") from None
     except (TimeoutError, ConnectionError) as error:
         raise UndeliveredError(f"the server can't be reached: {error}") from None
-    except (OSError, ValueError, HTTPException) as error:  # whose text may hold the address, which may be a secret
+    except (OSError, ValueError, HTTPException) as error:  # its text may contain the address, which may be a secret
         raise UndeliveredError(f"the request failed: {type(error).__name__}") from None
 
 
 def _of_variable(name: str) -> str:
-    """The URL in an environment variable; what it holds is not said, for it may be a secret."""
+    """Return the URL in an environment variable; errors do not quote it, since it may be a secret."""
     url = os.environ.get(name, "").strip()
     if not url:
         raise UndeliveredError(f"the environment variable {name} is not set", final=True)

@@ -1,4 +1,4 @@
-"""`lumen record`: what is said on the bus of a running exhibition, into a file for Foxglove and Lichtblick."""
+"""`lumen record`: the messages of a running exhibition, into a file for Foxglove and Lichtblick."""
 
 import argparse
 import json
@@ -37,10 +37,11 @@ from lumen.run.reaching import Reached
 from lumen.run.snapshot_store import SnapshotStore
 
 LOOK = 0.1
-"""How often it is looked whether the time is over, or the exhibition is gone [s]."""
+"""The time between two checks whether to stop [s]."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `lumen record` to the parser."""
     add = parser.add_argument
     add(
         "file",
@@ -65,7 +66,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where something was recorded, recovered or marked, else 1."""
+    """Return 0 if something was recorded, repaired or marked, else 1."""
     if options.recover:
         return _recover(options)
     span = seconds(options.span) if options.span else None
@@ -134,7 +135,7 @@ def _record(options: argparse.Namespace, reached: Reached, span: float | None) -
 
 
 def _wait(bus: Bus, tape: FileTape, span: float | None) -> None:
-    """Until the time is over, somebody presses Ctrl-C, the disk refuses, or the exhibition is gone."""
+    """Wait until the time is over, Ctrl-C is pressed, the disk fails, or the exhibition ends."""
     began, ends = time.monotonic(), bus.ability(EndsWithExhibition)
     with suppress(KeyboardInterrupt), progress() as tell:
         while not tape.trouble and not (ends and ends.gone.is_set()):
@@ -146,7 +147,9 @@ def _wait(bus: Bus, tape: FileTape, span: float | None) -> None:
 
 
 def _running_project(root: Path, reached: Reached) -> Project:
-    """The files that run, where they are kept, else those that are there. Raises UsageError where they have errors."""
+    """Return the running project if its files are kept, else the one in the folder. Raises UsageError if it has
+    errors.
+    """
     kept: dict[str, bytes] | None = None
     with suppress(BusError, TypeError, KeyError):
         status = next(ask(reached.bus, operator_key(reached.robot), STATUS(), OPERATOR_ANSWERS))

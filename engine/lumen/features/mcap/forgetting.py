@@ -1,4 +1,4 @@
-"""Forgets a person in recordings, wherever they lie; who writes one writes it anew."""
+"""Removes a person from all recordings; one that is being written is rewritten by its own process."""
 
 from pathlib import Path
 
@@ -14,7 +14,10 @@ from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 
 
 def forget_recordings(folder: Path, name: str, found: Forgetting) -> None:
-    """What was recorded of the bus, wherever that is; what is being written, who writes it writes anew."""
+    """Remove a person from all recordings of a home and those noted there, and add the result to `found`.
+
+    A recording that another process is writing is left to that process, and reported if the name stays.
+    """
     recordings, held = RecordingsFolder(folder), Home(folder).held()
     person = PersonName(name, map(name_key, found.others))
     begun = {each.path.absolute(): each.written for each in recordings.begun()}

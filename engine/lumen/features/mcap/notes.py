@@ -1,4 +1,4 @@
-"""What a recording says of itself, and the files that explain it."""
+"""A recording's metadata, and the attached files that explain it."""
 
 import platform
 import time
@@ -19,11 +19,11 @@ from lumen.run.bundles import packed
 from lumen.run.snapshot_store import SnapshotStore
 
 NOTES = "lumen"
-"""The name of the metadata that say which files ran; once more after each reload."""
+"""The name of the metadata about the running files; they are added again after each reload."""
 
 
 def notes_of(project: Project) -> RecordedNotes:
-    """Who and what is recorded, from now on."""
+    """Return the metadata about the exhibition, its robot and its files, valid from now on."""
     from importlib.metadata import version  # with all that reads mail: few record
 
     said = {
@@ -40,7 +40,7 @@ def notes_of(project: Project) -> RecordedNotes:
 
 
 def bundle_files(root: Path, hashes: Sequence[str], robot: str = "") -> Iterator[RecordedFile]:
-    """The files of these bundles, each as a ZIP, as far as they are kept or are there now."""
+    """Yield the files of these bundles, each as a ZIP, if they are kept or still in the project's folder."""
     store = SnapshotStore(Home(home_of(root, robot)))
     for hash in dict.fromkeys(hashes):
         files = store.files(hash)
@@ -53,7 +53,7 @@ def bundle_files(root: Path, hashes: Sequence[str], robot: str = "") -> Iterator
 
 
 def journal_files(root: Path, began: float, ended: float, robot: str = "") -> Iterator[RecordedFile]:
-    """The files of the journal that say what happened between two times [s since 1970]."""
+    """Yield the journal's files that cover the time between two moments [s since 1970]."""
     for file, header in headers(home_of(root, robot) / JOURNAL_FOLDER):
         with suppress(OSError):
             changed = file.stat().st_mtime

@@ -1,4 +1,6 @@
-"""What is recorded of a running exhibition: the file that was asked for, and the last minutes where that is wanted."""
+"""The part that records a running exhibition: into the requested file, and the last minutes if the project wants
+them.
+"""
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -29,10 +31,10 @@ Telling = Callable[[str], None]
 
 
 class RecordingPart(Part):
-    """Records, and recovers what a run before has left half written; the first part, for it is closed last.
+    """Records, and repairs what an earlier run left incomplete; the first part, since it is closed last.
 
-    `ring` is whether the last minutes are kept at hand where the project wants that: by the one run that has the home.
-    Raises UsageError where `file` can't be written.
+    `ring` allows to keep the last minutes, if the project wants that: only for the one run that owns the home. Raises
+    UsageError if `file` can't be written.
     """
 
     patient = True
@@ -66,24 +68,29 @@ class RecordingPart(Part):
 
     @property
     def trouble(self) -> str:
+        """Why something can't be recorded, empty if all can."""
         return self._recorder.trouble if self._recorder else ""
 
     def marking(self) -> str:
+        """Return what is kept of this moment, empty for nothing."""
         if self._ring:
             minutes = self._said.ring / 60
             return f"the last {minutes:g} min and the next minute are kept in {self._folder.path}"
         return f"everything is recorded into {self._file.path}" if self._file and not self._file.trouble else ""
 
     def use(self, project: Project) -> None:
+        """Record the messages of another bundle from now on."""
         self._project = project
         if self._recorder:
             self._recorder.use(project)
 
     def summary(self) -> Iterator[str]:
+        """Yield a line about the recorded file."""
         if self._file:
             yield self._file.trouble or f"recorded: {self._file.path}, {counted(self._file.messages, 'message')} so far"
 
     def close(self) -> None:
+        """Finish the recordings, and report messages that were dropped."""
         if self._recorder:
             self._recorder.close()
             if dropped := self._recorder.dropped:
@@ -110,7 +117,7 @@ class RecordingPart(Part):
             raise UsageError(f"{file} can't be recorded: {getattr(error, 'strerror', None) or error}") from None
 
     def _ringing(self) -> RingTape | None:
-        """The ring, None where what it needs is not installed: an exhibition begins all the same."""
+        """Return the ring, None if a package is missing: the exhibition starts without it."""
         try:
             demand_recording()
             return RingTape(
@@ -125,17 +132,19 @@ class RecordingPart(Part):
             return None
 
     def _kept(self, began: float, ended: float, pieces: Sequence[Path]) -> Iterable[Recorded]:
-        """What makes a recording of these pieces explain itself: the files, the journal, and the robot's looks."""
+        """Return what a recording of these pieces needs to be understood: the files, the journal and the robot's
+        shape.
+        """
         look = self._view.look(began) if self._view else ()
         return [*self._explaining(pieces), *journal_files(self._root, began, ended, self._robot), *look]
 
     def _rescued(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
-        """The same of pieces that were left, with the journal of their time."""
+        """Return the same for the pieces of an earlier run, with the journal of their time."""
         times = [piece.stat().st_mtime for piece in pieces]
         return self._kept(min(times) - PIECE_PERIOD, max(times), pieces)
 
     def _explaining(self, pieces: Sequence[Path]) -> Iterable[Recorded]:
-        """The files that ran in these pieces."""
+        """Yield the files that ran during these pieces."""
         hashes = list[str]()
         for piece in pieces:
             with suppress(RecordingError):
@@ -147,7 +156,7 @@ class RecordingPart(Part):
 
 
 def make(services: Services) -> RecordingPart:
-    """Make the recorder of the bus, which also recovers what the run before left half written."""
+    """Make the part that records the bus and repairs what an earlier run left incomplete."""
     plan = services.plan
     file, patient = plan.options.get("record"), plan.story is not None and not plan.roles
     tell = services.tell("recording")

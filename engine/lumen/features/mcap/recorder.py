@@ -1,4 +1,4 @@
-"""Who records a bus: on a thread of its own, so that no publisher and no tick waits for a disk."""
+"""Records a bus on a thread of its own, so that neither publishers nor ticks wait for a disk."""
 
 import logging
 import threading
@@ -20,15 +20,15 @@ from lumen.upkeep.drops import DropLog
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING = 20_000
-"""Messages that wait to be written; then the oldest give way, and are counted."""
+"""The number of messages that may wait to be written; beyond it the oldest are dropped and counted."""
 WRITE_PERIOD = 0.1
-"""How often what waits is written [s]."""
+"""The time between two writes [s]."""
 FORGETTING_SPACING = 2.0
-"""How long after names were taken out the next are [s]: each time files are written anew."""
+"""The time between two removals of names [s], each of which rewrites files."""
 FORGETTING_SPAN = 10.0
-"""How long a name that was to be forgotten is taken out of what comes [s]: who was asked to forget it says so."""
+"""How long a forgotten name is also removed from new messages [s]: the request to forget contains it."""
 MAX_FORGOTTEN = 100
-"""Names at a time."""
+"""The number of names that are removed at a time."""
 FORGOTTEN_ROUTE, IMAGE_ROUTE = "forgotten", "image"
 FORGOTTEN_KEY = DEFAULT_KEYS[FORGOTTEN_ROUTE].partition("{robot}")[2]
 
@@ -36,22 +36,22 @@ _log = logging.getLogger(__name__)
 
 
 class RecordingTape(Protocol):
-    """Takes what is recorded; nothing here raises for what a disk does: `trouble` says why it can't be written."""
+    """Receives items to record; errors of a disk do not raise, but are described in `trouble`."""
 
     trouble: str
 
     def write(self, items: Sequence[Recorded], now: float) -> None: ...
 
     def mark(self, why: str, now: float) -> None:
-        """Something happened that is to be kept."""
+        """Keep what happened around this moment."""
         ...
 
     def settle(self, now: float) -> None:
-        """Nothing more is to be written at the moment, `now` [s since 1970]."""
+        """Complete what is due at `now` [s since 1970]; no item is waiting."""
         ...
 
     def forget(self, people: Sequence[PersonName]) -> None:
-        """Take their names out of what was written."""
+        """Remove these people from what was written."""
         ...
 
     def close(self) -> None: ...
@@ -63,10 +63,10 @@ class _Heard(NamedTuple):
 
 
 class Recorder:
-    """Writes what is said on a bus onto tapes, from `start` to `close`.
+    """Writes the messages of a bus to tapes, from `start` to `close`.
 
-    Where it is `patient` whoever publishes waits for it, else messages give way where a disk is too slow: that is said,
-    and counted in `dropped`. Without the `camera` no image is asked for. `extra` makes more of a message than itself.
+    If it is `patient`, publishers wait for it; else messages are dropped when a disk is too slow, which is logged and
+    counted in `dropped`. Without `camera` no image is subscribed to. `extra` returns further items for a message.
     """
 
     def __init__(
@@ -93,28 +93,30 @@ class Recorder:
 
     @property
     def trouble(self) -> str:
-        """Why something can't be written, empty where all can."""
+        """Why something can't be written, empty if all can."""
         return next((tape.trouble for tape in self.tapes if tape.trouble), "")
 
     @property
     def dropped(self) -> int:
+        """The number of dropped messages."""
         return sum(self._drops.counts.values())
 
     def start(self) -> None:
+        """Start the thread and subscribe."""
         self._thread.start()
         self._undo = [self._bus.subscribe(pattern, self._hear) for pattern in _patterns(self._project, self._camera)]
 
     def use(self, project: Project) -> None:
-        """Another bundle runs from now on."""
+        """Record the messages of another bundle from now on."""
         self._news.append(project)
 
     def mark(self, why: str) -> None:
-        """Have kept what is being recorded; any thread may."""
+        """Keep what is being recorded; can be called from any thread."""
         for tape in self.tapes:
             tape.mark(why, time.time())
 
     def close(self, patience: float = 20.0) -> None:
-        """Write what is left, at most so long [s], and end; harmless when repeated."""
+        """Write what is left, for at most `patience` [s], and end; further calls do nothing."""
         for undo in self._undo:
             undo()
         self._undo = []
@@ -126,7 +128,7 @@ class Recorder:
 
     def _hear(self, message: Message) -> None:
         if message.id.endswith(COPY):
-            return  # the message itself comes, too
+            return  # the message itself arrives too
         heard = _Heard(message, time.time())
         if not self._patient:
             self._drops.push(self._waiting, heard, lambda each: each.message.key, "the disk is too slow for them")
@@ -170,7 +172,7 @@ class Recorder:
             try:
                 items += self._encoder.encode(message, came)
                 items += self._extra(message, came) if self._extra else ()
-            except Exception as error:  # one message that nobody can encode costs no other
+            except Exception as error:  # a message that can't be encoded must not affect others
                 self._drops.add(message.key, f"it can't be written: {error!r}")
             if why := happening(message, self._project.robot):
                 marks.append((why, came))
@@ -181,7 +183,7 @@ class Recorder:
 
     def _look_for_names(self, message: Message, came: float) -> None:
         if message.key != self._project.key_of(FORGOTTEN_ROUTE) and not message.key.endswith(FORGOTTEN_KEY):
-            return  # the memory of another robot on this bus counts as well: what it hears is recorded, too
+            return  # another robot's memory counts too: what that robot hears is recorded as well
         match message.body:
             case {"name": str(name)} if (key := name_key(name)) and len(self._forgotten) < MAX_FORGOTTEN:
                 person = PersonName(name)
@@ -189,7 +191,7 @@ class Recorder:
                 self._forgotten[key] = person, came + FORGETTING_SPAN
 
     def _scrubbed(self, message: Message, came: float) -> Message:
-        """A message without those who were forgotten just now."""
+        """Return a message without people who were forgotten recently."""
         for key, (person, until) in list(self._forgotten.items()):
             if came > until:
                 del self._forgotten[key]
@@ -200,7 +202,9 @@ class Recorder:
 
 
 def _patterns(project: Project, camera: bool) -> Sequence[str]:
-    """Everything; without the camera all keys that are known but the images', which then nobody renders."""
+    """Return the patterns to subscribe to: everything; without the camera all known keys but the images', so that none
+    are rendered.
+    """
     if camera:
         return ("#",)
     ours = [key_of_robot(key, project.robot) for key in INTERNAL_KEYS]

@@ -1,4 +1,4 @@
-"""The recordings of an exhibition: those in its home, and a note of each that was begun somewhere else."""
+"""The recordings of an exhibition: those in its home, and notes of those that were begun elsewhere."""
 
 import os
 import uuid
@@ -18,36 +18,36 @@ _NOTE = ".begun"
 
 
 class BegunRecording(NamedTuple):
-    """A recording that somebody began; `written` is whether a process is at it."""
+    """A recording that was begun; `written` is whether a process is still writing it."""
 
     path: Path
     written: bool
 
 
 class RecordingsFolder:
-    """`recordings/` in the home of an exhibition."""
+    """The folder `recordings/` in the home of an exhibition."""
 
     def __init__(self, home: Path) -> None:
         self.path = home / RECORDINGS_FOLDER
         self.ring = self.path / RING_FOLDER
 
     def make(self) -> None:
-        """Raises OSError where it can't be made."""
+        """Create the folder. Raises OSError if that fails."""
         private_folder(self.path.parent)
         private_folder(self.path)
         private_folder(self.ring)
 
     def files(self) -> list[Path]:
-        """The recordings that are kept here, the oldest first."""
+        """Return the recordings in the folder, the oldest first."""
         found = [(file.stat().st_mtime, file) for file in self.path.glob(f"*{SUFFIX}") if file.is_file()]
         return [file for _, file in sorted(found)]
 
     def parts(self) -> list[Path]:
-        """The pieces of the ring, the oldest first."""
+        """Return the pieces of the ring, the oldest first."""
         return sorted(self.ring.glob(f"*{SUFFIX}"))
 
     def begin(self, path: Path) -> Home | None:
-        """Note that this one is being written, until the result is released; None where nothing can be noted."""
+        """Note that a recording is being written until the result is released; None if the note can't be written."""
         note = Home(self.path / f"{uuid.uuid4().hex[:12]}{_NOTE}")
         try:
             self.make()
@@ -59,7 +59,7 @@ class RecordingsFolder:
         return note
 
     def begun(self) -> Iterator[BegunRecording]:
-        """All that were begun and are there still; notes of what is gone are taken away."""
+        """Yield all begun recordings that exist, and delete the notes of others."""
         for folder in sorted(self.path.glob(f"*{_NOTE}")):
             note = Home(folder)
             said = note.read("path")
@@ -71,7 +71,9 @@ class RecordingsFolder:
                 _remove(folder)
 
     def prune(self, now: float, keep: float, size: float) -> None:
-        """Delete what is older than `keep` days, and the oldest of what is more than `size` MB, but for the newest."""
+        """Delete recordings older than `keep` days, and the oldest beyond `size` MB in total, but never the newest for
+        its size.
+        """
         left = 0
         begun = {each.path.absolute() for each in self.begun() if each.written}
         for number, file in enumerate(reversed(self.files())):

@@ -1,4 +1,4 @@
-"""What a run that was killed has left half written: given its index at the next start."""
+"""Repairs recordings that a killed run left incomplete, at the next start."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -14,13 +14,13 @@ from lumen.language.counts import counted
 from lumen.upkeep.threads import WatchedThread
 
 Explaining = Callable[[Sequence[Path]], Iterable[Recorded]]
-"""What makes the recording of these pieces explain itself."""
+"""Returns what a recording of these pieces needs to be understood."""
 
 
 class RecordingRescue:
-    """Recovers, on a thread of its own, what was begun and left, and says so with `tell`.
+    """Repairs incomplete recordings on a thread of its own, and reports them with `tell`.
 
-    The pieces of a ring are kept: whoever left them ended without notice. It starts none where there is nothing to do.
+    Pieces of a ring are kept as a recording, since their run ended unexpectedly. Without any work it starts no thread.
     """
 
     def __init__(
@@ -34,7 +34,7 @@ class RecordingRescue:
             self._thread.start()
 
     def close(self, patience: float = 20.0) -> None:
-        """Wait until it is done, at most so long [s]."""
+        """Wait until it is done, at most `patience` [s]."""
         if self._thread.started:
             self._thread.join(patience)
 
@@ -61,7 +61,7 @@ class RecordingRescue:
 
 @contextmanager
 def _telling(tell: Callable[[str], None], path: Path) -> Iterator[None]:
-    """What can't be recovered is told, and left as it is."""
+    """Report a recording that can't be repaired, and leave it as it is."""
     try:
         yield
     except (LumenError, OSError) as error:
@@ -69,7 +69,7 @@ def _telling(tell: Callable[[str], None], path: Path) -> Iterator[None]:
 
 
 def remove_drafts(path: Path) -> None:
-    """Take away what was half written beside a recording."""
+    """Delete incomplete drafts of a recording."""
     for draft in path.parent.glob(f"{path.name}.*.new"):
         with suppress(OSError):
             draft.unlink()
@@ -83,7 +83,7 @@ def _is_cut(path: Path) -> bool:
 
 
 def _readable(piece: Path) -> bool:
-    """Whether it is a recording at all: one that was cut in its first bytes is none."""
+    """Return whether it is a recording: one that was cut off in its first bytes is not."""
     try:
         whole(piece)
     except RecordingError:

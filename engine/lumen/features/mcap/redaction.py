@@ -1,4 +1,4 @@
-"""A recording without somebody: no message says their name, no picture or sound is left of when they were there."""
+"""Removes a person from a recording: their name from all messages, and all pictures and sounds around them."""
 
 import tempfile
 from collections.abc import Mapping
@@ -17,13 +17,15 @@ from lumen.journal.redaction import redact
 from lumen.language.people import PersonName
 
 AROUND = 600.0
-"""How long before and after their name was said pictures and sounds may be of them [s]."""
+"""How long before and after their name pictures and sounds may be of them [s]."""
 PICTURE_FORM = "foxglove.CompressedImage"
 SOUND_FORMS = ("lumen.recording", "lumen.wav.stream")
 
 
 class Redaction(NamedTuple):
-    """How many `messages` and attached `files` name somebody, and how many `pictures` and sounds may show them."""
+    """The number of `messages` and attached `files` that name a person, and of `pictures` and sounds that may contain
+    them.
+    """
 
     messages: int = 0
     files: int = 0
@@ -34,7 +36,7 @@ class Redaction(NamedTuple):
 
 
 def redacted(path: Path, person: PersonName) -> tuple[Redaction, Changed]:
-    """What in a recording is about somebody, and what takes it out."""
+    """Return what in a recording is about a person, and the function that removes it."""
     times, messages, files = list[int](), 0, 0
     for item in read_recording(path):
         match item:
@@ -79,7 +81,7 @@ def _data(item: RecordedMessage) -> Any:
 
 
 def _without_person(item: RecordedFile, person: PersonName) -> RecordedFile:
-    """A journal that is attached without the name; itself where it is none, or does not say it."""
+    """Return an attached journal without the name; the item itself if it is not a journal or lacks the name."""
     if not item.name.endswith(JOURNAL_SUFFIX):
         return item
     with tempfile.TemporaryDirectory() as folder:
@@ -91,7 +93,7 @@ def _without_person(item: RecordedFile, person: PersonName) -> RecordedFile:
 
 
 def _merged(times: list[int]) -> list[tuple[int, int]]:
-    """When they were there [ns since 1970]."""
+    """Return the merged spans around these times [ns since 1970]."""
     spans = list[tuple[int, int]]()
     around = int(AROUND * NANO)
     for at in sorted(times):

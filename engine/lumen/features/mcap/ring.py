@@ -1,4 +1,4 @@
-"""The last minutes, always; kept where something happened."""
+"""The last minutes of an exhibition, recorded all the time and kept when something happens."""
 
 import logging
 import re
@@ -18,21 +18,21 @@ from lumen.language.people import PersonName
 from lumen.language.retention import RecordingSettings
 
 PIECE_PERIOD = 30.0
-"""How long a piece of the ring is [s]: so much more than wanted is kept at most."""
+"""The length of a piece of the ring [s]: at most so much more than requested is kept."""
 AFTER = 60.0
-"""How long it goes on after something happened [s]."""
+"""How long recording continues after something happened [s]."""
 RETRY_PERIOD = 30.0
-"""How long after the disk has refused something it is tried again [s]."""
+"""The pause after an error of the disk [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class RingTape:
-    """Keeps the last `settings.ring` seconds in pieces, and makes them a recording where something is marked.
+    """Keeps the last `settings.ring` seconds in pieces, and joins them to a recording when a moment is marked.
 
-    It goes on for `AFTER` s, and where more happens within them, for so long after that, but no longer than the ring is
-    in all. What one recording holds, the next does not. `first` begins each piece, `last` ends a recording: with the
-    times of its beginning and end [s since 1970]. `kept` hears of each that was written.
+    It continues for `AFTER` s; further marks extend that, up to the ring's length in all. Consecutive recordings do not
+    overlap. `first` begins each piece; `last` returns the end of a recording from the times of its beginning and end [s
+    since 1970] and its pieces. `kept` receives the path of each recording.
     """
 
     def __init__(
@@ -51,6 +51,7 @@ class RingTape:
         self._count = 0
 
     def write(self, items: Sequence[Recorded], now: float) -> None:
+        """Write items, and begin a piece if necessary."""
         if self._file is None and (items and now >= self._retry):
             self._begin(now)
         if self._file:
@@ -60,11 +61,13 @@ class RingTape:
                 self._fail(error, now)
 
     def mark(self, why: str, now: float) -> None:
+        """Keep the last minutes and the next ones for this reason."""
         if not self._why:
             self._why, self._marked = why, now
         self._until = min(now + AFTER, self._marked + max(AFTER, self._settings.ring))
 
     def settle(self, now: float) -> None:
+        """Complete what is due: a chunk, a piece, or a recording to keep."""
         try:
             if self._file:
                 self._file.settle()
@@ -77,7 +80,7 @@ class RingTape:
             self._fail(error, now)
 
     def forget(self, people: Sequence[PersonName]) -> None:
-        """Take them out of all pieces, and of what was kept."""
+        """Remove people from all pieces and kept recordings."""
         self._end()
         for file in [*(piece for _, piece in self._pieces), *self._folder.files()]:
             for person in people:
@@ -89,7 +92,7 @@ class RingTape:
                     _log.warning("a recording still names a person who should be forgotten: %s", error)
 
     def close(self) -> None:
-        """Keep what is marked; what is left of the ring is nobody's."""
+        """Keep what is marked, and delete the rest of the ring."""
         try:
             if self._why:
                 self._keep(time.time())
@@ -119,7 +122,7 @@ class RingTape:
                 self._fail(error, time.time())
 
     def _drop(self, now: float) -> None:
-        """Delete the pieces that are over for longer than the ring is long, but for those that are to be kept."""
+        """Delete the pieces that ended longer ago than the ring's length, except those to be kept."""
         latest = self._marked if self._why else now
         while self._pieces and self._ended(0) < latest - self._settings.ring:
             with suppress(OSError):
@@ -131,7 +134,7 @@ class RingTape:
         return after[0][0] if after else self._pieces[number][0] + (PIECE_PERIOD if self._file else 0.0)
 
     def _keep(self, now: float) -> None:
-        """Make a recording of the pieces, which are gone then."""
+        """Join the pieces to a recording and delete them."""
         why, self._why = self._why, ""
         self._end()
         pieces = [piece for _, piece in self._pieces]
@@ -148,7 +151,7 @@ class RingTape:
         self._kept(path)
 
     def _fail(self, error: Exception, now: float) -> None:
-        """Told once, and tried again later; the pieces that are there stay."""
+        """Report an error once, and try again later; existing pieces stay."""
         self._retry = now + RETRY_PERIOD
         if not self.trouble:
             self.trouble = (
@@ -161,6 +164,6 @@ class RingTape:
 
 
 def kept_as(folder: RecordingsFolder, at: float, why: str) -> Path:
-    """Where a recording of that time [s since 1970] goes, for that reason."""
+    """Return the path for a recording of that time [s since 1970] and reason."""
     word = re.sub(r"[^\w]+", "-", why.lower()).strip("-")[:40]
     return writable(folder.path / f"{file_stamp(at)}-{word or 'mark'}{SUFFIX}")

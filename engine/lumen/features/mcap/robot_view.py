@@ -1,4 +1,4 @@
-"""The robot as Foxglove shows it: its links where they are, and what they look like."""
+"""The robot as Foxglove shows it: the places and shapes of its links."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -16,11 +16,13 @@ from lumen.robot.links import BodyLinks, LinkShape, links_of
 from lumen.robot.sense_codec import decode_reading
 
 FRAMES, LOOK = ".frames", ".look"
-"""What follows the joints' topic for the frames of the links, and for what they look like."""
+"""The suffixes of the joints' topic for the links' frames and for their shapes."""
 
 
 class RobotView:
-    """Makes frames of a robot's joints; `tell` hears why there are none: they need the extra `simulation`."""
+    """Converts a robot's joints to frames; without the extra `simulation` there are none, and `tell` receives the
+    reason.
+    """
 
     def __init__(self, project: Project, tell: Callable[[str], None] = lambda text: None) -> None:
         self._body, self._topic = project.body, project.key_of(Sense.JOINT)
@@ -32,7 +34,7 @@ class RobotView:
             tell(f"the recording shows no robot: {error}")
 
     def __call__(self, message: Message, came: float) -> Iterator[RecordedMessage]:
-        """The frames of the links for a message of the joints."""
+        """Yield the frames of the links for a message with the joints."""
         if self._links is None or message.key != self._topic:
             return
         joints = decode_reading(Sense.JOINT, message.body, tuple(self._body.joints))
@@ -49,7 +51,7 @@ class RobotView:
         )
 
     def look(self, at: float) -> Iterator[RecordedMessage]:
-        """What the links look like, from then on [s since 1970]."""
+        """Yield the shapes of the links, valid from then on [s since 1970]."""
         if self._links is None:
             return
         update, entities = form_class("SceneUpdate")(), dict[str, Any]()

@@ -1,4 +1,4 @@
-"""A recording into one file, from its beginning to its end."""
+"""A recording in one file, from the beginning to the end."""
 
 import logging
 import time
@@ -17,10 +17,11 @@ _log = logging.getLogger(__name__)
 
 
 class FileTape:
-    """Writes one recording; `first` begins it, `last` is asked for what ends it, with when it began [s since 1970].
+    """Writes one recording; `first` are its first items, `last` returns the last ones from the beginning [s since
+    1970].
 
-    Where the disk refuses, what was written until then is left, and it is told once. Raises OSError or LumenError where
-    it can't be begun.
+    After an error of the disk, which is reported once, the file stays as far as it was written. Raises OSError or
+    LumenError if it can't be created.
     """
 
     def __init__(
@@ -38,20 +39,24 @@ class FileTape:
         self.write(list(first), self._began)
 
     def write(self, items: Sequence[Recorded], now: float) -> None:
+        """Write items."""
         self._try(lambda file: file.write(items))
 
     def mark(self, why: str, now: float) -> None:
-        """All of it is kept."""
+        """Do nothing: the whole recording is kept."""
 
     def settle(self, now: float) -> None:
+        """Complete a chunk if one is due."""
         self._try(lambda file: file.settle())
 
     def forget(self, people: Sequence[PersonName]) -> None:
-        """Write it anew without them, and go on."""
+        """Rewrite the recording without these people, and continue."""
         for person in people:
             self._try(lambda file, person=person: self._forget(file, person))  # type: ignore[misc]
 
     def close(self) -> None:
+        """Write the last items and the index, and close the file."""
+
         def end(file: RecordingFile) -> None:
             file.write(self._last(self._began))
             file.finish()
@@ -67,7 +72,7 @@ class FileTape:
         self._file = reopened(self.path, redacted(self.path, person)[1])
 
     def _try(self, work: Callable[[RecordingFile], None]) -> None:
-        """What the disk refuses ends the recording, and nothing else."""
+        """Do this with the file; an error of the disk ends only the recording."""
         if self._file is None:
             return
         try:

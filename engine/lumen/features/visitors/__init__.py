@@ -1,4 +1,4 @@
-"""The visitors whom the exhibition remembers, and the journal of what happened."""
+"""The visitors that the exhibition remembers, and the journal of what happened."""
 
 from lumen.feature import Feature, ModuleRow, Subcommand
 

@@ -1,4 +1,4 @@
-"""`lumen memory`: who and what the database module knows, and forgetting somebody for good."""
+"""`lumen memory`: lists what the database module knows, and forgets a visitor permanently."""
 
 import argparse
 import json
@@ -28,12 +28,13 @@ from lumen.run.one_robot import one_robot
 from lumen.run.reaching import reach_exhibition
 
 ANSWER_TIMEOUT = 2.0
-"""How long the memory of a running exhibition has to answer [s]; where none answers, all others are told."""
+"""How long a running exhibition's memory may take to answer [s]; without an answer, all modules are notified."""
 
 WHATS = ("visitors", "journal", "forget")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `lumen memory` to the parser."""
     add = parser.add_argument
     add("what", choices=WHATS, help="list the visitors or the journal, or forget a visitor permanently")
     add(
@@ -54,6 +55,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    """List or forget; return the exit code. Raises UsageError if there is no database."""
     root = shown_project(options.project)
     folder = home_of(root, one_robot(root, options.robot_name))
     if options.what == "forget":
@@ -69,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _list(options: argparse.Namespace, store: Store, file: Path) -> int:
-    """Raises ModuleError where the database can't be used."""
+    """Print the rows. Raises ModuleError if the database is unusable."""
     rows = (
         store.visitors()
         if options.what == "visitors"
@@ -85,7 +87,9 @@ def _list(options: argparse.Namespace, store: Store, file: Path) -> int:
 
 
 def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
-    """0 where somebody was forgotten and nothing is left that is in reach; raises UsageError without a name."""
+    """Return 0 if a visitor was forgotten and nothing within reach is left, else 1. Raises UsageError without a
+    name.
+    """
     if not name_key(options.name or ""):
         raise UsageError("name the visitor: `lumen memory forget NAME`")
     found, settings = Forgetting(), main_settings(root, one_robot(root, options.robot_name))
@@ -101,7 +105,7 @@ def _forget(options: argparse.Namespace, root: Path, folder: Path) -> int:
 
 
 def _tell_running(options: argparse.Namespace, settings: Settings | None, found: Forgetting) -> str:
-    """Have the running exhibition forget them, too; return the address of its broker, or an empty text."""
+    """Let the running exhibition forget the visitor too; return the address of its broker, or an empty text."""
     try:
         reached = reach_exhibition(options.project, options.bus, options.robot_name)
     except BusUnreachableError as error:
@@ -117,7 +121,7 @@ def _tell_running(options: argparse.Namespace, settings: Settings | None, found:
 
 
 def _ask(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
-    """The memory, which tells all others; without one that is done here."""
+    """Request that of the running memory, which notifies the others; without one, notify them here."""
     try:
         answer = next(
             ask(bus, _key(settings, "fact"), {"method": "forget", "name": name}, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT)
@@ -173,5 +177,5 @@ def _when(moment: object) -> str:
 
 
 def _plain(text: str) -> str:
-    """The text on one line, without signs that would steer the terminal."""
+    """Return the text with characters that control a terminal replaced."""
     return "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)

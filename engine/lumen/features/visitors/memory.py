@@ -1,4 +1,4 @@
-"""Writes a journal of what the bus carries, knows visitors by their names, and answers questions about both."""
+"""Writes a journal of the bus's messages, remembers visitors by their names, and answers questions about both."""
 
 import time
 from collections import deque
@@ -19,27 +19,28 @@ from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 from lumen.run.module import DAY, KEEP_DAYS, Module
 
 DATABASE_FILE = "memory.db"
-"""The key of the behaviour's context that holds the visitor's name, where `lumen.yaml` does not say."""
+"""The default key of the behaviour's context that has the visitor's name."""
 MAX_PENDING_ENTRIES = 10_000
-"""Entries that wait for a database that can't be written; then the oldest are dropped."""
+"""The number of entries that may wait for an unwritable database; beyond it the oldest are dropped."""
 RETRY_INTERVAL = 1.0
-"""How often a database that can't be written is tried again [s]."""
+"""The time between two attempts to write to an unwritable database [s]."""
 EXPIRY_INTERVAL = 3_600.0
-"""How often what is too old is deleted [s]."""
+"""The time between two deletions of old entries [s]."""
 SENSES = ("joint", "sonar", "tactile", "battery")
 
 
 class Memory(Module):
-    """The database module. `file` None keeps everything in this process; `clock` gives the date [s since 1970].
+    """The database module. Without a `file` it keeps everything in this process; `clock` gives the time [s since 1970].
 
-    Entries are one of `heard`, `said`, `state`, `visitor`, `recognised`, `gender`, `fact`, a sense's name, or what
-    somebody else calls theirs on the route `journal`.
+    The kinds of entries are `heard`, `said`, `state`, `visitor`, `recognised`, `gender`, `fact`, a sense's name, or a
+    kind of other modules' entries on the route `journal`.
     """
 
     name = MEMORY
 
     @classmethod
     def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
+        """Make the module with its database in `folder`, or without a file if that is None."""
         return cls(project, bus, tell, folder and folder / DATABASE_FILE)
 
     def __init__(
@@ -59,6 +60,7 @@ class Memory(Module):
         self._owed: dict[str, str] = {}
 
     def hears(self) -> Mapping[str, MessageHandler]:
+        """Return the handlers of the routes that the module listens to."""
         heard: dict[str, MessageHandler] = {
             "state": self._state,
             "heard": lambda m: self._note("heard", m.body, "result"),
@@ -73,7 +75,7 @@ class Memory(Module):
         return heard
 
     def idle(self) -> float | None:
-        """Write what waits, and delete what is older than it may be."""
+        """Write waiting entries, and delete expired ones; return the time until the next call [s]."""
         now = self._clock()
         try:
             self._settle()
@@ -86,6 +88,7 @@ class Memory(Module):
         return EXPIRY_INTERVAL
 
     def end(self) -> None:
+        """Write waiting entries, report lost ones, and close the database."""
         try:
             self._settle()
         except ModuleError as error:
@@ -93,7 +96,7 @@ class Memory(Module):
         self._store.close()
 
     def _settle(self) -> None:
-        """Write and forget what could not be written or forgotten before."""
+        """Write and delete what could not be written or deleted before."""
         self._write()
         for name in list(self._owed.values()):
             self._delete(name)
@@ -112,9 +115,10 @@ class Memory(Module):
     def _note(
         self, kind: str, body: Any, text: str, data: Mapping[str, Any] | None = None, *, theirs: bool = True
     ) -> None:
-        """An entry; `text` names the field of the body that says it in a word.
+        """Note an entry; `text` is the field of the body with its main text.
 
-        What is not the visitor's (`theirs`), as what the robot feels, is noted also where they were forgotten.
+        Entries that are not about the visitor (not `theirs`), such as the robot's senses, are also noted during the
+        visit of a forgotten visitor.
         """
         rest = {k: v for k, v in body.items() if k != text} if data is None else data
         self._live(spoken=theirs and kind != "state")
@@ -128,7 +132,9 @@ class Memory(Module):
         self._visit.live(self._clock(), self._earlier, spoken=spoken)
 
     def _earlier(self) -> JournalEnd:
-        """Where an earlier run stopped; as good as nowhere where the database can't be read: writing tells of that."""
+        """Return the end of an earlier run's journal; an empty one if the database is unreadable, which the next write
+        reports.
+        """
         try:
             return self._store.end()
         except ModuleError:
@@ -151,7 +157,7 @@ class Memory(Module):
                     self._note("state", {"text": ", ".join(entered)}, "text", data)
 
     def _sample(self, sense: str, message: Message) -> None:
-        """Senses are noted once in every so many seconds, as Lumen's database did at 1 Hz."""
+        """Note a sense's reading at most once in the configured time; Lumen's database did so at 1 Hz."""
         now, every = self._clock(), float(self.settings.options["sample"])
         if now - self._sampled.get(sense, 0.0) >= every:
             self._sampled[sense] = now
@@ -188,13 +194,13 @@ class Memory(Module):
         return {**counted, "others": list(found.others)} if found.others else counted
 
     def _unlearn(self, message: Message) -> None:
-        """Somebody was told to forget a visitor: this module, or whoever deletes the files."""
+        """Forget a visitor on request of this module or of a program that deletes files."""
         match message.body:
             case {"name": str(name)} if name_key(name):
                 self._delete(name)
 
     def _delete(self, name: str) -> Forgotten:
-        """Forget them now; where that can't be (ModuleError), as soon as the database can be written."""
+        """Forget a visitor now; if that fails (ModuleError), as soon as the database can be written."""
         self._owed[name_key(name)] = name
         if self._visit.is_with(name):
             self._visit.forget(name)
@@ -208,7 +214,7 @@ class Memory(Module):
         return found
 
     def _asked(self, message: Message) -> None:
-        """An entry of somebody else's, or the question for some."""
+        """Note an entry of another module, or answer its question for entries."""
         body = message.body if isinstance(message.body, dict) else {}
         if body.get("method") != "read":
             data = {k: v for k, v in body.items() if k not in ("method", "kind", "text")}
@@ -219,7 +225,9 @@ class Memory(Module):
         self._answer(message, lambda: {"entries": self._store.journal(since=since, visitor=visitor, limit=limit)})
 
     def _answer(self, message: Message, work: Callable[[], Mapping[str, Any]]) -> None:
-        """Do it with all written that came before, and tell who asked how it went; the operator where it failed."""
+        """Write all earlier entries, do the work, and reply with the result; errors are also reported to the
+        operator.
+        """
         try:
             self._write()
             found = work()
@@ -230,13 +238,13 @@ class Memory(Module):
 
 
 def _check_name(name: str, method: str) -> None:
-    """Raises ModuleError where there is none that could be found again."""
+    """Raise ModuleError if the name is empty or has no letters to find it by."""
     if not name_key(name):
         raise ModuleError(f"`{method}` takes a `name`")
 
 
 def forget_in_database(folder: Path, name: str, found: Forgetting) -> None:
-    """Forget a visitor in the database of a home, and note whose names only contain that name."""
+    """Forget a visitor in the database of a home, and note visitors whose names only contain that name."""
 
     def work() -> None:
         store = Store(file)

@@ -1,4 +1,4 @@
-"""The database module: what happened, and who was there, in SQLite."""
+"""The database module: the journal and the known visitors, in SQLite."""
 
 from lumen.features.visitors.memory import Memory
 from lumen.features.visitors.store import JournalEntry, Store

@@ -1,4 +1,4 @@
-"""The journal and the visitors in an SQLite file that its owner alone may read."""
+"""The journal and the visitors in an SQLite file that only its owner may read."""
 
 import json
 import os
@@ -16,9 +16,9 @@ from lumen.language.people import PersonName, name_key
 from lumen.upkeep.private_folder import private_folder
 
 LOCK_TIMEOUT = 0.5
-"""How long a locked database is waited for [s]."""
+"""How long to wait for a locked database [s]."""
 MAX_ROWS = 1_000
-"""Rows of one answer."""
+"""The most rows of one answer."""
 
 _VISITOR = "name, first, last, visits, data"
 _ENTRY = "id, time, date, robot, visit, visitor, kind, text, data"
@@ -29,38 +29,39 @@ _THEIRS = """SELECT id, visit FROM journal
 
 
 class JournalEntry(NamedTuple):
-    """A row of the journal: when [s since 1970], what kind of thing, who the visitor was (empty: unknown), what.
-
-    `visit` is the same number for all that belongs to one visit, 0 where that is not known.
-    """
+    """A row of the journal."""
 
     time: float
+    """The time [s since 1970]."""
     robot: str
     visitor: str
+    """The visitor's name, empty if it is unknown."""
     kind: str
+    """The kind of entry."""
     text: str
     data: Mapping[str, Any] = {}
     visit: int = 0
+    """The same number for all entries of one visit, 0 if unknown."""
 
 
 class Forgotten(NamedTuple):
-    """What was deleted of somebody: visitors, entries of the journal, and of which visits those were.
-
-    `others` are the names of visitors that hold the name, as `Ana Maria` does `Ana`, and are somebody else's.
-    """
+    """What was deleted of a person."""
 
     visitors: int
+    """The number of visitors."""
     entries: int
+    """The number of entries of the journal."""
     visits: frozenset[int] = frozenset()
+    """The visits that these entries belong to."""
     others: tuple[str, ...] = ()
+    """Names of other visitors that contain the name, as `Ana Maria` contains `Ana`."""
 
 
 class Store:
-    """The database in `file`; without one, in this process's own memory, and gone with it.
+    """The database in `file`; without one, in this process's own memory.
 
-    Whatever SQLite can't do is a ModuleError in one line, and the next call tries again. What is deleted is
-    overwritten.
-    It belongs to the thread that uses it first.
+    Errors of SQLite become a ModuleError of one line, and the next call tries again. Deleted data is overwritten. It
+    may be used only by the thread that uses it first.
     """
 
     def __init__(self, file: Path | None) -> None:
@@ -69,7 +70,7 @@ class Store:
         self._unclean = False
 
     def add(self, entries: Sequence[JournalEntry]) -> None:
-        """Write all of them, or (ModuleError) none."""
+        """Write all of the entries, or (ModuleError) none."""
         rows = [
             (
                 *(
@@ -90,7 +91,7 @@ class Store:
         self._do(lambda db: db.executemany(sql, rows))
 
     def met(self, name: str, now: float, data: Mapping[str, Any] | None = None) -> None:
-        """Somebody of that name came, once more or for the first time; what is known of them is added to."""
+        """Note a visit of the person with that name, and add `data` to what is known of them."""
         name = _sound(name)
         known = self.visitor(name)
         known_data = _json({**(known["data"] if known else {}), **(data or {})})
@@ -99,18 +100,18 @@ class Store:
         self._do(lambda db: db.execute(sql, (name_key(name), name, now, now, known_data)))
 
     def visitor(self, name: str) -> dict[str, Any] | None:
-        """What is known of somebody, None where nothing is."""
+        """Return what is known of a visitor, None if nothing is."""
         sql = f"SELECT {_VISITOR} FROM visitors WHERE key = ?"
         rows = self._do(lambda db: db.execute(sql, (name_key(name),)).fetchall())
         return _visitor(rows[0]) if rows else None
 
     def visitors(self) -> list[dict[str, Any]]:
-        """Everybody, who came last first."""
+        """Return all visitors, the most recent first."""
         sql = f"SELECT {_VISITOR} FROM visitors ORDER BY last DESC, name LIMIT ?"
         return [_visitor(row) for row in self._do(lambda db: db.execute(sql, (MAX_ROWS,)).fetchall())]
 
     def journal(self, *, since: float = 0.0, visitor: str = "", limit: int = 100) -> list[dict[str, Any]]:
-        """The newest entries, the oldest of them first; of a visitor all that belongs to their visits."""
+        """Return the newest entries in the order of time; with a `visitor`, only those of their visits."""
         sql = f"""SELECT {_ENTRY} FROM journal WHERE time >= :since AND (:key = '' OR key = :key OR visit IN
             (SELECT visit FROM journal WHERE key = :key AND visit > 0)) ORDER BY time DESC, id DESC LIMIT :limit"""
         given = {"since": float(since), "key": name_key(visitor), "limit": min(limit, MAX_ROWS)}
@@ -118,17 +119,16 @@ class Store:
         return [{**dict(row), "data": json.loads(row["data"])} for row in reversed(found)]
 
     def end(self) -> JournalEnd:
-        """Where the journal stops."""
+        """Return the end of the journal."""
         sql = "SELECT visit, time, visitor FROM journal WHERE visit > 0 ORDER BY id DESC LIMIT 1"
         rows = self._do(lambda db: db.execute(sql).fetchall())
         return JournalEnd(*rows[0]) if rows else JournalEnd()
 
     def forget(self, name: str) -> Forgotten:
-        """Delete all that is known of somebody: their row, their visits as a whole, and whatever else names them.
+        """Delete everything about a person: their row, their whole visits, and all entries that name them.
 
-        A visit is theirs where the behaviour knew their name in it, or the eyes theirs and nobody else's. Raises
-        ModuleError also where that is deleted and can still be read in the file, because another program looks at it
-        as it was.
+        A visit is theirs if the behaviour knew their name in it, or if only their face was recognised in it. Raises
+        ModuleError also if the deleted data stays readable in the file because another program has it open.
         """
         found: Forgotten = self._do(lambda db: _delete(db, name_key(name)))
         self._unclean = True
@@ -136,7 +136,9 @@ class Store:
         return found
 
     def expire(self, before: float) -> int:
-        """Delete what is older than that time [s since 1970], and who was not there since; how many rows."""
+        """Delete entries older than that time [s since 1970], and visitors not seen since; return the number of
+        rows.
+        """
         sql = (("DELETE FROM journal WHERE time < ?"), ("DELETE FROM visitors WHERE last < ?"))
         gone = int(self._do(lambda db: sum(db.execute(one, (before,)).rowcount for one in sql)))
         self._unclean = self._unclean or gone > 0
@@ -145,14 +147,16 @@ class Store:
         return gone
 
     def close(self) -> None:
-        """Harmless when repeated."""
+        """Close the database; further calls do nothing."""
         if self._connection:
             with suppress(sqlite3.Error):
                 self._connection.close()
             self._connection = None
 
     def _clean(self) -> None:
-        """Leave nothing of what was deleted in the file that SQLite writes ahead."""
+        """Remove deleted data from SQLite's write-ahead log. Raises ModuleError if another program has the file
+        open.
+        """
         busy = self._do(lambda db: db.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0])
         if busy:
             raise ModuleError(
@@ -206,7 +210,7 @@ class Store:
 
 
 def _delete(db: sqlite3.Connection, key: str) -> Forgotten:
-    """What `Store.forget` deletes of the person with that key."""
+    """Delete what `Store.forget` deletes of the person with that key."""
     known = {row["key"]: row["name"] for row in db.execute("SELECT key, name FROM visitors").fetchall()}
     alone = PersonName(key)
     others = {other: known[other] for other in known if other != key and alone.is_named_in(other)}
@@ -228,7 +232,7 @@ def _visitor(row: sqlite3.Row) -> dict[str, Any]:
 
 
 def _sound(text: str) -> str:
-    """The text as a file can hold it: half characters, which JSON may bring, are replaced."""
+    """Return the text with lone surrogates, which JSON may contain, replaced."""
     return text.encode("utf-8", "replace").decode()
 
 

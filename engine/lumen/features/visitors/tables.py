@@ -1,14 +1,14 @@
-"""The tables of the database, and what becomes of those that an earlier version has written."""
+"""The tables of the database, and the upgrade of those of an earlier version."""
 
 import sqlite3
 
 from lumen.language.people import name_key
 
 VERSION = 2
-"""Of the tables: 1 had no keys of names, and did not know which entries are of one visit."""
+"""The version of the tables; version 1 had no keys of names and no numbers of visits."""
 
 NEWER_TABLES = "tables of version"
-"""How the error begins that says that a newer Lumen has written them."""
+"""The beginning of the error for tables of a newer Lumen."""
 
 _TABLES = """
 CREATE TABLE IF NOT EXISTS journal (
@@ -31,7 +31,9 @@ _NOW = {"journal": _FIRST["journal"] | {"key", "visit"}, "visitors": _FIRST["vis
 
 
 def check(db: sqlite3.Connection) -> None:
-    """Raises sqlite3.OperationalError where tables of these names are somebody else's, or newer; nothing is written."""
+    """Raise sqlite3.OperationalError if tables of these names belong to another program or a newer Lumen; write
+    nothing.
+    """
     if (written := db.execute("PRAGMA user_version").fetchone()[0]) > VERSION:
         raise sqlite3.OperationalError(f"{NEWER_TABLES} {written}")
     for table in _NOW:
@@ -40,7 +42,7 @@ def check(db: sqlite3.Connection) -> None:
 
 
 def prepare(db: sqlite3.Connection) -> None:
-    """Make the tables, or bring those of the first version up to date, wholly or (sqlite3.Error) not at all."""
+    """Create the tables, or upgrade those of the first version, completely or (sqlite3.Error) not at all."""
     if _columns(db, "visitors") == _FIRST["visitors"]:
         with db:
             db.execute("BEGIN IMMEDIATE")
@@ -50,7 +52,7 @@ def prepare(db: sqlite3.Connection) -> None:
 
 
 def _bring_up(db: sqlite3.Connection) -> None:
-    """Visitors whose names are the same by now become one; entries of before are of no known visit."""
+    """Upgrade version 1: merge visitors whose names have the same key; older entries belong to no known visit."""
     db.create_function("name_key", 1, name_key)
     db.execute("ALTER TABLE journal ADD COLUMN key TEXT NOT NULL DEFAULT ''")
     db.execute("ALTER TABLE journal ADD COLUMN visit INTEGER NOT NULL DEFAULT 0")

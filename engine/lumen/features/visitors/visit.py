@@ -1,4 +1,4 @@
-"""Whose visit it is, from where it began, before anybody knew a name, to its end."""
+"""The present visit, from its beginning, before a name is known, to its end."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 from lumen.language.people import PersonName, name_key
 
 SILENCE = 300.0
-"""After how long without a word whoever comes next is somebody else [s], where nobody has a name."""
+"""The silence after which the next person counts as another visitor, if no name is known [s]."""
 
 
 class JournalEnd(NamedTuple):
-    """Where an earlier run of the memory stopped: in which visit, when [s since 1970], and who that was."""
+    """The end of an earlier run's journal: its last visit, the time [s since 1970], and the visitor."""
 
     visit: int = 0
     time: float = 0.0
@@ -18,10 +18,10 @@ class JournalEnd(NamedTuple):
 
 
 class Visit:
-    """The visit that goes on: its `number`, and the `visitor`, whose name is empty while it is unknown.
+    """The present visit: its `number`, and the `visitor`, whose name is empty while it is unknown.
 
-    A visit ends where the behaviour forgets the name or knows another one; without a name, after a silence. Of somebody
-    who was forgotten during their visit nothing more is noted while it lasts.
+    A visit ends when the behaviour forgets the name or learns another one; without a name, after a silence. After a
+    visitor is forgotten during the visit, nothing more is noted until it ends.
     """
 
     def __init__(self) -> None:
@@ -31,7 +31,7 @@ class Visit:
         self._muted = False
 
     def live(self, now: float, earlier: Callable[[], JournalEnd], *, spoken: bool) -> None:
-        """Something happens at `now` [s since 1970]; `earlier` is asked once."""
+        """Note that something happens at `now` [s since 1970]; `earlier` is called once."""
         if not self.number:
             end = earlier()
             self.number, self._spoke, self.visitor = max(end.visit, 1), end.time, end.visitor
@@ -42,9 +42,10 @@ class Visit:
             self._spoke, self._begun = now, True
 
     def meet(self, name: str, *, stepped: bool) -> bool:
-        """The behaviour knows this name now; whether that is news to be noted.
+        """Note the name that the behaviour knows now; return whether it is a new one to be noted in the journal.
 
-        Without a step of it (`stepped`) it has not left anybody: the name was taken from it.
+        If the name vanished without a step of the behaviour (`stepped`), the visitor has not left: the name was
+        removed.
         """
         left, self._met = stepped or not self._met, True
         if name_key(name) == name_key(self.visitor):
@@ -58,20 +59,21 @@ class Visit:
         return bool(name)
 
     def forget(self, name: str) -> None:
-        """Whoever is here now is to be forgotten, and is called that name, or will be."""
+        """Note that the present visitor is to be forgotten if they have, or will have, that name."""
         self._unwanted.append(PersonName(name))
         self._muted = self._muted or self.is_with(name)
 
     def is_with(self, name: str) -> bool:
+        """Return whether the visitor has that name."""
         return bool(self.visitor) and name_key(self.visitor) == name_key(name)
 
     @property
     def muted(self) -> bool:
-        """Whether it is the visit of somebody who was forgotten."""
+        """Whether the visit belongs to a forgotten visitor."""
         return self._muted
 
     def names_unwanted(self, *said: Any) -> bool:
-        """Whether this names somebody who was forgotten during this visit."""
+        """Return whether the values name a visitor who was forgotten during this visit."""
         return any(person.is_in(list(said)) for person in self._unwanted)
 
     def _end(self) -> None:

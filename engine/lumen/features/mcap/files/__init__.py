@@ -1,4 +1,4 @@
-"""Recordings of a bus in MCAP, which Foxglove and Lichtblick open: written, read, recovered, copied.
+"""Recordings of a bus in MCAP, for Foxglove and Lichtblick: written, read, repaired, copied.
 
-The packages that this needs are the extra `recording`; they are imported when a recording is written or read.
+The required packages are the extra `recording`; they are imported when a recording is written or read.
 """

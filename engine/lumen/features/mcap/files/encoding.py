@@ -1,4 +1,4 @@
-"""Messages of a bus as messages of a recording: JSON with its schema, pictures as pictures."""
+"""Messages of a bus as items of a recording: JSON with its schema, pictures as images."""
 
 import base64
 import json
@@ -13,16 +13,16 @@ from lumen.language.projects import Project
 from lumen.ports import Message
 
 ORIGIN_KEY = "_lumen"
-"""Under which a recorded body says where its message comes from; a body that has the key itself is put into `value`."""
+"""The key of a message's origin in its recorded body; a body that has the key itself is put into `value`."""
 PICTURE = "data:image/jpeg;base64,"
 ABOUT = ".about"
-"""What follows the topic of a picture for what else its message said."""
+"""The suffix of a picture's topic for the rest of its message."""
 CAMERA = "camera"
 """The frame of reference of pictures."""
 MAX_NANOSECONDS = 2**63 - 1
-"""The year 2262."""
+"""MCAP's latest time, in the year 2262."""
 MAX_TOPICS = 4_096
-"""Keys whose channels are remembered."""
+"""The number of keys whose channels are cached."""
 
 _ORIGIN_SCHEMA = {
     "type": "object",
@@ -34,12 +34,12 @@ _ORIGIN_SCHEMA = {
 
 
 def nanoseconds(moment: float) -> int:
-    """A time [s since 1970] in [ns], as far as MCAP can say it: a sender may say any."""
+    """Return a time [s since 1970] in [ns], limited to MCAP's range: a sender may send any number."""
     return min(max(int(moment * NANO), 0), MAX_NANOSECONDS)
 
 
 class MessageEncoder:
-    """Encodes messages of a project's bus; with another bundle, `use` it."""
+    """Encodes messages of a project's bus; call `use` for another bundle."""
 
     def __init__(self, project: Project | None) -> None:
         self._schemas: Mapping[str, tuple[str, Mapping[str, object]]] = {}
@@ -47,7 +47,7 @@ class MessageEncoder:
         self.use(project)
 
     def use(self, project: Project | None) -> None:
-        """Encode with the schemas of these files from now on; without a project, with none."""
+        """Encode with the schemas of this project from now on; without a project, with none."""
         routes = project.routes.values() if project else ()
         self._schemas = {
             key: (route.schema, project.messages[route.schema])
@@ -58,7 +58,7 @@ class MessageEncoder:
         self._channels = {}
 
     def encode(self, message: Message, came: float) -> Iterator[RecordedMessage]:
-        """What is written of a message that came then [s since 1970, in UTC]."""
+        """Yield the items for a message that came at that time [s since 1970, in UTC]."""
         at, sent = nanoseconds(came), nanoseconds(message.time)
         body, topic = message.body, message.key
         if jpeg := _jpeg(body):
@@ -81,7 +81,7 @@ class MessageEncoder:
 
 
 def origin_of(data: Mapping[str, Any]) -> tuple[Any, dict[str, str]]:
-    """The body of a recorded message, and what was said of where it comes from."""
+    """Return the body of a recorded message, and its origin."""
     body = {key: value for key, value in data.items() if key != ORIGIN_KEY}
     said = data.get(ORIGIN_KEY)
     origin = dict(said) if isinstance(said, Mapping) else {}
@@ -89,7 +89,7 @@ def origin_of(data: Mapping[str, Any]) -> tuple[Any, dict[str, str]]:
 
 
 def json_bytes(data: Any) -> bytes:
-    """JSON data as it stands in a recording; half characters and numbers that are none, which JSON may bring, too."""
+    """Return JSON data as bytes, including lone surrogates and NaN."""
     try:
         return orjson.dumps(data)
     except TypeError:
@@ -97,7 +97,9 @@ def json_bytes(data: Any) -> bytes:
 
 
 def _envelope(message: Message, body: Any) -> dict[str, Any]:
-    """Foxglove shows objects: any other body is the `value` of one."""
+    """Return the body with its origin; a body that is not an object becomes `value` of one, since Foxglove shows
+    objects.
+    """
     plain = isinstance(body, Mapping) and ORIGIN_KEY not in body
     origin: dict[str, Any] = {
         name: value
@@ -110,7 +112,7 @@ def _envelope(message: Message, body: Any) -> dict[str, Any]:
 
 
 def _open(schema: Mapping[str, object]) -> dict[str, object]:
-    """The schema of a body with what a recording adds to it."""
+    """Return the schema of a body, extended by the origin."""
     properties = schema.get("properties")
     own = dict(properties) if isinstance(properties, Mapping) else {}
     found = {"type": "object", **schema, "properties": {**own, ORIGIN_KEY: _ORIGIN_SCHEMA}}
@@ -121,7 +123,7 @@ def _open(schema: Mapping[str, object]) -> dict[str, object]:
 
 
 def _jpeg(body: Any) -> bytes:
-    """The picture in a body, empty where there is none."""
+    """Return the JPEG in a body, empty if there is none."""
     url = body.get("contentUrl") if isinstance(body, Mapping) else None
     if not isinstance(url, str) or not url.startswith(PICTURE):
         return b""

@@ -1,4 +1,4 @@
-"""Foxglove's own forms of pictures and frames, as protobuf."""
+"""Foxglove's own schemas of images and frames, as protobuf."""
 
 from functools import cache
 from typing import Any
@@ -10,7 +10,7 @@ NANO = 1_000_000_000
 
 @cache
 def foxglove_channel(topic: str, form: str) -> RecordedChannel:
-    """A channel of one of Foxglove's forms, such as `CompressedImage`, with all that it is made of."""
+    """Return a channel with one of Foxglove's schemas, such as `CompressedImage`, and all that it depends on."""
     from google.protobuf.descriptor_pb2 import FileDescriptorSet
 
     found = FileDescriptorSet()
@@ -19,14 +19,14 @@ def foxglove_channel(topic: str, form: str) -> RecordedChannel:
 
 
 def form_class(form: str) -> Any:
-    """The class of one of Foxglove's forms."""
+    """Return the class of one of Foxglove's schemas."""
     from importlib import import_module
 
     return getattr(import_module(f"foxglove_schemas_protobuf.{form}_pb2"), form)
 
 
 def compressed_image(jpeg: bytes, frame: str, at: int) -> bytes:
-    """A `foxglove.CompressedImage`: the picture as the camera gave it, in a frame of reference, at a time [ns]."""
+    """Return a `foxglove.CompressedImage` of the camera's JPEG, in a frame of reference, at a time [ns]."""
     image = form_class("CompressedImage")(frame_id=frame, data=jpeg, format="jpeg")
     stamp(image.timestamp, at)
     return bytes(image.SerializeToString())
@@ -38,7 +38,7 @@ def stamp(field: Any, at: int) -> None:
 
 
 def _collect(file: Any, found: Any, seen: set[str]) -> None:
-    """What a file needs comes before it."""
+    """Add a file's dependencies, then the file."""
     if file.name not in seen:
         seen.add(file.name)
         for other in file.dependencies:

@@ -1,4 +1,4 @@
-"""What is in a recording, as far as it can be read: one that was cut ends where it was cut."""
+"""Reads a recording; an incomplete one is read up to where it was cut off."""
 
 import struct
 from collections.abc import Iterator
@@ -11,14 +11,14 @@ from lumen.features.mcap.files.recorded import Recorded, RecordedChannel, Record
 
 MAGIC = b"\x89MCAP0\r\n"
 END_BYTES = 8 + 9 + 20
-"""The last record of a whole recording and the magic after it."""
+"""The size of a complete recording's last record and the magic after it."""
 FOOTER = 0x02
 MAX_RECORD_BYTES = 256_000_000
-"""A record that says to be longer is damage."""
+"""The largest valid record [bytes]; a larger size means damage."""
 
 
 def whole(path: Path) -> bool:
-    """Whether a recording was written to its end, with its index. Raises RecordingError where it is none."""
+    """Return whether a recording is complete, with its index. Raises RecordingError if it is not a recording."""
     try:
         with path.open("rb") as file:
             if file.read(len(MAGIC)) != MAGIC:
@@ -32,9 +32,9 @@ def whole(path: Path) -> bool:
 
 
 def read_recording(path: Path) -> Iterator[Recorded]:
-    """Messages, attachments and metadata in their order, until the end or where it was cut.
+    """Yield messages, attachments and metadata in their order, to the end or to where it was cut off.
 
-    Raises RecordingError where it is no recording.
+    Raises RecordingError if it is not a recording.
     """
     whole(path)
     demand("recording", "a recording", "mcap")
@@ -46,7 +46,7 @@ def read_recording(path: Path) -> Iterator[Recorded]:
 
 
 def _items(file: Any) -> Iterator[Recorded]:
-    """A piece that is cut or damaged is the end; what came before it was checked."""
+    """Yield the items; an incomplete or damaged chunk ends them, earlier ones are verified."""
     from mcap.records import Attachment, Channel, Chunk, Message, Metadata, Schema
     from mcap.stream_reader import StreamReader, breakup_chunk
 
@@ -80,7 +80,7 @@ def _items(file: Any) -> Iterator[Recorded]:
 
 
 def _damage() -> tuple[type[Exception], ...]:
-    """What mcap and the unpackers beneath it raise for bytes that are none of theirs."""
+    """Return the exceptions of mcap and its decompressors for damaged bytes."""
     from mcap.exceptions import McapError
     from zstandard import ZstdError
 

@@ -1,23 +1,24 @@
-"""What a recording holds, as values: channels, messages, attachments and metadata."""
+"""The items of a recording as values: channels, messages, attachments and metadata."""
 
 from typing import NamedTuple
 
 
 class RecordedChannel(NamedTuple):
-    """Messages of one topic in one form; `encoding` is that of their data, `json` or `protobuf`.
-
-    `form` is the schema's name, `schema` its data, of the kind `language` (`jsonschema` or `protobuf`).
-    """
+    """A channel: messages of one topic in one form."""
 
     topic: str
     encoding: str
+    """The encoding of the messages' data: `json` or `protobuf`."""
     form: str
+    """The name of the schema."""
     language: str
+    """The kind of the schema's data: `jsonschema` or `protobuf`."""
     schema: bytes
+    """The schema's data."""
 
 
 class RecordedMessage(NamedTuple):
-    """A message as it is written: when it came and when it was sent [ns since 1970, in UTC]."""
+    """A recorded message, with the times of its arrival and its sending [ns since 1970, in UTC]."""
 
     channel: RecordedChannel
     came: int
@@ -26,7 +27,7 @@ class RecordedMessage(NamedTuple):
 
 
 class RecordedFile(NamedTuple):
-    """A file that is attached, so that a recording explains itself; `at` [ns since 1970, in UTC]."""
+    """An attached file that helps to understand a recording; `at` is its time [ns since 1970, in UTC]."""
 
     name: str
     kind: str
@@ -35,7 +36,7 @@ class RecordedFile(NamedTuple):
 
 
 class RecordedNotes(NamedTuple):
-    """Words about a recording, under a name."""
+    """Metadata of a recording, under a name."""
 
     name: str
     words: tuple[tuple[str, str], ...]

@@ -1,4 +1,4 @@
-"""A recording that is being written: after a cut, all but the last half second can be read."""
+"""A recording that is being written: after a crash, all but the last half second can be read."""
 
 import os
 import time
@@ -12,25 +12,25 @@ from lumen.features.mcap.files.recorded import Recorded, RecordedChannel, Record
 from lumen.upkeep.private_folder import NO_LINK
 
 CHUNK_BYTES = 64_000
-"""After which a piece is closed, which can be read from then on: with the library's 1 MB a kill left nothing."""
+"""The size of a chunk, which can be read once it is complete [bytes]: with the library's 1 MB a kill left nothing."""
 CHUNK_PERIOD = 0.5
-"""After which it is closed in any case [s]."""
+"""The time after which a chunk is completed in any case [s]."""
 SYNC_PERIOD = 2.0
-"""How often the system is asked to bring it to the disk [s]."""
+"""The time between two requests to write the file to the disk [s]."""
 MAX_CHANNELS = 60_000
-"""MCAP counts channels with 16 bits; what comes on further ones is left out."""
+"""The number of channels: MCAP counts them with 16 bits; messages of further ones are left out."""
 
 
 def demand_recording() -> None:
-    """Raise MissingExtraError where what writes and reads recordings is not installed."""
+    """Raise MissingExtraError if a package for recordings is not installed."""
     demand("recording", "a recording", "mcap", "google.protobuf", "foxglove_schemas_protobuf")
 
 
 class RecordingFile:
-    """Writes a new recording, for its owner alone; `messages` counts what is in it, `bytes` how long it is.
+    """Writes a new recording, readable only by its owner; `messages` is the number of messages, `bytes` the size.
 
-    Raises RecordingError where `mcap` is missing, and OSError where the disk refuses: then what was written before can
-    be recovered.
+    Raises RecordingError if `mcap` is missing, and OSError if the disk fails: then what was written before can be
+    repaired.
     """
 
     def __init__(self, path: Path) -> None:
@@ -48,10 +48,11 @@ class RecordingFile:
 
     @property
     def bytes(self) -> int:
+        """The size of the file [bytes]."""
         return int(self._file.tell())
 
     def write(self, items: Iterable[Recorded]) -> None:
-        """Write these, in their order."""
+        """Write these items in their order."""
         for item in items:
             match item:
                 case RecordedMessage(channel, came, sent, data):
@@ -67,7 +68,7 @@ class RecordingFile:
                     assert_never(item)
 
     def settle(self) -> None:
-        """Close the piece that is being written, and bring it to the disk, where either is due."""
+        """Complete the present chunk, and write the file to the disk, if either is due."""
         now = time.monotonic()
         if now - self._closed >= CHUNK_PERIOD:
             self._closed = now
@@ -77,7 +78,7 @@ class RecordingFile:
             os.fsync(self._file.fileno())
 
     def finish(self) -> None:
-        """Write the index, and close it."""
+        """Write the index and close the file."""
         try:
             self._writer.finish()
             self._file.flush()
@@ -86,14 +87,14 @@ class RecordingFile:
             self.abandon()
 
     def abandon(self) -> None:
-        """Leave it as it is, without an index; harmless when repeated."""
+        """Close the file without an index; further calls do nothing."""
         try:
             self._file.close()
-        except OSError:  # what it holds back the disk does not take
+        except OSError:  # the disk refuses the buffered bytes
             return
 
     def _number(self, channel: RecordedChannel) -> int:
-        """The number of a channel, made known when it is first used; 0 where there are too many."""
+        """Return the number of a channel, which is registered at its first use; 0 if there are too many."""
         if len(self._channels) >= MAX_CHANNELS:
             return 0
         form = channel.form, channel.language, channel.schema
@@ -110,9 +111,9 @@ def renamed(wanted: Path, path: Path) -> str:
 
 
 def writable(path: Path) -> Path:
-    """A path for a new recording: this, or where that is there already, the same with a number.
+    """Return a path for a new recording: this, or if it exists, the same with a number.
 
-    Raises RecordingError where its folder is missing.
+    Raises RecordingError if its folder is missing.
     """
     if not path.parent.is_dir():
         raise RecordingError(f"{path} can't be written: the folder {path.parent} does not exist")

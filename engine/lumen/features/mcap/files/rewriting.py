@@ -1,4 +1,4 @@
-"""Recordings written anew: with their index after a cut, several as one, or without what is not to be in them."""
+"""Rewrites recordings: to add the index after a crash, to join several, or to remove something."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -11,15 +11,16 @@ from lumen.features.mcap.files.recorded import Recorded
 from lumen.features.mcap.files.recording_file import RecordingFile
 
 Changed = Callable[[Recorded], Recorded | None]
-"""What becomes of an item of a recording; None where it is left out."""
+"""Returns the item to write in place of one of a recording; None to leave it out."""
 
 
 def rewrite(
     sources: Sequence[Path], target: Path, changed: Changed = lambda item: item, more: Iterable[Recorded] = ()
 ) -> int:
-    """Write what can be read of these recordings as one, and `more`, as a whole or not at all; how many messages.
+    """Write all readable items of these recordings, then `more`, as one recording; return the number of messages.
 
-    `target` may be one of the sources. Raises RecordingError where one is none, or the disk refuses.
+    The target, which may be one of the sources, is replaced only once all is written. Raises RecordingError if a source
+    is not a recording, or the disk fails.
     """
     draft = target.with_name(f"{target.name}.{os.getpid()}.new")
     try:
@@ -33,7 +34,7 @@ def rewrite(
             written.abandon()
         if len(sources) == 1 and target in sources:
             was = target.stat()
-            os.utime(draft, ns=(was.st_atime_ns, was.st_mtime_ns))  # it is as old as it was
+            os.utime(draft, ns=(was.st_atime_ns, was.st_mtime_ns))  # keep its age
         os.replace(draft, target)
     except OSError as error:
         raise RecordingError(f"{target} can't be written: {error.strerror}") from None
@@ -44,7 +45,7 @@ def rewrite(
 
 
 def recover(path: Path) -> int | None:
-    """Give a recording that was cut its index, in place; how many messages it has, None where it needs nothing.
+    """Repair an incomplete recording in place; return the number of its messages, None if it is complete.
 
     Raises RecordingError as `rewrite` does.
     """
@@ -52,7 +53,7 @@ def recover(path: Path) -> int | None:
 
 
 def reopened(path: Path, changed: Changed) -> RecordingFile:
-    """A recording with what is changed, open to be written on. Raises as `rewrite` does, and OSError."""
+    """Rewrite a recording with changes, and keep it open for further items. Raises as `rewrite` does, and OSError."""
     draft = path.with_name(f"{path.name}.{os.getpid()}.new")
     written = RecordingFile(draft)
     try:
