@@ -1,4 +1,4 @@
-"""A project as an editor sees it: the files on disk, those being edited laid over them, and what is known of all."""
+"""A project as an editor sees it: the files on disk with the unsaved texts, and everything known about them."""
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -18,18 +18,18 @@ from lumen.project.yaml_reader import parse
 
 
 class Judgement(NamedTuple):
-    """What is to be said of a project: everything wrong, and of files that are no YAML what can be read."""
+    """The findings of a project, and its files that are invalid YAML."""
 
     diagnostics: tuple[Diagnostic, ...]
     broken: Mapping[str, BrokenFile]
 
 
 class Analysis:
-    """What can be said of these files; each part is worked out when it is first asked for. Nothing here raises.
+    """The analysis of a project's files; each part is computed when it is first needed. Nothing here raises.
 
-    `before` is the same project some keys ago: what could be read of a file then stands for one that can't be read now.
-    The words that come with Lumen are none of the files, and known all the same.
-    To another process it travels without what was worked out of it.
+    `before` is an earlier analysis of the same project: its readable version of a file replaces one that is invalid
+    now. Words that come with Lumen are known although they are not among the files. Pickled for another process, it
+    contains only the files and what is known from earlier analyses.
     """
 
     def __init__(self, root: Path, files: Mapping[str, bytes], before: "Analysis | None" = None) -> None:
@@ -51,21 +51,21 @@ class Analysis:
 
     @cached_property
     def broken(self) -> Mapping[str, BrokenFile]:
-        """The files that are no YAML, and what of each can be read."""
+        """The files that are invalid YAML, with their readable parts."""
         return broken_files(self.files, self._before)
 
     @cached_property
     def readable(self) -> Mapping[str, bytes]:
-        """The files, each as far as it can be read."""
+        """The files; of invalid ones the readable parts."""
         return {**self.files, **{file: each.readable for file, each in self.broken.items()}}
 
     @cached_property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """Everything wrong, as `lumen lint` says it; of a file that is no YAML also what is wrong elsewhere in it."""
+        """All findings, as from `lumen lint`; for an invalid YAML file also those about its other parts."""
         return self.judged(lambda: None).diagnostics
 
     def judged(self, between: Callable[[], None]) -> Judgement:
-        """What is to be said; what `between` raises from time to time ends that."""
+        """Return the findings; `between` is called now and then, and may raise to stop."""
         found = tuple(check_files(self.root, self.readable, between)[1])
         if self.broken:
             said = [d for each in self.broken.values() for d in each.diagnostics]
@@ -73,63 +73,65 @@ class Analysis:
         return Judgement(found, self.broken)
 
     def accept(self, judgement: Judgement) -> None:
-        """Take over what was said of these very files elsewhere."""
+        """Store findings about these files that were computed elsewhere."""
         self.__dict__.update(judgement._asdict())
 
     def prepare(self) -> None:
-        """Work out what an editor is going to ask for."""
+        """Compute what an editor will soon need."""
         _ = self.draft, self.index.uses
 
     @property
     def known(self) -> KnownFindings:
-        """What was found when all files could last be read, as far as that was worked out."""
+        """The findings at the last time that all files were readable, if they were computed."""
         found = self.__dict__.get("diagnostics")
         return self._known if found is None or self.broken else frozenset(map(signature, found))
 
     @property
     def known_index(self) -> NameIndex | None:
-        """The index of these files, or of those some keys ago, where one was worked out."""
+        """The index of these files, or an earlier one, if it was computed."""
         found: NameIndex | None = self.__dict__.get("index", self._last_index)
         return found
 
     def names(self, file: str) -> NameIndex:
-        """The names to propose in a file: those of some keys ago, which are there at once, if it was there by then."""
+        """Return the index for proposals in a file: an earlier one, which is available at once, if it includes the
+        file.
+        """
         last = self.known_index
         return last if last is not None and file in last.documents else self.index
 
     @cached_property
     def draft(self) -> ProjectDraft:
-        """What could be built."""
+        """What could be built of the project."""
         return draft(self.readable)
 
     @cached_property
     def settings(self) -> ProjectDraft:
-        """What could be built of lumen.yaml and the schemas of messages alone, which takes no time."""
+        """What could be built of lumen.yaml and the messages' schemas alone, which takes no time."""
         files = {f: content for f, content in self.files.items() if kind_of(f) in ("lumen", "message")}
         return draft({**files, **{f: each.readable for f, each in broken_files(files, self._before).items()}})
 
     @cached_property
     def documents(self) -> Mapping[str, Document]:
-        """The files that can be read, with nothing taken out of them, and Lumen's own words unless replaced."""
+        """The readable files, unfiltered, and Lumen's own words unless the project replaces them."""
         files = {COMMON_FILE: common_words(), **self.readable}
         read = {file: parse(file, content)[0] for file, content in files.items() if kind_of(file)}
         return {file: document for file, document in read.items() if document}
 
     @cached_property
     def index(self) -> NameIndex:
-        """Every name, and what it means."""
+        """The index of all names."""
         main = self.documents[MAIN_FILE].data if MAIN_FILE in self.documents else None
         named = main.get("behavior") if isinstance(main, dict) else ""
         return NameIndex(self.documents, frozenset(self.files), named if isinstance(named, str) else "")
 
     def text(self, file: str) -> str:
-        """The text of a file, empty where there is none."""
+        """Return the text of a file, empty if it does not exist."""
         return self.files.get(file, b"").decode("utf-8-sig", "replace")
 
     def readable_text(self, file: str) -> str:
-        """The text of a file as far as it can be read."""
+        """Return the readable text of a file."""
         return self.readable.get(file, b"").decode("utf-8-sig", "replace")
 
     def changed(self, file: str, text: str) -> "Analysis":
-        """The same with another text in one file."""
+        """Return the analysis with another text in one file."""
         return Analysis(self.root, {**self.files, file: text.encode("utf-8", "surrogatepass")}, self)

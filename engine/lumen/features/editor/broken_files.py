@@ -1,4 +1,6 @@
-"""Files that are no YAML for a moment: what of them can be read, and which findings only follow from what can't."""
+"""Files that are temporarily invalid YAML: their readable parts, and findings that only result from the unreadable
+ones.
+"""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -18,20 +20,23 @@ KnownFindings = frozenset[tuple[str, str, str]]
 
 
 class BrokenFile(NamedTuple):
-    """A file that is no YAML: what is said of that, and what stands for it; `mended` is None where that is older."""
+    """A file that is invalid YAML."""
 
     diagnostics: tuple[Diagnostic, ...]
+    """The findings about that."""
     readable: bytes
+    """A readable replacement: the repaired text, or an earlier version of the file."""
     mended: MendedText | None
+    """The repair; None if `readable` is an earlier version."""
 
 
 def broken_files(files: Mapping[str, bytes], before: Mapping[str, bytes]) -> dict[str, BrokenFile]:
-    """Those of the files that can't be read; `before` is what they were when they could."""
+    """Return the files that are invalid YAML; `before` are their last readable versions."""
     return {file: found for file, content in files.items() if (found := _broken(file, content, before))}
 
 
 def follows(finding: Diagnostic, broken: Mapping[str, BrokenFile], known: KnownFindings) -> bool:
-    """Whether a finding may only say that a part of a file can't be read; `known` are those from before that."""
+    """Return whether a finding may only result from an unreadable part of a file; `known` are earlier findings."""
     here = broken.get(finding.place.file)
     if here and (here.mended is None or finding.place.line - 1 in here.mended.around | here.mended.cut):
         return True
@@ -42,7 +47,7 @@ def follows(finding: Diagnostic, broken: Mapping[str, BrokenFile], known: KnownF
 
 
 def signature(finding: Diagnostic) -> tuple[str, str, str]:
-    """What stays of a finding when lines are written above it."""
+    """Return the part of a finding that stays the same when lines are written above it."""
     return finding.code, finding.place.file, finding.message
 
 
@@ -58,7 +63,7 @@ def _broken(file: str, content: bytes, before: Mapping[str, bytes]) -> BrokenFil
 def _readings(
     file: str, content: bytes, before: Mapping[str, bytes], found: tuple[Diagnostic, ...]
 ) -> Iterator[BrokenFile]:
-    """What could stand for a file, the best first."""
+    """Yield possible replacements of a file, the best first."""
     try:
         part = mended(file, content.decode("utf-8-sig"))
     except UnicodeDecodeError:

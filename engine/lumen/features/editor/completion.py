@@ -1,4 +1,4 @@
-"""What could stand at a cursor: names of the kind that belongs there, else the keys and values of the schema."""
+"""Proposals at a cursor: names of the expected kind, or the keys and values of the schema."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -41,7 +41,7 @@ _SLOTS = {
 
 
 class Item(NamedTuple):
-    """A proposal: what it inserts in place of the last `replaces` characters, and what it is."""
+    """A proposal: the text that replaces the last `replaces` characters, and its kind."""
 
     text: str
     detail: str
@@ -50,7 +50,7 @@ class Item(NamedTuple):
 
 
 def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item]:
-    """The proposals for a line and column, from 1; the nearest first."""
+    """Return the proposals for a line and column, from 1, the best first."""
     here = cursor(analysis.text(file), line, column, lambda: analysis.readable_text(file))
     kind = kind_of(file)
     if here is None or not kind:
@@ -59,7 +59,9 @@ def complete(analysis: Analysis, file: str, line: int, column: int) -> list[Item
 
 
 def _fitting(items: Iterable[Item], before: str) -> list[Item]:
-    """Those in which what is typed is found, letter by letter; the nearest first: begun by it, holding it, the rest."""
+    """Return the items that contain the typed letters in order: first those that begin with them, then those that
+    contain them together.
+    """
     ranked = [(rank, item) for item in items if (rank := _rank(item, before)) is not None]
     return [item for _, item in sorted(ranked, key=lambda each: each[0])]
 
@@ -84,6 +86,7 @@ class _Completion:
         self.scope = str(here.path[0]) if kind == "sayings" and here.path else self.index.behavior(file)
 
     def items(self) -> Iterator[Item]:
+        """Yield the proposals for the cursor's key or value."""
         path, here = self.here.path, self.here
         if here.key:
             named = key_kind(self.kind, path)
@@ -116,6 +119,7 @@ class _Completion:
             yield from self.keys(path)
 
     def keys(self, path: NodePath) -> Iterator[Item]:
+        """Yield the keys of the schema that the map does not have yet."""
         there = self.here.document.value(path)
         taken = there if isinstance(there, dict) else {}
         for key, schema in keys_at(self.kind, path, self.verbs).items():
@@ -138,7 +142,7 @@ class _Completion:
                 yield Item(f"{ELSE}: ", "every sentence that no other row matches", wide)
 
     def entry_fields(self, path: NodePath) -> Iterator[str]:
-        """`question.right` for the fields of entries of each `for` around a node."""
+        """Yield `question.right` and the like, for the fields of entries of each `for` around a node."""
         around = self.index.data(self.scope)
         steps = [*_steps(path), ""]
         for step in steps:
@@ -152,7 +156,7 @@ class _Completion:
                 yield from (f"{loop['as']}.{key}" for key in keys)
 
     def lists(self) -> Mapping[str, Any]:
-        """The lists that are known here, by name; in a words file those of behaviours that name it, too."""
+        """Return the lists that are known here, by name; in a words file also those of behaviours that use it."""
         found: dict[str, Any] = {}
         users = [name for name, words in self.index.words.items() if self.scope in (name, *words)]
         for scope in dict.fromkeys((self.scope, *(s for name in users for s in (name, *self.index.words[name])))):
@@ -162,6 +166,7 @@ class _Completion:
         return found
 
     def slot_detail(self, name: str) -> str:
+        """Return the description of a slot in a phrase."""
         return _SLOTS.get(name, "an entry of the list, by its `phrases`")
 
     def caught(self, path: NodePath) -> list[str]:
@@ -180,16 +185,18 @@ class _Completion:
         return list(dict.fromkeys(found))
 
     def names(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[Item]:
+        """Yield the names of a kind as proposals."""
         wide, end = len(self.here.word), ": " if key else ""
         for name, detail in self.candidates(kind, path, key=key):
             written = f'"{name}"' if name.startswith("#") and not self.quoted() else name
             yield Item(written + end, detail or str(kind), wide)
 
     def quoted(self) -> bool:
-        """Whether the cursor stands in quotes, where a `#` begins no comment."""
+        """Return whether the cursor is in quotes, where a `#` begins no comment."""
         return self.here.quote != ""
 
     def candidates(self, kind: NameKind, path: NodePath, *, key: bool) -> Iterator[tuple[str, str]]:
+        """Yield the names of a kind with their descriptions."""
         match kind:
             case NameKind.STATE:
                 yield from self.states(path) if not key or self.kind == "sayings" else ()
@@ -207,7 +214,7 @@ class _Completion:
                 yield from ((name, "") for name in self.index.known(kind, scope))
 
     def states(self, path: NodePath) -> Iterator[tuple[str, str]]:
-        """What a target may say: states beside this one, children, and all others by their ids."""
+        """Yield the possible targets: states beside this one, children, and all others by their ids."""
         tree = self.index.outlines.get(self.scope)
         if tree is None:
             return
@@ -228,7 +235,7 @@ class _Completion:
         yield from ((f"#{other.name}", other.path) for other in tree.entries.values() if other.parent)
 
     def events(self, *, waits: bool) -> Iterator[tuple[str, str]]:
-        """Events that may come, where one is waited for; those waited for, where one is raised."""
+        """Yield events that may arrive if one is awaited, and awaited events if one is raised."""
         written = self.index.at(self.file, *self.at)
         uses = [w for w in self.index.uses if w.kind is NameKind.EVENT and w is not written]
         names = dict.fromkeys(w.name for w in uses if w.defines or not waits or w.place.file == self.file)
@@ -241,6 +248,7 @@ class _Completion:
             yield from ((f.removesuffix(".") + ".*", "the engine's") for f in BUILT_IN_FAMILIES)
 
     def field(self, before: str) -> Iterator[Item]:
+        """Yield routes, or the fields of a route's message."""
         route, dot, part = before.partition(".")
         if dot:
             yield from (Item(name, "field", len(part)) for name in self.fields(self.schema(route)))
@@ -248,11 +256,13 @@ class _Completion:
             yield from (Item(name, "route", len(route)) for name in self.routes())
 
     def body(self, path: NodePath) -> Iterator[tuple[str, str]]:
+        """Yield the fields of the message of the action around a node."""
         around = self.here.document.value(path[:-2])
         route = around.get("route") if isinstance(around, dict) else None
         yield from ((name, "field") for name in self.fields(self.schema(str(route))))
 
     def expression(self, before: str, path: NodePath) -> Iterator[Item]:
+        """Yield the names that continue an expression."""
         if call := _CALL.search(before):
             kind = _NAMED[call[1]]
             names = self.index.known(kind, self.scope)
@@ -275,7 +285,7 @@ class _Completion:
             yield from (Item(f"{name}(", what, wide) for name, what in self.functions())
 
     def beginnings(self, path: NodePath) -> list[str]:
-        """The names that an expression can begin with; in a function of the project its arguments."""
+        """Return the names that an expression can begin with; in a function of the project its arguments."""
         if self.kind == "function":
             data = self.here.document.data
             arguments = data.get("args") if isinstance(data, dict) else None
@@ -283,7 +293,7 @@ class _Completion:
         return ["context", "event", "state", *(["heard"] if row_around(path) else [])]
 
     def functions(self) -> Iterator[tuple[str, str]]:
-        """The functions that can be called here, with what each is; those of the project first."""
+        """Yield the functions that can be called here, with their descriptions, the project's first."""
         own = [name for name in self.index.names(NameKind.FUNCTION) if name not in functions()]
         yield from ((name, "the project's function") for name in own if not self.is_own(name))
         yield from (
@@ -291,17 +301,17 @@ class _Completion:
         )
 
     def is_own(self, function: str) -> bool:
-        """Whether this is the file of that function, which can't call itself."""
+        """Return whether this is the file of that function, which can't call itself."""
         return self.kind == "function" and stem(self.file) == function
 
     def event_fields(self, path: NodePath) -> list[str]:
-        """The fields of the events that can arrive where an expression stands."""
+        """Return the fields of the events that can arrive at an expression."""
         event = next((str(path[i + 1]) for i in range(len(path) - 2, -1, -1) if path[i] == "on"), "")
         found = (schema for name, schema in self.declared() if event and hears(event, name))
         return list(dict.fromkeys(name for schema in found for name in self.fields(schema)))
 
     def declared(self) -> Iterator[tuple[str, Any]]:
-        """The events of routes, of the robot and of the file, each with the schema of its data."""
+        """Yield the events of routes, the robot, modules and the file, each with the schema of its data."""
         own = self.index.documents.get(self.file)
         yield from ((route.event, self.schema(name)) for name, route in self.routes().items())
         yield from robot_events().items()
@@ -310,27 +320,29 @@ class _Completion:
         yield from events.items() if isinstance(events, dict) else ()
 
     def module_events(self) -> Mapping[str, Any]:
-        """The events of the project's own modules."""
+        """Return the events of the project's own modules."""
         settings = self.analysis.settings.settings
         return own_module_events(settings.modules) if settings else {}
 
     def routes(self) -> Mapping[str, Route]:
-        """The project's routes, and those that come with Lumen and that it does not remove."""
+        """Return the project's routes, and those of Lumen that it does not remove."""
         settings = self.analysis.settings.settings
         own, removed = (settings.routes, settings.removed_routes) if settings else ({}, frozenset[str]())
         return {**own, **{n: r for n, r in BUILT_IN_ROUTES.items() if n not in own and n not in removed}}
 
     def schema(self, route: str) -> Any:
+        """Return the schema of a route's message, None if the route is unknown."""
         known = self.routes().get(route)
         return known and (self.analysis.settings.messages.get(known.schema) or shipped_message(known.schema))
 
     def fields(self, schema: Any) -> list[str]:
+        """Return the properties of a schema."""
         properties = schema.get("properties") if isinstance(schema, Mapping) else None
         return list(properties) if isinstance(properties, Mapping) else []
 
 
 def _steps(path: NodePath) -> Iterator[str]:
-    """The keys of the states that a node lies in."""
+    """Yield the keys of the states that contain a node."""
     for i in range(0, len(path) - 1, 2):
         if path[i] != "states":
             return

@@ -1,13 +1,13 @@
-"""Where a thing is made known, and everywhere it is named."""
+"""Finds the definition of a thing, and all its uses."""
 
 from lumen.features.editor.analysis import Analysis
 from lumen.language.diagnostics import Place
 
 
 def definitions(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:
-    """Where what stands at a line and column, from 1, is made known; a state by its key rather than its id.
+    """Return where the thing at a line and column, from 1, is defined; a state by its key, not its id.
 
-    What comes with Lumen is made known in none of the project's files.
+    Things that come with Lumen are not defined in the project's files.
     """
     use = analysis.index.at(file, line, column)
     places = [other.place for other in analysis.index.of(use) if other.defines] if use else []
@@ -15,6 +15,6 @@ def definitions(analysis: Analysis, file: str, line: int, column: int) -> list[P
 
 
 def uses(analysis: Analysis, file: str, line: int, column: int) -> list[Place]:
-    """Every place that names what stands at a line and column, from 1."""
+    """Return all places that name the thing at a line and column, from 1."""
     use = analysis.index.at(file, line, column)
     return [other.place for other in analysis.index.of(use) if other.text] if use else []

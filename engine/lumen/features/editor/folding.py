@@ -1,4 +1,4 @@
-"""What of a file can be folded: whatever stands below a key, and comments of several lines."""
+"""The parts of a file that can be folded: everything below a key, and comments of several lines."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -16,7 +16,7 @@ class Fold(NamedTuple):
 
 
 def folds(document: Document) -> list[Fold]:
-    """All of them; of those that begin in the same line only the longest."""
+    """Return all folds; of those that begin in the same line only the longest."""
     lines, found = lines_of(document.text), dict[int, Fold]()
     for fold in (*_nodes(document, lines), *_comments(lines)):
         if fold.last > fold.first and (fold.first not in found or found[fold.first].last < fold.last):
@@ -29,7 +29,7 @@ def _nodes(document: Document, lines: list[str]) -> Iterator[Fold]:
         first = span.key.line if span.key else span.value.line
         last = min(span.value.end_line, len(lines))
         if span.value.end_line <= len(lines) and not lines[last - 1][: span.value.end_column - 1].strip():
-            last -= 1  # it ends where the next one begins
+            last -= 1  # it ends where the next node begins
         while last > first and (not lines[last - 1].strip() or _is_comment(lines[last - 1])):
             last -= 1
         if span.key or first > 1:

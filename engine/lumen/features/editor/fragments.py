@@ -1,16 +1,19 @@
-"""The part of a file around a line that says where in the tree it stands: what is elsewhere may be broken."""
+"""The part of a file around a line that shows the line's place in the tree; the rest may be invalid."""
 
 import re
 
 ANCESTORS_WHOLE, LINES_WHOLE = 3, 120
-"""How many of the keys around a line are taken with all that stands below them, where that are not more lines than so;
-of those further out only the key is."""
+"""The number of enclosing keys that are included with everything below them, if that is at most so many lines; of the
+outer ones only the line of the key is included.
+"""
 
 _SKIPPED = re.compile(r"\s*(#|$)")
 
 
 def fragment(lines: list[str], at: int, column: int) -> tuple[list[str], int]:
-    """The lines around that of index `at`, and which of them it is; an empty one begins at `column`, from 1."""
+    """Return the lines around index `at` and the line's new index; an empty line counts as indented to `column`, from
+    1.
+    """
     around = ancestors(lines, at, column)
     if len(around) < ANCESTORS_WHOLE:
         return lines, at
@@ -24,7 +27,7 @@ def fragment(lines: list[str], at: int, column: int) -> tuple[list[str], int]:
 
 
 def ancestors(lines: list[str], at: int, column: int) -> list[int]:
-    """The lines that stand further out and further out above one, the outermost first."""
+    """Return the indices of the lines that enclose a line, the outermost first."""
     found, inner = list[int](), lines[at] if lines[at].strip() else " " * (column - 1) + "x"
     for i in range(at - 1, -1, -1):
         if _SKIPPED.match(lines[i]):
@@ -37,7 +40,7 @@ def ancestors(lines: list[str], at: int, column: int) -> list[int]:
 
 
 def block_end(lines: list[str], begin: int, at: int) -> int:
-    """Behind the last line below that one."""
+    """Return the index after the last line of a line's block."""
     if lines[begin].startswith("\t"):
         return begin + 1
     outer = _indent(lines[begin])

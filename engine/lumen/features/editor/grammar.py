@@ -1,4 +1,4 @@
-"""What may stand where in a file: from the path of a node to the kind of name that its key or its value is."""
+"""The grammar of names in files: from a node's path to the kind of name in its key or value."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -15,12 +15,12 @@ Table = Mapping[tuple[str, ...], NameKind]
 
 
 def _pair_names() -> Table:
-    """What the key behind a verb names, as in `track: {head: false}`."""
+    """Return the kinds of names in the key after a verb, as in `track: {head: false}`."""
     return {(verb.name, "*"): NameKind(verb.fields[0].names) for verb in VERBS if verb.pair}
 
 
 def _field_names() -> Table:
-    """What the values of a verb's fields name; the first field's may stand alone."""
+    """Return the kinds of names in the values of a verb's fields; the first field's may have no key."""
     found: dict[tuple[str, ...], NameKind] = {}
     for verb in VERBS:
         for i, field in enumerate(verb.fields):
@@ -159,15 +159,15 @@ _DEFINING = {
     "body": frozenset(("joints", "postures", "tactile")),
 }
 _SAYINGS = (NameKind.BEHAVIOR, NameKind.STATE, NameKind.ROW, NameKind.LANGUAGE)
-"""What the keys of a file of sayings name, from the outside to the inside."""
+"""The kinds of names in the keys of a file of sayings, from the outermost."""
 _DATA = {"behavior": ("data", "body"), "story": ("data", "body"), "lumen": (), "controller": ()}
 _OPAQUE = frozenset(("context", "types", "events", "phrases", "answers", "renamed"))
-"""Roots of a behaviour below which texts stand for themselves."""
+"""Top-level keys of a behaviour below which texts contain no names."""
 
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def key_kind(kind: str, path: NodePath) -> NameKind | None:
-    """What the key at the end of a path names, in a file of that kind."""
+    """Return the kind of name in the key at the end of a path, in a file of that kind."""
     steps = _steps(path)
     if kind == "sayings":
         return _SAYINGS[len(steps) - 1] if len(steps) <= len(_SAYINGS) else None
@@ -184,7 +184,7 @@ def key_kind(kind: str, path: NodePath) -> NameKind | None:
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def value_kind(kind: str, path: NodePath) -> NameKind | None:
-    """What the text at a path names, in a file of that kind."""
+    """Return the kind of name in the text at a path, in a file of that kind."""
     steps = _steps(path)
     if kind == "behavior":
         if steps[:1] and steps[0] in _OPAQUE:
@@ -197,7 +197,7 @@ def value_kind(kind: str, path: NodePath) -> NameKind | None:
 
 
 def names_verb(kind: str, path: NodePath) -> bool:
-    """Return whether the key at a path is that of a verb, or of a verb's end in a story; so a skill may be meant."""
+    """Return whether the key at a path is that of a verb, or of a verb's end in a story, so that it may be a skill."""
     steps = [step for step in path[:-1] if isinstance(step, str)]
     if kind == "story":
         return steps[-1:] in (["skills"], ["did"]) or steps == ["robot"]
@@ -207,7 +207,7 @@ def names_verb(kind: str, path: NodePath) -> bool:
 
 
 def defines(kind: str, path: NodePath, what: NameKind) -> bool:
-    """Whether the name at that path is where the thing is made known."""
+    """Return whether the name at that path defines the thing."""
     steps = _steps(path)
     if kind == "behavior" and what is NameKind.STATE:
         return steps[-2:-1] == ("states",)
@@ -228,7 +228,7 @@ def _steps(path: NodePath) -> tuple[str, ...]:
 
 
 def _found(table: Table, steps: tuple[str, ...], *, whole: bool = False) -> NameKind | None:
-    """The entry whose end matches; one that says more of the path wins, as `on: {play: …}` is no motion."""
+    """Return the entry whose end matches; a longer one takes precedence, since `on: {play: …}` is not a motion."""
     lengths = (len(steps),) if whole else (3, 2, 1)
     for length in lengths:
         end = steps[-length:]

@@ -1,4 +1,4 @@
-"""Keys of `hears` as they are written: `not dance|sing`, `question.right`, `else`; and the row around a node."""
+"""Keys of `hears`, such as `not dance|sing`, `question.right` and `else`, and the row around a node."""
 
 import re
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ _WORD = re.compile(r"[^\s|]+")
 
 
 def names_in(key: str) -> Iterator[tuple[str, int]]:
-    """The names of phrases and answers in a key, each with its offset; none for `else` and `ENTRY.FIELD`."""
+    """Yield the names of phrases and answers in a key, each with its offset; none for `else` and `ENTRY.FIELD`."""
     found = [(word[0], word.start()) for word in _WORD.finditer(key)]
     if len(found) > 1 and found[0][0] in WAYS:
         found = found[1:]
@@ -21,13 +21,13 @@ def names_in(key: str) -> Iterator[tuple[str, int]]:
 
 
 def row_around(path: NodePath) -> str:
-    """The key of the row of `hears` in which a node lies; empty if it lies in none."""
+    """Return the key of the row of `hears` that contains a node; empty if none does."""
     at = next((i for i in reversed(range(len(path) - 2)) if path[i] == "hears"), None)
     return "" if at is None else str(path[at + 1])
 
 
 def is_phrase(kind: str, path: NodePath) -> bool:
-    """Whether the text at a path of a file of that kind is a phrase: of `phrases`, or of a row of `answers`."""
+    """Return whether the text at a path of a file of that kind is a phrase: of `phrases`, or of a row of `answers`."""
     if kind not in ("behavior", "words"):
         return False
     steps = tuple(step for step in path if isinstance(step, str))
@@ -37,7 +37,7 @@ def is_phrase(kind: str, path: NodePath) -> bool:
 
 
 def texts_in(data: Any) -> Iterator[str]:
-    """The phrases in what stands under a name: for each language, or in each row of a table of answers."""
+    """Yield the phrases in the data under a name: for each language, or in each row of a table of answers."""
     match data:
         case str():
             yield data

@@ -1,4 +1,4 @@
-"""What a time means, shown beside it: an `after` among what its state does, a beat in seconds."""
+"""The meaning of times, shown beside them: an `after` compared with its state's actions, a beat in seconds."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from lumen.project.project_folders import kind_of
 
 
 class Hint(NamedTuple):
-    """A word behind a place, and what more there is to say of it."""
+    """A text after a place, with a longer explanation."""
 
     place: Place
     text: str
@@ -19,7 +19,7 @@ class Hint(NamedTuple):
 
 
 def hints(analysis: Analysis, file: str) -> Iterator[Hint]:
-    """The hints of a file, in its order."""
+    """Yield the hints of a file, in its order."""
     match kind_of(file):
         case "behavior":
             yield from _afters(analysis, file)
@@ -28,7 +28,7 @@ def hints(analysis: Analysis, file: str) -> Iterator[Hint]:
 
 
 def _afters(analysis: Analysis, file: str) -> Iterator[Hint]:
-    """How an `after` compares with the `do` beside it: it counts from when the state is entered."""
+    """Yield how each `after` compares with the `do` of its state: it counts from the state's entry."""
     draft, document = analysis.draft, analysis.documents.get(file)
     machine = draft.behaviors.get(file.removeprefix("behaviors/").removesuffix(".yaml"))
     for state in machine.states.values() if machine and document else ():
@@ -56,12 +56,12 @@ def _afters(analysis: Analysis, file: str) -> Iterator[Hint]:
 
 
 def _key(where: tuple[str | int, ...]) -> tuple[str | int, ...]:
-    """The path of the time under `after`, of a candidate in a list below it too."""
+    """Return the path of the time under `after`, also for a candidate in a list below it."""
     return where[: max(i for i, step in enumerate(where) if step == "after") + 2]
 
 
 def _beats(analysis: Analysis, file: str) -> Iterator[Hint]:
-    """When a beat is, in seconds from the beginning of its list of keyframes."""
+    """Yield the time of each beat in seconds from the beginning of its list of keyframes."""
     document = analysis.documents.get(file)
     tempo = document.data.get("tempo") if document and isinstance(document.data, dict) else None
     if document is None or not is_number(tempo) or tempo <= 0:

@@ -1,4 +1,4 @@
-"""What there is to know about the name under a cursor, in Markdown."""
+"""Descriptions of the name under a cursor, in Markdown."""
 
 from collections.abc import Sequence
 from math import degrees
@@ -20,11 +20,11 @@ from lumen.project.draft import ProjectDraft
 from lumen.project.project_folders import WORDS_FOLDER, kind_of
 
 MAX_PHRASES = 20
-"""Phrases of a language that are shown."""
+"""The number of phrases of a language that are shown."""
 
 
 def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """What to show for a line and column, from 1; empty where there is nothing to say."""
+    """Return the text to show for a line and column, from 1; empty if there is none."""
     parts = [of_row_at(analysis, file, line, column)]
     use = analysis.index.at(file, line, column)
     if use:
@@ -36,7 +36,7 @@ def hover(analysis: Analysis, file: str, line: int, column: int) -> str:
 
 
 def describe(analysis: Analysis, use: NameUse) -> str:
-    """What a name stands for: a state's path, a motion's duration, a joint's limits."""
+    """Return a description of a name: a state's path, a motion's duration, a joint's limits."""
     title = f"{use.kind} `{use.name}`"
     facts = _facts(analysis, use)
     if use.scope == WORDS_SCOPE + COMMON and COMMON_FILE not in analysis.files:
@@ -46,7 +46,7 @@ def describe(analysis: Analysis, use: NameUse) -> str:
 
 
 def explain(diagnostic: Diagnostic) -> str:
-    """The page of a finding's rule: what it means and why it matters."""
+    """Return what the page of a finding's rule says about its meaning and importance."""
     code = codes().get(diagnostic.code)
     if code is None:
         return ""
@@ -105,7 +105,7 @@ def _skill(draft: ProjectDraft, name: str) -> str:
 
 
 def _some(texts: Sequence[str]) -> str:
-    """The first texts, and how many there are more."""
+    """Return the first texts, and the number of the others."""
     more = len(texts) - MAX_PHRASES
     return ", ".join(texts[:MAX_PHRASES]) + (f" and {more} more" if more > 0 else "")
 

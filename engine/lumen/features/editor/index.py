@@ -1,4 +1,4 @@
-"""Every name in a project's files, and what each means."""
+"""The index of every name in a project's files and its meaning."""
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -19,17 +19,17 @@ from lumen.project.outline import BehaviorOutline, OutlinedState
 from lumen.project.project_folders import kind_of
 
 WORDS_SCOPE = "words/"
-"""What stands before the name of a words file where it is the scope of names."""
+"""The prefix of a words file's name as a scope."""
 
 WORD_KINDS: Mapping[NameKind, str] = {NameKind.PHRASE: "phrases", NameKind.ANSWERS: "answers"}
-"""What words files hold, each with its key."""
+"""The kinds of names in words files, each with its key."""
 
 
 class NameIndex:
-    """All uses of names in a project, from its documents by file; files that are no YAML have none.
+    """All uses of names in a project, from its documents by file; invalid YAML files have none.
 
-    `files` are the names of all files, for those that can't be read are there all the same. Documents of which there is
-    no file come with Lumen: their names are known, and stand nowhere.
+    `files` are the names of all files, since unreadable ones exist too. Documents without a file come with Lumen: their
+    names are known, but have no place.
     """
 
     def __init__(self, documents: Mapping[str, Document], files: frozenset[str], main: str) -> None:
@@ -38,7 +38,7 @@ class NameIndex:
 
     @cached_property
     def uses(self) -> tuple[NameUse, ...]:
-        """All of them, in the order of the files."""
+        """All uses, in the order of the files."""
         found = list[NameUse]()
         for file, document in self.documents.items():
             uses = self._within(document)
@@ -51,7 +51,7 @@ class NameIndex:
         return tuple(found)
 
     def _within(self, document: Document) -> tuple[NameUse, ...]:
-        """The uses in one document; worked out anew where it, or what its names can mean, has changed."""
+        """Return the uses in one document; computed again only if it, or what its names can mean, has changed."""
         scopes = tuple(self.scopes(document))
         states = [
             (tuple(tree.entries), tuple((name, s.path) for name, s in tree.aliases.items())) if tree else None
@@ -68,32 +68,32 @@ class NameIndex:
 
     @cached_property
     def skills(self) -> frozenset[str]:
-        """The skills of the project."""
+        """The names of the project's skills."""
         folder = KIND_FOLDERS[NameKind.SKILL]
         return frozenset(stem(file) for file in self.files if file.startswith(f"{folder}/") and file.endswith(".yaml"))
 
     def at(self, file: str, line: int, column: int) -> NameUse | None:
-        """The name at that line and column, from 1; the shortest where several stand there."""
+        """Return the use at that line and column, from 1; the shortest if there are several."""
         here = [use for use in self.uses if use.place.file == file and use.text and covers(use.place, line, column)]
         return min(here, key=lambda use: len(use.text), default=None)
 
     def of(self, use: NameUse) -> list[NameUse]:
-        """All uses of the same thing's name."""
+        """Return all uses of the same thing's name."""
         return [other for other in self.uses if other.thing == use.thing]
 
     def names(self, kind: NameKind, scope: str = "") -> list[str]:
-        """The names of all things of a kind, in the order of the files."""
+        """Return the names of all things of a kind, in the order of the files."""
         return list(
             dict.fromkeys(use.name for use in self.uses if use.kind is kind and use.scope == scope and use.defines)
         )
 
     def known(self, kind: NameKind, scope: str) -> list[str]:
-        """The names that are known in a scope: its own, and those of the words files that a behaviour names."""
+        """Return the names that are known in a scope: its own, and those of the words files that a behaviour uses."""
         scopes = (scope, *self.words.get(scope, ())) if kind in WORD_KINDS else (scope,)
         return list(dict.fromkeys(name for each in scopes for name in self.names(kind, each)))
 
     def home(self, kind: NameKind, name: str, scope: str) -> str:
-        """The scope in which a name that a behaviour uses is made known: its own, or that of a words file."""
+        """Return the scope in which a behaviour's name is defined: its own, or a words file's."""
         if kind not in WORD_KINDS or name in _entries(self.data(scope), kind):
             return scope
         return next((w for w in self.words.get(scope, ()) if name in _entries(self.data(w), kind)), scope)
@@ -106,13 +106,15 @@ class NameIndex:
         return next(found, NameKind.PHRASE)
 
     def data(self, scope: str) -> Any:
-        """The data of the behaviour or words file whose scope that is."""
+        """Return the data of the behaviour or words file of that scope."""
         document = self.documents.get(f"behaviors/{scope}.yaml")
         return document.data if document else None
 
     @cached_property
     def words(self) -> Mapping[str, tuple[str, ...]]:
-        """The scopes of the words files that each behaviour names; the one that comes with Lumen gives way to all."""
+        """The scopes of the words files that each behaviour uses; all others take precedence over the one that comes
+        with Lumen.
+        """
         shipped = {WORDS_SCOPE + stem(file) for file in self.documents.keys() - self.files}
         return {
             stem(file): tuple(sorted(_words(d.data), key=lambda scope: scope in shipped))
@@ -122,13 +124,13 @@ class NameIndex:
 
     @cached_property
     def own_bodies(self) -> frozenset[str]:
-        """The model that lumen.yaml names, and the one that it is like."""
+        """The model that lumen.yaml names, and the one that it is based on."""
         robot = self._data("lumen.yaml").get("robot")
         model = str(robot.get("model", "")) if isinstance(robot, dict) else ""
         return frozenset((model, str(self._data(f"models/{model}.yaml").get("like", model))))
 
     def other_body(self, file: str) -> str:
-        """The model whose joints and postures a file names, empty where it is the one that the project's robot has."""
+        """Return the model whose joints and postures a file names, empty if it is the project's own."""
         kind, folder = kind_of(file), PurePosixPath(file).parent.name
         model = stem(file) if kind == "body" else folder if kind == "motion" and file.count("/") > 1 else ""
         return "" if model in self.own_bodies else model
@@ -138,18 +140,18 @@ class NameIndex:
         return document.data if document and isinstance(document.data, dict) else {}
 
     def scopes(self, document: Document) -> Iterator[str]:
-        """The behaviours that the names in a document are about: of sayings each that they are said to."""
+        """Yield the behaviours that the names in a document belong to: for sayings, each behaviour in the file."""
         if kind_of(document.file) == "sayings":
             yield from map(str, document.data if isinstance(document.data, dict) else ())
         else:
             yield self.behavior(document.file)
 
     def behavior(self, file: str) -> str:
-        """The behaviour that the names in a file are about: its own, or the one that a story plays."""
+        """Return the behaviour that the names in a file belong to: its own, or the one that a story plays."""
         if kind_of(file) == "words":
             return WORDS_SCOPE + stem(file)
         if kind_of(file) == "motion" and file.count("/") > 1:
-            return file  # of one robot, beside the shared one of that name
+            return file  # one robot's version, besides a shared one of that name
         if kind_of(file) != "story":
             return stem(file)
         document = self.documents.get(file)
@@ -167,6 +169,7 @@ class _Reader:
         self.outline = index.outlines.get(self.scope)
 
     def uses(self) -> Iterator[NameUse]:
+        """Yield the uses of names in the document."""
         for path, span in self.document.spans.items():
             if self.kind == "sayings" and path:
                 self.scope = str(path[0])
@@ -188,7 +191,7 @@ class _Reader:
                 yield from self.alias(path, value)
 
     def keyed(self, kind: NameKind, path: NodePath) -> Iterator[NameUse]:
-        """The names in a key."""
+        """Yield the names in a key."""
         key = str(path[-1])
         if kind is NameKind.ROW:
             yield from self.row(path)
@@ -198,7 +201,7 @@ class _Reader:
             yield from self.named(kind, path, key=True)
 
     def named(self, kind: NameKind, path: NodePath, *, key: bool = False) -> Iterator[NameUse]:
-        """The name that a whole key or value is."""
+        """Yield the name that a whole key or value is."""
         whole = str(path[-1]) if key else str(self.document.value(path))
         text = context_key(whole) if kind is NameKind.CONTEXT else whole
         place = self.lines.part(self.document.place(path, key=key), whole, 0, len(text))
@@ -208,12 +211,13 @@ class _Reader:
         yield self.use(kind, name, text, place, defining=defines(self.kind, path, kind))
 
     def row(self, path: NodePath) -> Iterator[NameUse]:
-        """The names in a key of `hears`."""
+        """Yield the names in a key of `hears`."""
         key = str(path[-1])
         names = (NameInText(self.index.row_kind(name, self.scope), name, offset) for name, offset in names_in(key))
         yield from self.parts(path, key, names, key=True)
 
     def valued(self, kind: NameKind, path: NodePath, value: str) -> Iterator[NameUse]:
+        """Yield the names in a value of that kind."""
         match kind:
             case NameKind.EXPRESSION:
                 yield from self.parts(path, value, in_expression(value))
@@ -228,6 +232,7 @@ class _Reader:
                 yield from self.named(kind, path)
 
     def parts(self, path: NodePath, value: str, parts: Iterator[NameInText], *, key: bool = False) -> Iterator[NameUse]:
+        """Yield the uses of names in parts of a text."""
         place = self.document.place(path, key=key)
         for part in parts:
             if part.kind is NameKind.STATE and not key:
@@ -236,7 +241,7 @@ class _Reader:
                 yield self.use(part.kind, part.text, part.text, here)
 
     def target(self, path: NodePath, value: str) -> Iterator[NameUse]:
-        """A target, or a state as a story calls it: each step of a dotted one is a state's name."""
+        """Yield the names in a target, or in a story's name of a state: each step of a dotted one is a state's name."""
         if self.kind == "story":
             yield from self.segments(path, value, value, 0, self._named_state)
         elif self.outline:
@@ -252,7 +257,7 @@ class _Reader:
     def segments(
         self, path: NodePath, value: str, dotted: str, offset: int, find: Any, *, key: bool = False
     ) -> Iterator[NameUse]:
-        """A name for each step of a dotted name that leads to a state; an id may hold dots itself."""
+        """Yield a name for each step of a dotted name that leads to a state; an id may contain dots itself."""
         place, done = self.document.place(path, key=key), 0
         steps = dotted.split(".")
         for i in range(1, len(steps) + 1):
@@ -271,10 +276,12 @@ class _Reader:
         return self.outline.entries.get(name) or self.outline.aliases.get(name)
 
     def alias(self, path: NodePath, value: str) -> Iterator[NameUse]:
+        """Yield the use of a state's name that its `id` defines."""
         if place := self.lines.scalar(path):
             yield self.use(NameKind.STATE, _state_at(path), value, place)
 
     def use(self, kind: NameKind, name: str, text: str, place: Place, *, defining: bool = False) -> NameUse:
+        """Return a use of a name in the right scope."""
         if kind in BODY_KINDS:
             scope = self.index.other_body(self.document.file)
         else:
@@ -283,26 +290,26 @@ class _Reader:
 
 
 def stem(file: str) -> str:
-    """What a file's thing is called."""
+    """Return the name of the thing that a file defines."""
     name = PurePosixPath(file).name
     return name.removesuffix(SCHEMA_SUFFIX) if name.endswith(SCHEMA_SUFFIX) else PurePosixPath(file).stem
 
 
 def _entries(data: Any, kind: NameKind) -> Any:
-    """The names of a kind that a file's data makes known."""
+    """Return the names of a kind that a file's data defines."""
     table = data.get(WORD_KINDS[kind]) if isinstance(data, dict) else None
     return table if isinstance(table, dict) else ()
 
 
 def _words(data: Any) -> tuple[str, ...]:
-    """The scopes of the words files that a behaviour's data names."""
+    """Return the scopes of the words files that a behaviour's data names."""
     written = data.get("words") if isinstance(data, dict) else None
     rows = [written] if isinstance(written, str) else written if isinstance(written, list) else []
     return tuple(f"{WORDS_SCOPE}{name}" for name in rows)
 
 
 def _state_at(path: NodePath) -> str:
-    """The path of the innermost state around a node, or of the state whose key it is."""
+    """Return the path of the innermost state around a node, or of the state whose key it is."""
     steps, at = [], 0
     while at + 1 < len(path) and path[at] == "states":
         steps.append(str(path[at + 1]))
@@ -311,7 +318,7 @@ def _state_at(path: NodePath) -> str:
 
 
 def _outline(file: str, document: Document) -> BehaviorOutline | None:
-    """The states of a behaviour that may be broken anywhere, None where they can't be told."""
+    """Return the states of a behaviour that may have errors anywhere, None if they can't be determined."""
     if kind_of(file) != "behavior":
         return None
     try:
@@ -321,7 +328,7 @@ def _outline(file: str, document: Document) -> BehaviorOutline | None:
 
 
 def _states(data: Any) -> dict[str, Any]:
-    """What of a state the outline reads, where that has the form it should."""
+    """Return the parts of a state that the outline reads, if they have the right form."""
     known = data if isinstance(data, dict) else {}
     children, name, kind = known.get("states"), known.get("id"), known.get("type")
     state: dict[str, Any] = {}

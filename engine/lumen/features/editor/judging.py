@@ -1,6 +1,6 @@
-"""A project judged in a process of its own: Python runs one thread at a time, and no answer waits for findings.
+"""Checks a project in a separate process: Python runs one thread at a time, and answers must not wait for findings.
 
-This file has both ends: the server's `Judge`, and `python -m lumen.features.editor.judging`, which it runs.
+This file contains both ends: the server's `Judge`, and `python -m lumen.features.editor.judging`, which it runs.
 """
 
 import asyncio
@@ -15,13 +15,13 @@ from lumen.upkeep.judge_process import AnswerPipe, JudgeProcess, NoAnswerError, 
 from lumen.upkeep.threads import WatchedThread
 
 COMMAND = (sys.executable, "-P", "-m", "lumen.features.editor.judging")
-"""`-P`: no module is imported from the folder in which the editor started the server."""
+"""The command of the process. `-P` prevents imports from the folder in which the editor started the server."""
 
 
 class Judge:
-    """Judges one project at a time, and gives up on a text as soon as there is a newer one.
+    """Checks one project at a time, and gives up on a text as soon as there is a newer one.
 
-    The process is started with the first question, and again after a file has ended it.
+    The process starts with the first request, and again if a file has ended it.
     """
 
     def __init__(self) -> None:
@@ -42,23 +42,23 @@ class Judge:
         return found
 
     def outdated(self) -> None:
-        """Give up on the text that is being judged."""
+        """Give up on the text that is being checked."""
         self._number += 1
-        if self._current:  # not on the loop: the process may still read the question
+        if self._current:  # the process may still be reading the request, so the event loop must not wait for it
             self._current = False
             asyncio.get_running_loop().run_in_executor(None, self._process.send, (self._number, None))
 
     def close(self) -> None:
-        """End the process, even while it judges."""
+        """End the process, even during a check."""
         self._process.end()
 
 
 class OutdatedError(Exception):
-    """A newer question came while the project was being judged."""
+    """A newer request came during the check of a project."""
 
 
 class JudgingQuestions:
-    """The questions of a server, each with its number; `None` as question makes those before it outdated."""
+    """The numbered requests of a server; `None` as a request makes those before it outdated."""
 
     def __init__(self, pipe: AnswerPipe) -> None:
         self._pipe = pipe
@@ -80,7 +80,7 @@ class JudgingQuestions:
                     self._waiting.put((number, analysis))
         except EOFError:
             os._exit(0)
-        except BaseException:  # a fault of ours: the server waits for an answer, or for the end
+        except BaseException:  # a fault of ours: end, since the server waits for an answer
             traceback.print_exc()
             os._exit(1)
 
@@ -97,6 +97,7 @@ class JudgingQuestions:
 
 
 def main() -> None:
+    """Answer a server's requests until it ends."""
     with answering() as pipe:
         JudgingQuestions(pipe).answer()
 

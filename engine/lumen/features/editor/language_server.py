@@ -1,4 +1,4 @@
-"""The server's side of a conversation with an editor: which projects are open, and what was found in them."""
+"""The server's side of the protocol: the open projects and their findings."""
 
 import asyncio
 from collections.abc import Callable
@@ -21,19 +21,20 @@ from lumen.features.editor.running import RunningExhibitions
 from lumen.upkeep.threads import WatchedThread
 
 CHECK_DELAY = 0.02
-"""How long nothing may be typed before the project is judged [s]."""
+"""How long nothing may be typed before the project is checked [s]."""
 
 ACTIVE = "lumen/active"
-"""The notification of the states in which a running exhibition is: `root`, `states`, and the `places` of their keys."""
+"""The notification of the active states of a running exhibition: `root`, `states`, and the `places` of their keys."""
 
 T = TypeVar("T")
 
 
 class LanguageServer(pygls_server.LanguageServer):
-    """Checks the projects of the files that are open, and answers what an editor asks about a position."""
+    """Checks the projects of open files, and answers an editor's requests about positions."""
 
     def __init__(self) -> None:
-        # Whole texts: pygls applies changes of parts by lines that also end at U+2028 and the like.
+        # Documents are synchronised as a whole: pygls applies partial changes by lines that also end at U+2028 and
+        # similar characters.
         super().__init__("lumen", lumen.__version__, text_document_sync_kind=lsp.TextDocumentSyncKind.Full)
         self.projects = OpenProjects()
         self.running = RunningExhibitions(self.projects.roots, self._moved)
@@ -43,18 +44,19 @@ class LanguageServer(pygls_server.LanguageServer):
         self._checking: dict[Path, asyncio.Task[None]] = {}
 
     def encoder(self, analysis: Analysis) -> ProtocolEncoder:
+        """Return the encoder of a project's results for this client."""
         return ProtocolEncoder(analysis, self.workspace.position_codec)
 
     def analyses(self) -> list[Analysis]:
-        """The projects of which a file is open."""
+        """Return the projects with an open file."""
         return [self.projects.analysis(root) for root in self.projects.roots()]
 
     def active(self, root: Path) -> tuple[str, ...]:
-        """The states in which a running exhibition of a project is."""
+        """Return the active states of a project's running exhibition."""
         return self.running.active(root)
 
     def follow(self) -> None:
-        """Have running exhibitions looked at from now on, beside everything else."""
+        """Start to follow running exhibitions on a thread of its own."""
         self._loop = asyncio.get_running_loop()
         WatchedThread("exhibitions", self.running.follow).start()
 
@@ -62,7 +64,7 @@ class LanguageServer(pygls_server.LanguageServer):
         self._loop.call_soon_threadsafe(self._tell_active, root)
 
     def _tell_active(self, root: Path) -> None:
-        """Say where a running exhibition is: as a notification of ours, and by lenses that are asked for anew."""
+        """Send the active states of a running exhibition to the editor, and request a refresh of the lenses."""
         analysis = self.projects.analysis(root)
         encoder = self.encoder(analysis)
         places = [encoder.location(place) for place in active_places(analysis, self.active(root))]
@@ -73,14 +75,14 @@ class LanguageServer(pygls_server.LanguageServer):
             self.workspace_code_lens_refresh(None)
 
     def file(self, uri: str) -> tuple[Analysis, str] | None:
-        """Project and file of a document; None where it belongs to no project."""
+        """Return project and file of a document; None if it belongs to no project."""
         try:
             return self.projects.at(Path(path_of(uri)))
         except LumenError:
             return None
 
     def at(self, uri: str, position: lsp.Position) -> tuple[Analysis, str, int, int] | None:
-        """Project, file, line and column of a position; None where the file belongs to no project."""
+        """Return project, file, line and column of a position; None if the file belongs to no project."""
         if (found := self.file(uri)) is None:
             return None
         analysis, file = found
@@ -88,12 +90,12 @@ class LanguageServer(pygls_server.LanguageServer):
         return analysis, file, line, column
 
     def asked(self, params: Any, answer: Callable[[Analysis, str, int, int], T]) -> T | None:
-        """What a service answers about the position that is asked for."""
+        """Return a service's answer about the requested position; None if the file belongs to no project."""
         found = self.at(params.text_document.uri, params.position)
         return answer(*found) if found else None
 
     def written(self, uri: str, *, at_once: bool = False) -> None:
-        """An open file has changed: take its text, and check its project when nothing has come for a while."""
+        """Note the new text of an open file, and check its project once nothing is typed for a while."""
         path = Path(path_of(uri))
         self.projects.write(path, self.workspace.get_text_document(uri).source)
         if root := root_of(path):
@@ -101,7 +103,7 @@ class LanguageServer(pygls_server.LanguageServer):
         self.check(path, at_once=at_once)
 
     def check(self, path: Path, *, at_once: bool = False) -> None:
-        """Check a file's project soon; a check that is under way starts anew."""
+        """Check a file's project soon; a check in progress starts again."""
         if (root := root_of(path)) is None:
             return
         self.judge(root).outdated()
@@ -110,19 +112,19 @@ class LanguageServer(pygls_server.LanguageServer):
             self._checking[root] = asyncio.ensure_future(self._check(root))
 
     def judge(self, root: Path) -> Judge:
-        """Who judges the project in that folder."""
+        """Return the judge of the project in that folder."""
         return self._judges.setdefault(root, Judge())
 
     def close(self) -> None:
-        """Let go of what works beside it."""
+        """End the thread and the judges' processes."""
         self.running.close()
         for judge in self._judges.values():
             judge.close()
 
     async def settled(self, uri: str) -> tuple[Analysis, str] | None:
-        """Project and file of a document, once nothing is typed any more and the findings are shown.
+        """Return project and file of a document, once typing has paused and the findings are published.
 
-        Raises JsonRpcContentModified where something was typed meanwhile: the editor asks anew.
+        Raises JsonRpcContentModified if the document changed meanwhile; the editor then repeats the request.
         """
         root, asked = root_of(Path(path_of(uri))), self._version(uri)
         while (task := self._checking.get(root) if root else None) and not task.done():
@@ -151,7 +153,9 @@ class LanguageServer(pygls_server.LanguageServer):
                 await loop.run_in_executor(None, analysis.prepare)
 
     def _tell(self, root: Path, analysis: Analysis) -> None:
-        """Publish what was found, file by file; of an open one also that nothing was, or nothing is any more."""
+        """Publish the findings file by file; open files without findings, and files that had some, get an empty
+        list.
+        """
         encoder, found = self.encoder(analysis), dict[str, list[lsp.Diagnostic]]()
         for diagnostic in analysis.diagnostics:
             found.setdefault(diagnostic.place.file, []).append(encoder.diagnostic(diagnostic))

@@ -1,4 +1,4 @@
-"""What stands above a line and can be clicked: run a story, play a motion, see who comes to a state."""
+"""Lenses: clickable lines above the text that run a story, play a motion, or show the transitions to a state."""
 
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
@@ -9,12 +9,12 @@ from lumen.language.diagnostics import Place
 from lumen.project.project_folders import kind_of
 
 RUN_STORY, PLAY_MOTION, SHOW_PLACES = "lumen.runStory", "lumen.playMotion", "lumen.showPlaces"
-"""The commands behind them."""
+"""The commands of the lenses."""
 ACTIVE_NOW = "● active now"
 
 
 class Lens(NamedTuple):
-    """A title above a place; `command` may be empty, `name` and `places` are what it is about."""
+    """A title above a place; `command` may be empty, `name` and `places` are its subject."""
 
     place: Place
     title: str
@@ -24,7 +24,7 @@ class Lens(NamedTuple):
 
 
 def lenses(analysis: Analysis, file: str, active: Collection[str] = ()) -> Iterator[Lens]:
-    """The lenses of a file; `active` are the states, by name, in which a running exhibition of the project is."""
+    """Yield the lenses of a file; `active` are the names of the active states of the project's running exhibition."""
     top = Place(file)
     match kind_of(file):
         case "story":
@@ -36,7 +36,7 @@ def lenses(analysis: Analysis, file: str, active: Collection[str] = ()) -> Itera
 
 
 def active_places(analysis: Analysis, active: Collection[str]) -> list[Place]:
-    """Where the states are made known that are active, in the behaviour that the project runs."""
+    """Return the places where the active states are defined, in the behaviour that the project runs."""
     settings = analysis.settings.settings
     file = f"behaviors/{settings.behavior}.yaml" if settings else ""
     return [each.place for each in lenses(analysis, file, active) if each.title == ACTIVE_NOW]

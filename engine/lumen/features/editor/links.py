@@ -1,4 +1,4 @@
-"""Names in a file that are other files: motions, stories, behaviours, words, controllers, robots, schemas."""
+"""Links from names to files: motions, stories, behaviours, words, controllers, robots, schemas."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -10,14 +10,14 @@ from lumen.project.messages import SCHEMA_SUFFIX
 
 
 class FileLink(NamedTuple):
-    """Where a file is named, and which one that is, from the project's root."""
+    """The place of a file's name, and the file relative to the project's root."""
 
     place: Place
     target: str
 
 
 def links(analysis: Analysis, file: str) -> Iterator[FileLink]:
-    """The files that are named in a file and are there."""
+    """Yield links to the existing files that are named in a file."""
     for use in analysis.index.uses:
         if use.place.file == file and use.text and (folder := KIND_FOLDERS.get(use.kind)):
             target = f"{folder}/{use.name}{SCHEMA_SUFFIX if use.kind is NameKind.MESSAGE else '.yaml'}"

@@ -1,4 +1,4 @@
-"""Names inside texts: the exact place of a part of a scalar, however it is quoted, folded or escaped."""
+"""The exact places of names inside texts, however these are quoted, folded or escaped."""
 
 import re
 from collections.abc import Iterator
@@ -33,11 +33,11 @@ class DocumentText:
         self._lines = LineIndex(document.text)
 
     def offset(self, line: int, column: int) -> int:
-        """Where in the text a line and column, from 1, are; the end where they lie beyond it."""
+        """Return the offset of a line and column, from 1; the end of the text if they are beyond it."""
         return self._lines.offset(line, column)
 
     def part(self, place: Place, source: str, offset: int, length: int) -> Place | None:
-        """The place of some characters of a scalar's value, None where the file has them in no such form."""
+        """Return the place of a part of a scalar's value, None if the file contains it in another form."""
         start, end = self.offset(place.line, place.column), self.offset(place.end_line, place.end_column)
         raw, word = self.text[start:end], source[offset : offset + length]
         at = raw.find(source)
@@ -49,19 +49,19 @@ class DocumentText:
         return self.between(start + places[before], length) if word and before < len(places) else None
 
     def between(self, start: int, length: int) -> Place:
-        """The place of so many characters of one line."""
+        """Return the place of `length` characters in one line."""
         line, column = self._lines.line(start), self._lines.column(start)
         return Place(self.document.file, line, column, line, column + length)
 
     def scalar(self, path: NodePath, *, key: bool = False) -> Place | None:
-        """The place of a key or of a text, without its quotes."""
+        """Return the place of a key or text, without its quotes."""
         place = self.document.place(path, key=key)
         value = path[-1] if key else self.document.value(path)
         return self.part(place, str(value), 0, len(str(value)))
 
 
 def key_at(document: Document, line: int, column: int) -> NodePath:
-    """The path of the key at a line and column, from 1; empty for none."""
+    """Return the path of the key at a line and column, from 1; empty for none."""
     found: NodePath = ()
     for path, span in document.spans.items():
         if span.key and covers(span.key, line, column):
@@ -70,7 +70,7 @@ def key_at(document: Document, line: int, column: int) -> NodePath:
 
 
 def in_expression(source: str, base: int = 0) -> Iterator[NameInText]:
-    """The context keys, phrases, tables, states and functions that an expression names; none if it can't be read."""
+    """Yield the context keys, phrases, tables, states and functions in an expression; none if it is invalid."""
     yield from (name._replace(offset=base + name.offset) for name in _named(source))
 
 
@@ -97,7 +97,7 @@ def _names(source: str) -> Iterator[NameInText]:
 
 
 def in_template(text: str) -> Iterator[NameInText]:
-    """The names in the `{{ expressions }}` of a text."""
+    """Yield the names in the `{{ expressions }}` of a text."""
     for found in _TEMPLATE.finditer(text):
         yield from in_expression(found[1], found.start(1))
 
@@ -107,7 +107,7 @@ def _signs(tokens: list[Token], at: int, sign: str) -> bool:
 
 
 def _last_text(tokens: list[Token], at: int) -> Token | None:
-    """The literal that ends a call's arguments."""
+    """Return the text literal that ends a call's arguments, None without one."""
     depth = 1
     while at < len(tokens) and depth:
         depth += (tokens[at].text in ("(", "[", "{")) - (tokens[at].text in (")", "]", "}"))

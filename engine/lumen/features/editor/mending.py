@@ -1,6 +1,6 @@
-"""A file that is no YAML while it is being written, without the lines that keep it from being read.
+"""Repairs a file that is invalid YAML while it is being written, by removing the lines that prevent reading it.
 
-All other lines stay where they are, so that what is said of them is in the right place.
+All other lines keep their numbers, so that findings about them have the right place.
 """
 
 import re
@@ -11,25 +11,25 @@ from lumen.language.text_lines import lines_of
 from lumen.project.yaml_reader import parse
 
 MAX_CUTS = 8
-"""Lines that are left out one by one before whole blocks are."""
+"""The number of lines that are removed one by one before whole blocks are."""
 
 _WORD = re.compile(r"[^\s\"'`\[\]{},:#]+")
 _QUOTED = re.compile(r"""(?:^|(?<=[\s\[{,:(]))(?P<text>"(?:[^"\\]|\\.)*(?:"|$)|'(?:[^']|'')*(?:'|$))|(?:^|\s)\#.*""")
 
 
 class MendedText(NamedTuple):
-    """What of a text can be read: `cut` are the indices of the lines that were left out."""
+    """The readable part of a text; `cut` are the indices of the removed lines."""
 
     text: str
     cut: frozenset[int]
     words: frozenset[str]
-    """The words that stood in them."""
+    """The words in the removed lines."""
     around: frozenset[int]
-    """The lines whose content depends on them: those that they stand below."""
+    """The lines whose content depends on the removed ones: those that contain them."""
 
 
 def mended(file: str, text: str) -> MendedText | None:
-    """The text without the lines that keep it from being read; None where nothing helps."""
+    """Return the text without the lines that prevent reading it; None if nothing helps."""
     lines, cut = lines_of(text), set[int]()
     first: int | None = None
     for _ in range(MAX_CUTS):
@@ -46,7 +46,7 @@ def mended(file: str, text: str) -> MendedText | None:
 
 
 def open_quote(line: str) -> bool:
-    """Whether a quote is opened in a line and not closed there."""
+    """Return whether a quote is opened in a line and not closed there."""
     return any(
         len(text) == 1 or text[0] != text[-1] or text.endswith('\\"')
         for found in _QUOTED.finditer(line)
@@ -55,7 +55,7 @@ def open_quote(line: str) -> bool:
 
 
 def _fault(file: str, lines: list[str], cut: set[int]) -> int | None:
-    """The line that most probably keeps the others from being read, None where nothing does."""
+    """Return the index of the line that most likely prevents reading the others, None if they can be read."""
     document, found = parse(file, _kept(lines, cut).encode("utf-8", "surrogatepass"))
     if document is not None or not found:
         return None

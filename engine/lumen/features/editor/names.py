@@ -1,4 +1,4 @@
-"""A name in somebody's file: what sort of thing it names, which one, and where exactly it stands."""
+"""A name in a project's file: the kind of thing that it names, the thing, and its exact place."""
 
 from enum import StrEnum
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from lumen.project.project_folders import (
 
 
 class NameKind(StrEnum):
-    """What a name can stand for; `EXPRESSION`, `TEMPLATE`, `FIELD` and `ROW` hold other names."""
+    """The kinds of things that names refer to; `EXPRESSION`, `TEMPLATE`, `FIELD` and `ROW` contain other names."""
 
     STATE = "state"
     CONTEXT = "context key"
@@ -58,34 +58,35 @@ KIND_FOLDERS = {
     NameKind.MESSAGE: MESSAGES,
     NameKind.SKILL: SKILLS,
 }
-"""The kinds that are files, and where those are."""
+"""The kinds that are files, with their folders."""
 
 SCOPED_KINDS = frozenset((NameKind.STATE, NameKind.CONTEXT, NameKind.PHRASE, NameKind.ANSWERS, NameKind.POSE))
-"""The kinds whose names mean something within one file only."""
+"""The kinds whose names are valid within one file only."""
 
 BODY_KINDS = frozenset((NameKind.JOINT, NameKind.POSTURE))
 """The kinds whose names belong to one robot's body."""
 
 
 class NameUse(NamedTuple):
-    """A use of a name: `name` says which thing of its kind, `scope` in which file's, `text` how it stands at `place`.
-
-    A state's name is its path, however it is written.
-    """
+    """A use of a name."""
 
     kind: NameKind
     scope: str
+    """The file in which the name is valid, empty for the whole project."""
     name: str
+    """The thing's name; for a state its path, however it is written."""
     text: str
+    """The name as it is written."""
     place: Place
     defines: bool = False
+    """Whether this use defines the thing."""
 
     @property
     def thing(self) -> tuple[NameKind, str, str]:
-        """What all uses of one thing's name have in common."""
+        """What all uses of one thing's name share."""
         return self.kind, self.scope, self.name
 
 
 def covers(place: Place, line: int, column: int) -> bool:
-    """Whether a cursor at that line and column, from 1, stands on the place or right behind it."""
+    """Return whether a cursor at that line and column, from 1, is in the place or directly behind it."""
     return (place.line, place.column) <= (line, column) <= (place.end_line, place.end_column)

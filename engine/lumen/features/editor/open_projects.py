@@ -1,4 +1,4 @@
-"""The projects whose files an editor has open, with what is written in them and not yet saved."""
+"""The projects with open files, with their unsaved texts."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from lumen.project.project_folders import MAIN_FILE, kind_of
 
 
 class OpenProjects:
-    """Knows the unsaved texts by path; an analysis of a project lasts until something in it changes."""
+    """Keeps the unsaved texts by path; the analysis of a project is kept until something in it changes."""
 
     def __init__(self) -> None:
         self._texts: dict[Path, str] = {}
@@ -17,24 +17,24 @@ class OpenProjects:
         self._before: dict[Path, Analysis] = {}
 
     def write(self, path: Path, text: str) -> None:
-        """What stands in an open file now."""
+        """Set the present text of an open file."""
         self._texts[path] = text
         self.forget(path)
 
     def close(self, path: Path) -> None:
-        """The file is not edited any more: what is on disk counts again."""
+        """Forget the unsaved text of a closed file: the file on disk counts again."""
         self._texts.pop(path, None)
         self.forget(path)
 
     def forget(self, path: Path) -> None:
-        """Something has happened to a file."""
+        """Discard the analysis of a changed file's project."""
         if root := root_of(path):
             last = self._analyses.pop(root, None)
             if last is not None:
                 self._before[root] = last
 
     def analysis(self, root: Path) -> Analysis:
-        """The project in that folder, as it is now."""
+        """Return the present analysis of the project in that folder."""
         if root not in self._analyses:
             files = read_files(root)
             for path, text in self._texts.items():
@@ -45,11 +45,11 @@ class OpenProjects:
         return self._analyses[root]
 
     def roots(self) -> list[Path]:
-        """The folders of the projects of which a file is open."""
+        """Return the folders of projects with an open file."""
         return list(dict.fromkeys(root for path in list(self._texts) if (root := root_of(path))))
 
     def at(self, path: Path) -> tuple[Analysis, str]:
-        """The project that a file belongs to, and its name in it. Raises UsageError where it belongs to none."""
+        """Return the project of a file, and the file's name in it. Raises UsageError if it belongs to none."""
         root = root_of(path)
         if root is None:
             raise UsageError(f"{path} is in no project: no folder above it has a {MAIN_FILE}")
@@ -57,7 +57,7 @@ class OpenProjects:
 
 
 def root_of(path: Path) -> Path | None:
-    """The nearest folder above a file that holds a lumen.yaml."""
+    """Return the nearest folder above a file that has a lumen.yaml, None without one."""
     return next((folder for folder in path.parents if (folder / MAIN_FILE).is_file()), None)
 
 

@@ -1,4 +1,4 @@
-"""The language services' values as the types of the Language Server Protocol."""
+"""Converts the language services' values to the types of the Language Server Protocol."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -34,30 +34,33 @@ _ICONS = {
 
 
 def icon(kind: NameKind) -> lsp.SymbolKind:
-    """What an editor draws beside a name of that kind."""
+    """Return the icon that an editor draws for a name of that kind."""
     return _ICONS.get(kind, lsp.SymbolKind.Key)
 
 
 class ProtocolEncoder:
-    """Encodes results for one client: `codec` knows how it counts columns."""
+    """Encodes results for one client; `codec` converts columns to the client's units."""
 
     def __init__(self, analysis: Analysis, codec: PositionCodec) -> None:
         self.analysis, self._codec = analysis, codec
         self._ranges: dict[str, Ranges] = {}
 
     def ranges(self, file: str) -> Ranges:
+        """Return the converter of places in a file."""
         if file not in self._ranges:
             self._ranges[file] = Ranges(FileText(file, self.analysis.files.get(file, b"")), self._codec)
         return self._ranges[file]
 
     def uri(self, file: str) -> str:
+        """Return the URI of a file."""
         return (Path(self.analysis.root) / file).absolute().as_uri()
 
     def location(self, place: Place) -> lsp.Location:
+        """Return the protocol's location of a place."""
         return lsp.Location(self.uri(place.file), self.ranges(place.file).range(place))
 
     def diagnostic(self, found: Diagnostic) -> lsp.Diagnostic:
-        """A finding with its hint, its rule's code, and the places that explain it."""
+        """Return a finding with its hint, its rule's code, and related places."""
         related = [lsp.DiagnosticRelatedInformation(self.location(r.place), r.message) for r in found.related]
         return lsp.Diagnostic(
             self.ranges(found.place.file).range(found.place),
@@ -69,7 +72,7 @@ class ProtocolEncoder:
         )
 
     def item(self, item: Item, file: str, line: int, column: int, order: int) -> lsp.CompletionItem:
-        """A proposal that replaces what is written of it already."""
+        """Return a proposal that replaces the part of it that is already typed; `order` is its rank."""
         place = Place(file, line, column - item.replaces, line, column)
         icon = lsp.CompletionItemKind.Property if item.detail == "key" else lsp.CompletionItemKind.Reference
         return lsp.CompletionItem(
@@ -83,6 +86,7 @@ class ProtocolEncoder:
         )
 
     def symbol(self, symbol: Symbol) -> lsp.DocumentSymbol:
+        """Return a symbol with its children."""
         ranges = self.ranges(symbol.place.file)
         return lsp.DocumentSymbol(
             symbol.name,
@@ -94,7 +98,7 @@ class ProtocolEncoder:
         )
 
     def edits(self, edits: Iterable[Edit]) -> list[lsp.TextDocumentEdit | lsp.RenameFile]:
-        """The edits, gathered by file."""
+        """Return the edits, grouped by file."""
         gathered: dict[str, list[lsp.TextEdit | lsp.AnnotatedTextEdit | lsp.SnippetTextEdit]] = {}
         for edit in edits:
             change = lsp.TextEdit(self.ranges(edit.place.file).range(edit.place), edit.text)
@@ -105,7 +109,7 @@ class ProtocolEncoder:
         ]
 
     def renaming(self, renaming: Renaming) -> lsp.WorkspaceEdit:
-        """The edits first, in the files as they are called now; then the file gets its new name."""
+        """Return the edits with the files' present names, then the renaming of the file, if any."""
         changes = self.edits(renaming.edits)
         if renaming.moved:
             old, new = renaming.moved

@@ -1,4 +1,6 @@
-"""Between our places (lines and columns of characters, from 1) and the protocol's (from 0, in the client's units)."""
+"""Converts between Lumen's places (lines and columns of characters, from 1) and the protocol's (from 0, in the client's
+units).
+"""
 
 from urllib.parse import unquote, urlsplit
 from urllib.request import url2pathname
@@ -11,13 +13,13 @@ from lumen.lint.fixes import FileText
 
 
 class Ranges:
-    """The places of one file in the units that the client counts columns in; by default UTF-16."""
+    """The places of one file in the client's units of columns, by default UTF-16."""
 
     def __init__(self, text: FileText, codec: PositionCodec) -> None:
         self._text, self._codec = text, codec
 
     def position(self, line: int, column: int) -> lsp.Position:
-        """The protocol's position of a line and column; the end of the file where they lie beyond it."""
+        """Return the protocol's position of a line and column; the end of the file if they are beyond it."""
         count = len(self._text.lines)
         if line > count:
             line, column = count, len(self._text.line(count)) + 1
@@ -25,12 +27,12 @@ class Ranges:
         return lsp.Position(line - 1, self._codec.client_num_units(before))
 
     def range(self, place: Place) -> lsp.Range:
-        """The protocol's range of a place."""
+        """Return the protocol's range of a place."""
         start, end = self.position(place.line, place.column), self.position(place.end_line, place.end_column)
         return lsp.Range(start, max(start, end, key=lambda p: (p.line, p.character)))
 
     def place(self, position: lsp.Position) -> tuple[int, int]:
-        """Line and column, from 1, of a position of the client's."""
+        """Return line and column, from 1, of a client's position."""
         text = self._text.line(position.line + 1)
         units, column = 0, 0
         while column < len(text) and units < position.character:
@@ -40,6 +42,6 @@ class Ranges:
 
 
 def path_of(uri: str) -> str:
-    """The path on this machine that a `file:` URI names, empty for any other."""
+    """Return the local path of a `file:` URI, empty for any other."""
     parts = urlsplit(uri)
     return url2pathname(unquote(parts.path)) if parts.scheme == "file" else ""

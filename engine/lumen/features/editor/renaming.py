@@ -1,4 +1,4 @@
-"""Another name for a thing, wherever it stands in the project."""
+"""Renames a thing everywhere in the project."""
 
 import re
 from collections.abc import Sequence
@@ -41,28 +41,28 @@ _NAMES = {
     NameKind.SKILL: (r"[a-z][a-z0-9_]*", "made of small letters, digits and `_`, and begin with a letter"),
     NameKind.STORY: (r"[A-Za-z_][\w-]*", "made of letters, digits, `_` and `-`, and begin with a letter or `_`"),
 }
-"""The kinds that can be renamed, and what their names look like."""
+"""The kinds that can be renamed, with the form of their names."""
 _RESERVED = re.compile(r"(?i:null|true|false|yes|no|on|off|y|n|~|any)|[\d.+-].*")
 
 
 class Renaming(NamedTuple):
-    """The edits of all files, and the file that is called otherwise afterwards, before and after."""
+    """The edits of all files, and the renaming of a file (its old and new name), if any."""
 
     edits: tuple[Edit, ...]
     moved: tuple[str, str] | None = None
 
 
 def renamable(analysis: Analysis, file: str, line: int, column: int) -> NameUse | None:
-    """The use of a name at a line and column, from 1, where it can be renamed."""
+    """Return the use of a name at a line and column, from 1, if it can be renamed; else None."""
     use = analysis.index.at(file, line, column)
     defined = use is not None and any(o.defines and o.place.file in analysis.files for o in analysis.index.of(use))
     return use if use and use.kind in _NAMES and defined else None
 
 
 def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
-    """What gives the thing that is named there another name. Raises UsageError where it can't have that one.
+    """Return what renames the thing of that use. Raises UsageError if the new name is invalid or taken.
 
-    A state keeps its `id` where that is another name than its key. What is wrong afterwards is for `refuse_harm`.
+    A state keeps an `id` that differs from its key. Errors that the renaming causes are left to `refuse_harm`.
     """
     if analysis.broken:
         said = next(d for each in analysis.broken.values() for d in each.diagnostics)
@@ -90,7 +90,7 @@ def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
 
 
 def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
-    """The project after a renaming."""
+    """Return the project after a renaming."""
     files = dict(analysis.files)
     for file in {edit.place.file for edit in renaming.edits}:
         files[file] = edited(files[file], [edit for edit in renaming.edits if edit.place.file == file])
@@ -101,10 +101,10 @@ def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
 
 
 def refuse_harm(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> None:
-    """Raises UsageError where more is wrong with the project after a renaming than was before it."""
-    # The function of a skill has the skill's old name now: lint reports it, and the editor changes no Python.
+    """Raise UsageError if the project has more findings after a renaming than before."""
+    # A skill's function still has the old name; lint reports that, but the editor changes no Python.
     after = [each for each in after if not each.place.file.endswith(".py")]
-    # An error keeps other findings from being reported, such as unused names: the number of all findings may fall.
+    # An error hides other findings, such as unused names, so the number of findings may fall despite a new error.
     if len(after) > len(before) or _errors(after) > _errors(before):
         known = {(d.code, d.message) for d in before}
         new = next((d for d in after if (d.code, d.message) not in known), after[0])

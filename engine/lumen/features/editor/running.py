@@ -1,4 +1,4 @@
-"""What the exhibitions of open projects are doing while they run on this machine."""
+"""The states of the open projects' exhibitions that run on this machine."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -10,11 +10,13 @@ from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
 from lumen.run.reaching import Reached, reach_exhibition, runs_here
 
 ASK_EVERY, ANSWER_TIMEOUT = 1.0, 2.0
-"""How often a running exhibition is asked for its states, and how long it may take to answer [s]."""
+"""The time between two requests for an exhibition's states, and the time it may take to answer [s]."""
 
 
 class RunningExhibitions:
-    """Asks them in a thread of its own, and calls `changed` with a project's folder whose states are others now."""
+    """Requests the states in a thread of its own, and calls `changed` with the folder of a project whose states
+    changed.
+    """
 
     def __init__(self, roots: Callable[[], Iterable[Path]], changed: Callable[[Path], None]) -> None:
         self._roots, self._changed = roots, changed
@@ -23,11 +25,11 @@ class RunningExhibitions:
         self._over = Event()
 
     def active(self, root: Path) -> tuple[str, ...]:
-        """The states, by name, in which the exhibition of a project is; none where it does not run."""
+        """Return the names of the active states of a project's exhibition; none if it is not running."""
         return self._active.get(root, ())
 
     def follow(self) -> None:
-        """Ask until `close` is called."""
+        """Request the states until `close` is called."""
         while not self._over.wait(ASK_EVERY):
             for root in list(self._roots()):
                 states = self._asked(root)
@@ -38,6 +40,7 @@ class RunningExhibitions:
             reached.bus.close()
 
     def close(self) -> None:
+        """End `follow`."""
         self._over.set()
 
     def _asked(self, root: Path) -> tuple[str, ...]:

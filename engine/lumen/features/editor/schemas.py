@@ -1,4 +1,4 @@
-"""What the JSON Schema of a kind of file says about a node: its keys, its values, its description."""
+"""The keys, values and descriptions of a node by the JSON Schema of its kind of file."""
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
@@ -19,7 +19,7 @@ def _root(kind: str, verbs: OwnVerbs) -> Mapping[str, Any]:
 
 
 def schemas_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[Mapping[str, Any]]:
-    """All schemas that speak of the node at a path, whichever branch it takes; the nearest first.
+    """Return all schemas that apply to the node at a path in any branch, the nearest first.
 
     `verbs` are those that the project declares.
     """
@@ -31,7 +31,7 @@ def schemas_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[Ma
 
 
 def keys_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> dict[str, Mapping[str, Any]]:
-    """The keys that a map at that path may have, each with its schema."""
+    """Return the keys that a map at that path may have, each with its schema."""
     found: dict[str, Mapping[str, Any]] = {}
     for schema in schemas_at(kind, path, verbs):
         for name, inner in schema.get("properties", {}).items():
@@ -41,7 +41,7 @@ def keys_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> dict[str, 
 
 
 def values_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[str]:
-    """The values that the schemas of a node list, as they are written in YAML."""
+    """Return the values that the schemas of a node list, as written in YAML."""
     values: list[str] = []
     for schema in schemas_at(kind, path, verbs):
         values += map(_written, schema.get("enum", ()))
@@ -51,7 +51,7 @@ def values_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> list[str
 
 
 def description_at(kind: str, path: NodePath, verbs: OwnVerbs = NO_VERBS) -> str:
-    """What the schemas say of a node, with an example."""
+    """Return the schemas' description of a node, with its default."""
     schemas = schemas_at(kind, path, verbs)
     text = next((s["description"] for s in schemas if "description" in s), "")
     default = next((s["default"] for s in schemas if "default" in s), None)
@@ -63,7 +63,7 @@ def _written(value: Any) -> str:
 
 
 def _here(schema: Any, root: Mapping[str, Any], depth: int = 0) -> Iterator[Mapping[str, Any]]:
-    """The schema and all that it lays over itself."""
+    """Yield the schema and all schemas that it combines."""
     if not isinstance(schema, dict) or depth > 8:
         return
     yield schema

@@ -1,4 +1,4 @@
-"""Sentences shown on hover, for a row of `hears` and for a phrase, with the values that they catch."""
+"""Sample sentences in hover texts, for a row of `hears` or a phrase, with the values that they give."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -17,7 +17,7 @@ from lumen.talk.patterns import forms, slots_of
 from lumen.talk.sample_sentences import SampleSentence, of_phrase, of_row
 
 MAX_SENTENCES, MAX_TRIED = 4, 40
-"""Sentences that are shown for a row or a phrase, and those that are tried."""
+"""The number of sentences that are shown for a row or a phrase, and the number that are tried."""
 _TAKEN = {
     "": "taken if one of its phrases is said",
     "not": "taken if the visitor refuses it",
@@ -27,7 +27,7 @@ _TAKEN = {
 
 
 def of_row_at(analysis: Analysis, file: str, line: int, column: int) -> str:
-    """Describe the row of `hears` whose key is there, with sentences for it; empty if no such key is there."""
+    """Describe the row of `hears` whose key is at that place, with sample sentences; empty if there is no such key."""
     document, machine = analysis.documents.get(file), analysis.draft.behaviors.get(stem(file))
     at = document and key_at(document, line, column)
     if not at or machine is None or kind_of(file) != "behavior" or at[-2:-1] != ("hears",):
@@ -42,14 +42,14 @@ def of_row_at(analysis: Analysis, file: str, line: int, column: int) -> str:
 
 
 def of_patterns(draft: ProjectDraft, phrases: Iterable[str]) -> Iterator[str]:
-    """A line with a sentence for each of the first phrases that are patterns."""
+    """Yield a line with a sentence for each of the first phrases that are patterns."""
     patterns = (text for text in phrases if len(forms(text)) > 1 or any(slots_of(text)))
     sentences = (next(of_phrase(text, _lists(draft)), None) for text in patterns)
     yield from _listed(islice(filter(None, sentences), MAX_SENTENCES))
 
 
 def of_phrase_at(analysis: Analysis, file: str, path: NodePath) -> str:
-    """Sentences in which the phrase at a path is found."""
+    """Return sentences that contain the phrase at a path."""
     text = analysis.documents[file].value(path)
     if not isinstance(text, str):
         return ""
@@ -61,7 +61,7 @@ def of_phrase_at(analysis: Analysis, file: str, path: NodePath) -> str:
 
 
 def _taken(machine: MachineDefinition, row: Hears) -> Iterator[SampleSentence]:
-    """Yield sentences for which the state of a row takes this row."""
+    """Yield sentences for which this row is the first match in its state."""
     hearing = hearing_of(machine)
     for text in islice(of_row(machine, row, machine.context), MAX_TRIED):
         order = hearing.order(row.number, text, machine.context)
@@ -75,14 +75,14 @@ def _taken(machine: MachineDefinition, row: Hears) -> Iterator[SampleSentence]:
 
 
 def _listed(sentences: Iterable[SampleSentence]) -> Iterator[str]:
-    """Yield a line for each sentence with the caught values: `- “exhibit 3”: `heard.n` is 3`."""
+    """Yield a line for each sentence with its values: `- “exhibit 3”: `heard.n` is 3`."""
     for text, caught in sentences:
         values = ", ".join(f"`heard.{name}` is {shown(value)}" for name, value in caught.items())
         yield f"- “{text}”" + (f": {values}" if values else "")
 
 
 def _lists(draft: ProjectDraft) -> Mapping[str, Sequence[Mapping[str, Any]]]:
-    """The lists of all behaviours and words files, by name."""
+    """Return the lists of all behaviours and words files, by name."""
     found: dict[str, Sequence[Mapping[str, Any]]] = {}
     for lists in (*(words.lists for words in draft.words.values()), *(m.lists for m in draft.behaviors.values())):
         found.update(lists)

@@ -11,27 +11,28 @@ from lumen.feature import Feature, rows
 from lumen.features.editor.language_server import LanguageServer
 from lumen.project.broken_features import blamed, resolved
 
-# Requests that are turned down with a reason, as a new name that is taken or a text that is another by now: an answer,
-# and no fault of the server.
+# Reasons to refuse a request, such as a name that is taken or a text that has changed: an answer, not a fault of
+# the server.
 
 _REFUSALS = (JsonRpcInvalidParams, JsonRpcContentModified)
 
 
 class RefusalFilter(logging.Filter):
-    """Keeps refusals out of the log, into which the protocol's library writes a traceback of whatever is raised."""
+    """Keeps refusals out of the log, where pygls writes a traceback of every exception."""
 
     def filter(self, record: logging.LogRecord) -> bool:
+        """Return whether the record is anything but a refusal."""
         return not (record.exc_info and isinstance(record.exc_info[1], _REFUSALS))
 
 
 def quiet() -> None:
-    """Log what went wrong, and nothing else."""
+    """Log errors only."""
     logging.getLogger("pygls").setLevel(logging.ERROR)
     logging.getLogger("pygls.protocol.json_rpc").addFilter(RefusalFilter())
 
 
 SWITCH_INTERVAL = 0.001
-"""The longest time that a check may keep an answer waiting [s]."""
+"""The longest time that a check may delay an answer [s]."""
 
 _log = logging.getLogger(__name__)
 
@@ -54,7 +55,7 @@ def _register(feature: Feature, answer: str, register: Callable[..., Any], name:
 
 
 def serve() -> None:
-    """Answer an editor on standard input and output until it says goodbye."""
+    """Serve an editor on standard input and output until it ends the session."""
     quiet()
     sys.setswitchinterval(SWITCH_INTERVAL)
     server().start_io()

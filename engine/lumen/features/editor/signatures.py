@@ -1,4 +1,4 @@
-"""The function that is being called where an expression is being written."""
+"""The function whose call contains the cursor in an expression."""
 
 import inspect
 import re
@@ -15,20 +15,23 @@ _TEXT = re.compile(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"")
 
 
 class FunctionSignature(NamedTuple):
-    """How a function is called, which of its parameters is being written (from 0), and what it does."""
+    """A function's signature."""
 
     name: str
     parameters: tuple[str, ...]
     active: int
+    """The index of the parameter that is being written."""
     documentation: str
+    """What the function does and returns."""
 
     @property
     def label(self) -> str:
+        """The signature as text."""
         return f"{self.name}({', '.join(self.parameters)})"
 
 
 def signature(analysis: Analysis, file: str, line: int, column: int) -> FunctionSignature | None:
-    """The innermost call that is open at a line and column, from 1; None where there is none."""
+    """Return the innermost call that is open at a line and column, from 1; None if there is none."""
     lines = lines_of(analysis.text(file))
     head = lines[line - 1][: column - 1] if line <= len(lines) else ""
     head = _TEXT.sub(lambda found: "_" * len(found[0]), re.sub(r"'[^']*$", "_", head) if head.count("'") % 2 else head)
@@ -51,7 +54,7 @@ def signature(analysis: Analysis, file: str, line: int, column: int) -> Function
 
 
 def _of_project(analysis: Analysis, function: FunctionDefinition, active: int) -> FunctionSignature:
-    """A function of the project, described in the project's first language."""
+    """Return a function of the project, described in the project's first language."""
     settings = analysis.draft.settings
     shown = tuple(f"{name}: {' or '.join(kinds)}" for name, kinds in function.parameters.items())
     gives = " or ".join(function.returns) if len(function.returns) < 4 else "anything"

@@ -1,4 +1,4 @@
-"""What a file makes known, as a tree: states within states, and everything else by its key."""
+"""The symbols that a file defines, as a tree: states within states, and everything else by its key."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -12,23 +12,25 @@ from lumen.project.project_folders import kind_of
 
 
 class Symbol(NamedTuple):
-    """A thing that is made known: `place` of its name, `whole` with all that is said of it."""
+    """A defined thing."""
 
     name: str
     kind: NameKind
     place: Place
+    """The place of its name."""
     whole: Place
+    """The place of its whole definition."""
     children: tuple["Symbol", ...] = ()
 
 
 def symbols(analysis: Analysis, file: str) -> tuple[Symbol, ...]:
-    """The symbols of a file, in its order; none where it can't be read."""
+    """Return the symbols of a file in its order; none if it is unreadable."""
     document = analysis.documents.get(file)
     return _below(document, kind_of(file), ()) if document else ()
 
 
 def search(analysis: Analysis, query: str) -> Iterator[NameUse]:
-    """Where things are made known in whose names the letters asked for are found, in their order."""
+    """Yield the definitions whose names contain the letters of the query in their order."""
     for use in analysis.index.uses:
         letters = iter(use.name.lower())
         if use.defines and use.place.file in analysis.files and all(letter in letters for letter in query.lower()):

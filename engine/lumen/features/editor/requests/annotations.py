@@ -1,4 +1,4 @@
-"""What an editor shows between and behind the lines: lenses, hints, and how a function is called."""
+"""Lenses, inlay hints, and the signatures of functions."""
 
 from lsprotocol import types as lsp
 
@@ -9,7 +9,9 @@ CALLS = lsp.SignatureHelpOptions(trigger_characters=["(", ","])
 
 
 async def lens(server: LanguageServer, params: lsp.CodeLensParams) -> list[lsp.CodeLens]:
-    """Lenses with their commands; the arguments are the project's folder and a name, or a place and its others."""
+    """Return lenses with their commands; the arguments are the project's folder and a name, or a place and related
+    places.
+    """
     uri = params.text_document.uri
     if (found := await server.settled(uri)) is None:
         return []
@@ -25,6 +27,7 @@ async def lens(server: LanguageServer, params: lsp.CodeLensParams) -> list[lsp.C
 
 
 async def hint(server: LanguageServer, params: lsp.InlayHintParams) -> list[lsp.InlayHint]:
+    """Return the inlay hints in a range of lines."""
     if (found := await server.settled(params.text_document.uri)) is None:
         return []
     ranges = server.encoder(found[0]).ranges(found[1])
@@ -37,6 +40,7 @@ async def hint(server: LanguageServer, params: lsp.InlayHintParams) -> list[lsp.
 
 
 def call(server: LanguageServer, params: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
+    """Return the signature of the function that is being called at a position."""
     if (found := server.asked(params, signatures.signature)) is None:
         return None
     shown = lsp.SignatureInformation(

@@ -1,4 +1,4 @@
-"""What an editor may write in our name: another name for a thing, and repairs."""
+"""Changes to the project's files: renaming, and fixes of findings."""
 
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcContentModified, JsonRpcInvalidParams
@@ -14,6 +14,8 @@ REPAIRS = lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
 
 
 def prepare(server: LanguageServer, params: lsp.PrepareRenameParams) -> lsp.PrepareRenamePlaceholder | None:
+    """Return the range and text of the name at a position if it can be renamed."""
+
     def word(analysis: Analysis, file: str, line: int, column: int) -> lsp.PrepareRenamePlaceholder | None:
         found = renaming.renamable(analysis, file, line, column)
         if found is None:
@@ -24,7 +26,9 @@ def prepare(server: LanguageServer, params: lsp.PrepareRenameParams) -> lsp.Prep
 
 
 async def rename(server: LanguageServer, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    """The edits; refused where the project would say more is wrong after them."""
+    """Return the edits of a renaming. Raises JsonRpcInvalidParams if the project would have more findings after
+    them.
+    """
     await server.settled(params.text_document.uri)
     if (found := server.at(params.text_document.uri, params.position)) is None:
         return None
@@ -43,7 +47,7 @@ async def rename(server: LanguageServer, params: lsp.RenameParams) -> lsp.Worksp
 
 
 async def repair(server: LanguageServer, params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
-    """The fixes of the findings in a range."""
+    """Return the fixes of the findings in a range."""
     if (found := await server.settled(params.text_document.uri)) is None:
         return []
     analysis, file = found

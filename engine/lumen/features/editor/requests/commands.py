@@ -1,4 +1,4 @@
-"""What the lenses do where the editor has no terminal of its own for it: a process, and what it said at the end."""
+"""The lenses' commands for editors without a terminal of their own: run a process and show the end of its output."""
 
 import asyncio
 import sys
@@ -10,21 +10,21 @@ from lumen.features.editor.language_server import LanguageServer
 from lumen.features.editor.ranges import path_of
 
 MAX_TOLD = 2_000
-"""Characters of a process's last words that are shown."""
+"""The number of characters of a process's output that are shown."""
 
 
 async def run_story(server: LanguageServer, root: str, name: str) -> bool:
-    """Play a story, and show whether it ended well."""
+    """Run a story and show the result; return whether it passed."""
     return await _performed(server, root, "test", name)
 
 
 async def play_motion(server: LanguageServer, root: str, name: str) -> bool:
-    """Play a motion on the simulated robot, and show what became of it."""
+    """Play a motion on the simulated robot and show the result; return whether it succeeded."""
     return await _performed(server, root, "play", name)
 
 
 def show_places(server: LanguageServer, uri: str, position: lsp.Position, places: list[lsp.Location]) -> None:
-    """Nothing: editors list the places themselves, and for others the title says how many there are."""
+    """Do nothing: editors list the places themselves; in others the title shows their number."""
 
 
 async def _performed(server: LanguageServer, root: str, verb: str, name: str) -> bool:

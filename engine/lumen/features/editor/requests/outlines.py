@@ -1,4 +1,4 @@
-"""What a file, or the whole project, makes known; what of a file folds, and which other files it names."""
+"""The outline of a file, symbols of the project, folding ranges, and links to files."""
 
 from lsprotocol import types as lsp
 
@@ -10,6 +10,7 @@ MAX_FOUND_SYMBOLS = 300
 
 
 async def outline(server: LanguageServer, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
+    """Return the symbols of a document as a tree."""
     if (found := await server.settled(params.text_document.uri)) is None:
         return []
     encoder = server.encoder(found[0])
@@ -17,7 +18,7 @@ async def outline(server: LanguageServer, params: lsp.DocumentSymbolParams) -> l
 
 
 def search(server: LanguageServer, params: lsp.WorkspaceSymbolParams) -> list[lsp.WorkspaceSymbol]:
-    """What the open projects make known under a name in which what is asked for is found, letter by letter."""
+    """Return the open projects' symbols whose names contain the letters of the query in their order."""
     found: list[lsp.WorkspaceSymbol] = []
     for analysis in server.analyses():
         encoder = server.encoder(analysis)
@@ -30,6 +31,7 @@ def search(server: LanguageServer, params: lsp.WorkspaceSymbolParams) -> list[ls
 
 
 async def fold(server: LanguageServer, params: lsp.FoldingRangeParams) -> list[lsp.FoldingRange]:
+    """Return the folding ranges of a document."""
     found = await server.settled(params.text_document.uri)
     document = found[0].documents.get(found[1]) if found else None
     kinds = (None, lsp.FoldingRangeKind.Comment)
@@ -40,6 +42,7 @@ async def fold(server: LanguageServer, params: lsp.FoldingRangeParams) -> list[l
 
 
 async def link(server: LanguageServer, params: lsp.DocumentLinkParams) -> list[lsp.DocumentLink]:
+    """Return the links of a document to files."""
     if (found := await server.settled(params.text_document.uri)) is None:
         return []
     encoder = server.encoder(found[0])

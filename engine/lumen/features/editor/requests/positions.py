@@ -1,4 +1,4 @@
-"""What an editor asks about a position: completion, hover, where a name is made known and where it is used."""
+"""Requests about a position: completion, hover, definition and uses."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,6 +13,8 @@ TRIGGERS = lsp.CompletionOptions(trigger_characters=[".", "#", "'", "{", " ", ":
 
 
 def complete(server: LanguageServer, params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
+    """Return the proposals for a position, the best first."""
+
     def items(analysis: Analysis, file: str, line: int, column: int) -> list[lsp.CompletionItem]:
         encoder = server.encoder(analysis)
         found = completion.complete(analysis, file, line, column)
@@ -22,21 +24,24 @@ def complete(server: LanguageServer, params: lsp.CompletionParams) -> list[lsp.C
 
 
 async def show(server: LanguageServer, params: lsp.HoverParams) -> lsp.Hover | None:
+    """Return the hover text of a position, None without one."""
     await server.settled(params.text_document.uri)
     text = server.asked(params, hover.hover)
     return lsp.Hover(lsp.MarkupContent(lsp.MarkupKind.Markdown, text)) if text else None
 
 
 def define(server: LanguageServer, params: lsp.DefinitionParams) -> list[lsp.Location]:
+    """Return the places where the name at a position is defined."""
     return _places(server, params, definitions.definitions)
 
 
 def refer(server: LanguageServer, params: lsp.ReferenceParams) -> list[lsp.Location]:
+    """Return the places where the name at a position is used."""
     return _places(server, params, definitions.uses)
 
 
 def highlight(server: LanguageServer, params: lsp.DocumentHighlightParams) -> list[lsp.DocumentHighlight]:
-    """Every use of a name in its file; where it is made known, and where it is read."""
+    """Return every use of a name in its file, marked as a definition or a use."""
 
     def marks(analysis: Analysis, file: str, line: int, column: int) -> list[lsp.DocumentHighlight]:
         use, ranges = analysis.index.at(file, line, column), server.encoder(analysis).ranges(file)

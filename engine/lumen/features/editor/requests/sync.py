@@ -1,4 +1,4 @@
-"""The beginning and the end; what is written, saved and closed."""
+"""The beginning and end of a session, and changed, saved and closed documents."""
 
 from pathlib import Path
 
@@ -9,32 +9,39 @@ from lumen.features.editor.ranges import path_of
 
 
 def begun(server: LanguageServer, params: lsp.InitializedParams) -> None:
+    """Start to follow running exhibitions."""
     server.follow()
 
 
 def ended(server: LanguageServer, params: None) -> None:
+    """Close the server."""
     server.close()
 
 
 def opened(server: LanguageServer, params: lsp.DidOpenTextDocumentParams) -> None:
+    """Check the document's project at once."""
     server.written(params.text_document.uri, at_once=True)
 
 
 def changed(server: LanguageServer, params: lsp.DidChangeTextDocumentParams) -> None:
+    """Check the document's project once typing pauses."""
     server.written(params.text_document.uri)
 
 
 def saved(server: LanguageServer, params: lsp.DidSaveTextDocumentParams) -> None:
+    """Check the document's project at once."""
     server.written(params.text_document.uri, at_once=True)
 
 
 def closed(server: LanguageServer, params: lsp.DidCloseTextDocumentParams) -> None:
+    """Forget the document's unsaved text, and check its project."""
     path = Path(path_of(params.text_document.uri))
     server.projects.close(path)
     server.check(path)
 
 
 def touched(server: LanguageServer, params: lsp.DidChangeWatchedFilesParams) -> None:
+    """Read the changed files again, and check their projects."""
     for change in params.changes:
         path = Path(path_of(change.uri))
         server.projects.forget(path)
