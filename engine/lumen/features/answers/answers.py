@@ -1,4 +1,4 @@
-"""The module `answers`: asks a language model what no passage answers, and lets only so much of it be said."""
+"""The module `answers`: asks a language model what no passage answers, and limits what of its answer may be said."""
 
 import json
 import logging
@@ -31,7 +31,7 @@ MAX_TOKENS = 120
 
 
 def request(model: str, asked: Mapping[str, Any], passages: Sequence[str], tools: Mapping[str, Any]) -> dict[str, Any]:
-    """The body of a request; `tools` are the schemas of events by the names that the model knows them by."""
+    """Return the body of a request; `tools` are the schemas of events by their names as tools."""
     data = {"question": asked["question"], "passages": list(passages)}
     body: dict[str, Any] = {
         "model": model,
@@ -49,16 +49,16 @@ def request(model: str, asked: Mapping[str, Any], passages: Sequence[str], tools
 
 
 def tool_name(event: str) -> str:
-    """An event's name as a tool is called: letters, digits and `_`."""
+    """Return an event's name as that of a tool: letters, digits and `_`."""
     return re.sub(r"[^A-Za-z0-9_]", "_", event)[:64]
 
 
 HOUR = 3_600.0
-"""[s]."""
+"""One hour [s]."""
 
 
 class Allowance:
-    """Counts questions; `hour` and `visitor` are the most that are asked."""
+    """Counts questions; at most `hour` are allowed per hour, and `visitor` per visit."""
 
     def __init__(self, hour: int, visitor: int) -> None:
         self.hour, self.visitor = hour, visitor
@@ -66,7 +66,7 @@ class Allowance:
         self._visit, self._asked = 0, 0
 
     def refusal(self, visit: int, now: float) -> str:
-        """Why another one is not asked at `now` [s], empty where it is; then it is counted."""
+        """Return why another question is not allowed at `now` [s]; if it is, count it and return an empty text."""
         while self._times and self._times[0] <= now - HOUR:
             self._times.popleft()
         if visit != self._visit:
@@ -81,20 +81,20 @@ class Allowance:
 
 
 MAX_SENTENCES = 2
-"""Of an answer that are said."""
+"""The most sentences of an answer that are said."""
 MAX_PASSAGES = 3
-"""That the model is given."""
+"""The most passages that the model receives."""
 MAX_TEXT = 2_000
-"""Characters of an answer that are looked at."""
+"""The most characters of an answer that are read."""
 
 _log = logging.getLogger(__name__)
 
 
 class Answers(Module):
-    """Answers each question of `lumen.NAO.ask`, sentence by sentence, on `lumen.NAO.answer`; an end without text last.
+    """Answers each question of `lumen.NAO.ask` on `lumen.NAO.answer`, sentence by sentence, with an end without text.
 
-    At most one event is raised, of those that the question says are offered, with data that fits its schema. Raises
-    ModuleError where lumen.yaml has no model.
+    At most one event is raised, of those that the question offers, with data that matches its schema. Raises
+    ModuleError if lumen.yaml has no model.
     """
 
     name = ANSWERS
@@ -106,16 +106,18 @@ class Answers(Module):
         self._allowance = Allowance(self._model.hour, self._model.visitor)
 
     def hears(self) -> Mapping[str, MessageHandler]:
+        """Return the handler of questions."""
         return {"ask": self._ask}
 
     def use(self, project: Project) -> None:
+        """Use the settings of another bundle."""
         super().use(project)
         self._model = ModelSettings.of(self.settings.options)
         self._embeddings = embeddings_of(self.settings.options, project.root, self._embeddings)
         self._allowance.hour, self._allowance.visitor = self._model.hour, self._model.visitor
 
     def idle(self) -> float | None:
-        """Make vectors of passages while nobody asks, where that takes no network."""
+        """Compute vectors of passages while there is no question, if that needs no network."""
         try:
             return 0.0 if self._embeddings and self._embeddings.prepare(self.project) else None
         except ModuleError as error:
@@ -146,9 +148,10 @@ class Answers(Module):
     def _known(
         self, embeddings: Embeddings, id: str, asked: Mapping[str, Any], passages: list[str], deadline: float
     ) -> list[str] | None:
-        """The passages that mean most nearly what was asked; None where one of them is the answer, which is said.
+        """Return the passages nearest in meaning to the question; None if one of them is the answer, which is
+        published.
 
-        Where the embeddings can't be had, that is told, and it goes on with what is nearest by its words.
+        If the embeddings are unavailable, that is reported, and the passages nearest by words are used.
         """
         question, language = asked["question"], asked["language"]
         soon = (time.monotonic() + deadline) / 2 if self._model.server else deadline
@@ -189,14 +192,16 @@ class Answers(Module):
             self._raise(id, chat.calls, offers)
 
     def _say(self, id: str, sentence: str, asked: Mapping[str, Any], passages: list[str]) -> None:
-        """Have a sentence said. Raises ModuleError where it may not be: nothing that comes after it is, either."""
+        """Publish a sentence. Raises ModuleError if it may not be said; then the rest of the answer is not said
+        either.
+        """
         if reason := refusal(sentence, asked["language"], passages, (self.project.robot,)):
             raise ModuleError(f"a sentence from the language model was not spoken: {reason}")
         body = {"id": id, "text": sentence, "language": asked["language"], "source": "model", "more": True}
         self.publish("answer", body)
 
     def _raise(self, id: str, calls: Iterable[Call], offers: Mapping[str, tuple[str, Mapping[str, Any]]]) -> None:
-        """Have the event of the first call raised, where it is offered and its data fits."""
+        """Publish the event of the first call. Raises ModuleError if it was not offered or its data does not match."""
         for call in calls:
             if call.name not in offers:
                 raise ModuleError(f"the language model calls `{call.name[:40]}`, which was not offered to it")
@@ -208,7 +213,7 @@ class Answers(Module):
             return
 
     def _wanted(self) -> bool:
-        """Whether the answer still counts: nobody ends, and no other question waits."""
+        """Return whether the answer still matters: the module is not ending, and no other question waits."""
         return not (self._ending or self._waiting)
 
 

@@ -1,4 +1,4 @@
-"""The pieces of a chat completion as `/v1/chat/completions` gives them: streamed as events, or whole."""
+"""The pieces of a chat completion of `/v1/chat/completions`: streamed as events, or whole."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -7,26 +7,26 @@ from typing import Any, NamedTuple
 from lumen.errors import ModuleError
 
 MAX_ARGUMENTS = 5_000
-"""Characters of the arguments of a call."""
+"""The most characters of a call's arguments."""
 END = "[DONE]"
 
 
 class Piece(NamedTuple):
-    """Some more text; or that it `ended` in order, which one that was cut off did not."""
+    """Some more text, or that the completion has `ended` properly; one that was cut off has no such piece."""
 
     text: str = ""
     ended: bool = False
 
 
 class Call(NamedTuple):
-    """A tool that the model calls, with its arguments: JSON in a text, or as some servers send them, an object."""
+    """A call of a tool by the model; its arguments are JSON text, or from some servers, an object."""
 
     name: str
     arguments: Any
 
 
 class Chat:
-    """Reads a completion; `calls` are those of it so far, whole when it has ended."""
+    """Reads a completion; `calls` are its calls so far, complete at its end."""
 
     def __init__(self) -> None:
         self._names: dict[int, str] = {}
@@ -34,10 +34,11 @@ class Chat:
 
     @property
     def calls(self) -> list[Call]:
+        """The calls so far, in their order."""
         return [Call(name, self._arguments.get(at, "")) for at, name in sorted(self._names.items())]
 
     def read(self, kind: str, pieces: Iterable[bytes]) -> Iterator[Piece]:
-        """What it says, piece by piece; what is not JSON raises ModuleError."""
+        """Yield the text piece by piece. Raises ModuleError if the data is not JSON."""
         if kind == "text/event-stream":
             for data in _events(pieces):
                 if data.strip() == END:
@@ -76,7 +77,7 @@ class Chat:
 
 
 def _events(pieces: Iterable[bytes]) -> Iterator[str]:
-    """The data of server-sent events; of one that was cut off nothing."""
+    """Yield the data of server-sent events; an incomplete one is ignored."""
     held, data = b"", list[str]()
     for piece in pieces:
         *lines, held = (held + piece).split(b"\n")

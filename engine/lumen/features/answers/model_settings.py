@@ -1,4 +1,4 @@
-"""What lumen.yaml says of the servers that the module asks."""
+"""The settings of the module's servers in lumen.yaml."""
 
 import os
 from collections.abc import Mapping
@@ -8,19 +8,22 @@ from lumen.errors import ModuleError
 
 
 class ServerSettings(NamedTuple):
-    """Where a model is, what it is called there, and the environment variable that holds its key, empty for none."""
+    """A model on a server."""
 
     url: str
+    """The address for requests."""
     name: str
+    """The model's name on the server."""
     key: str = ""
+    """The environment variable with the key, empty for none."""
 
     @classmethod
     def of(cls, said: Mapping[str, Any]) -> "ServerSettings":
-        """The settings of `{url: …, name: …, key: …}`."""
+        """Return the settings in `{url: …, name: …, key: …}`."""
         return cls(said["url"], said["name"], said.get("key", ""))
 
     def secret(self) -> str:
-        """The key, from the environment. Raises ModuleError where it is not set."""
+        """Return the key from the environment, empty if none is needed. Raises ModuleError if it is not set."""
         if not self.key:
             return ""
         if not (found := os.environ.get(self.key, "").strip()) or not found.isascii() or not found.isprintable():
@@ -29,15 +32,18 @@ class ServerSettings(NamedTuple):
 
 
 class ModelSettings(NamedTuple):
-    """The language model, None where only embeddings are asked for; how many questions an hour, and by one visitor."""
+    """The language model and its limits."""
 
     server: ServerSettings | None
+    """The model's server; None if only embeddings are used."""
     hour: int = 60
+    """The number of questions per hour."""
     visitor: int = 10
+    """The number of questions per visitor."""
 
     @classmethod
     def of(cls, options: Mapping[str, Any]) -> "ModelSettings":
-        """The settings of the module's options. Raises ModuleError where they name no server at all."""
+        """Return the settings in the module's options. Raises ModuleError if they name no server and no embeddings."""
         model, budget = options.get("model"), options.get("budget") or {}
         if not isinstance(model, Mapping) and not isinstance(options.get("embeddings"), Mapping):
             raise ModuleError(

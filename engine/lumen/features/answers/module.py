@@ -1,15 +1,15 @@
-"""The module `answers`: a language model on a short leash, asked where no passage answers.
+"""The module `answers`: a strictly limited language model, for questions that no passage answers.
 
-answers.py        questions come in, sentences that may be said go out
-model_settings.py what lumen.yaml says of the model
-http_stream.py    a POST and what comes back, bounded in bytes and time
+answers.py        receives questions, publishes the sentences that may be said
+model_settings.py the model's settings in lumen.yaml
+http_stream.py    a POST with a streamed answer, bounded in bytes and time
 chat.py           the pieces of a chat completion, streamed or whole
-prompt.py         what the model is told: passages and visitors' words are data
-sentence_check.py which sentences may be said
-embeddings.py     which passage means what was asked
+prompt.py         the prompt: passages and visitors' words are data
+sentence_check.py decides which sentences may be said
+embeddings.py     finds the passage with the meaning of a question
 meaning.py        features of passages by vectors
-vectors.py        the seam of what makes vectors: server_vectors.py, packaged_vectors.py, folder_vectors.py
-allowance.py      how many questions it is asked
+vectors.py        the interface of sources of vectors: server_vectors.py, packaged_vectors.py, folder_vectors.py
+allowance.py      limits the number of questions
 """
 
 from lumen.features.answers.answers import Answers

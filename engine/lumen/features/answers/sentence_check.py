@@ -1,6 +1,7 @@
-"""Which sentences of a language model may be said: short ones, in the right language, that bring nothing of their own.
+"""Decides which sentences of a language model may be said: short ones, in the right language, without facts of their
+own.
 
-What cannot be told is refused: then the robot says that it does not know.
+A sentence that can't be checked is refused: then the robot says that it does not know.
 """
 
 import re
@@ -8,7 +9,7 @@ import unicodedata
 from collections.abc import Iterator, Sequence
 
 MAX_LENGTH = 300
-"""Characters of a sentence."""
+"""The most characters of a sentence."""
 
 COMMON = {
     "en": "a about also am an and any are as at be because but by can could do does for from good has have he hello"
@@ -27,7 +28,7 @@ COMMON = {
     "es": "a al como con de del donde el ella en es esta este esto están hay la las lo los me mi muy más no nos o para"
     " pero por porque que quien se ser si sin sobre son su sus sí también te tu un una y yo él",
 }
-"""The words that are most common in a language: by them it is told from the others."""
+"""The most common words of each language, by which it is recognised."""
 WORDS = {language: frozenset(words.split()) for language, words in COMMON.items()}
 
 NUMBER_WORDS = {
@@ -41,7 +42,7 @@ NUMBER_WORDS = {
     "es": "dos tres cuatro cinco seis siete ocho nueve diez once doce veinte cien mil",
 }
 NUMBERS = frozenset(word for words in NUMBER_WORDS.values() for word in words.split())
-"""Words for numbers, but for one, which is said of anything."""
+"""Words for numbers, except for one, which has other meanings."""
 ADDRESS = re.compile(
     r"[@/\\]|\w\.\w{2,}|\b(?:www|http|dot|titik|com|org|net|street|avenue|road|jalan|jl|straße|rue|calle)\b"
     r"|\b(?:e-?mail|surel|phone|telepon|telefon|whatsapp)\b",
@@ -51,11 +52,11 @@ _END = re.compile(r"[.!?…]+[\"'”’)]*(?=\s|$)")
 
 
 def sentences(text: str, *, ended: bool) -> tuple[list[str], str]:
-    """The whole sentences of a text, and what is left of it; where the text has `ended`, nothing is left."""
+    """Return the complete sentences of a text, and the rest; if the text has `ended`, the rest is empty."""
     found, at = [], 0
     for end in _END.finditer(text):
         if end.end() == len(text) and not ended:
-            break  # 3.5 may go on
+            break  # it may be 3.5
         found.append(text[at : end.end()].strip())
         at = end.end()
     rest = text[at:]
@@ -65,7 +66,7 @@ def sentences(text: str, *, ended: bool) -> tuple[list[str], str]:
 
 
 def refusal(sentence: str, language: str, passages: Sequence[str], known: Sequence[str] = ()) -> str:
-    """Why a sentence may not be said, empty where it may; `known` are words that may stand in it, too."""
+    """Return why a sentence may not be said, empty if it may; `known` are further words that it may contain."""
     if len(sentence) > MAX_LENGTH:
         return "it is too long"
     if reason := _other_language(sentence, language):
@@ -101,14 +102,14 @@ def _other_language(sentence: str, language: str) -> str:
 
 
 def _names(sentence: str, common: frozenset[str]) -> Iterator[str]:
-    """Words written with a capital, wherever they stand; the most common words begin sentences."""
+    """Yield the words with a capital letter anywhere in the sentence, except the most common words."""
     for word in re.findall(r"[^\W_]+(?:['’-][^\W_]+)*", sentence):
         if any(sign.isupper() for sign in word) and _bare(word) not in common:
             yield word
 
 
 def _bare(word: str) -> str:
-    """`johann` of `Johann's`."""
+    """Return the word without a suffix: `johann` for `Johann's`."""
     return re.split(r"['’]", word)[0].casefold()
 
 

@@ -1,4 +1,4 @@
-"""Vectors of any server with an OpenAI-compatible `/v1/embeddings`."""
+"""Vectors from any server with an OpenAI-compatible `/v1/embeddings`."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -9,13 +9,13 @@ from lumen.features.answers.model_settings import ServerSettings
 from lumen.features.answers.vectors import KnownText, TextVector, unit
 
 BATCH = 32
-"""Texts of one request."""
+"""The number of texts in one request."""
 MAX_BYTES = 4_000_000
-"""Of an answer: 32 vectors of 4,096 numbers, written out."""
+"""The largest answer [bytes]: 32 vectors of 4,096 numbers as text."""
 
 
 class ServerVectors:
-    """Asks that server, a batch at a time; it is sent texts as they are, questions and answers alike."""
+    """Requests vectors from a server, a batch at a time; questions and answers are sent alike."""
 
     is_here = False
 
@@ -24,6 +24,7 @@ class ServerVectors:
         self.batch = BATCH
 
     def vectors(self, texts: Sequence[KnownText], deadline: float, wanted: Callable[[], bool]) -> list[TextVector]:
+        """Return the vectors of these texts. Raises ModuleError if the server's answer is invalid."""
         body = {"model": self.settings.name, "input": [text for text, _ in texts]}
         with answered(self.settings.url, body, self.settings.secret(), deadline, wanted, MAX_BYTES) as (_, pieces):
             content = b"".join(pieces)

@@ -1,4 +1,4 @@
-"""When the ears are open, by whom the robot sees and feels."""
+"""Decides when the ears are open, from faces and touches."""
 
 import threading
 from collections import deque
@@ -6,22 +6,22 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 ALWAYS, FACE, TOUCH, SPEAKS, NOBODY = "always", "face", "touch", "speaks", "nobody"
-"""Why they listen, or why they do not: as the route `listening` has it."""
+"""The reasons to listen or not to listen, as on the route `listening`."""
 AFTER_FACE, AFTER_TOUCH = 3.0, 10.0
-"""For how long they stay open [s], where `lumen.yaml` does not say: people look away as they think, and walk up."""
+"""The default times that the ears stay open [s]: people look away while they think, and step back after a touch."""
 LEAD = 1.0
-"""So long before the face or the touch counts too [s]: who is near begins to speak, and then looks."""
+"""How long before the face or the touch the ears count as open [s]: people nearby begin to speak before they look."""
 MAX_SPANS = 100
-"""Stretches that are remembered; a sound lasts two minutes at most."""
+"""The number of open spans that are kept; a sound lasts two minutes at most."""
 NO_DISTANCE = "faces come without a `distance`, so `within` has no effect: delete it, or use Lumen's own eyes"
 Span = tuple[float, float]
 
 
 class Addressing:
-    """Open for some seconds from each face that is near and looks, and from each touch; always where nothing is said.
+    """Opens the ears for some seconds after each face that is near and looks, and each touch; always if unconfigured.
 
-    `said` is `listens` of the module's settings; `tell` hears what makes it useless. Messages may come on any thread,
-    at times that do not fall.
+    `said` is `listens` of the module's settings; `tell` receives a reason why it has no effect. Messages may arrive on
+    any thread, in the order of time.
     """
 
     def __init__(self, said: Mapping[str, Any], tell: Callable[[str], None]) -> None:
@@ -31,12 +31,14 @@ class Addressing:
         self._spans: deque[Span] = deque(maxlen=MAX_SPANS)
 
     def routes(self) -> Mapping[str, Callable[[Any, float], None]]:
-        """What it goes by: the routes, and what it does with a body that came at a time [s]."""
+        """Return the routes that it uses, each with a function of a body and its time of arrival [s]."""
         return {route: take for key, route, take in (("face", "face", self.face), ("touch", "tactile", self.touch))
                 if key in self._said}  # fmt: skip
 
     def face(self, body: Any, at: float) -> None:
-        """A face in the image. Whose module does not say whether it looks is taken to find those only who do."""
+        """Note a face in the image. If a module does not report whether faces look, all of its faces count as
+        looking.
+        """
         said = self._said.get("face", {})
         match body:
             case {"looks": False}:
@@ -53,7 +55,7 @@ class Addressing:
             self._open(FACE, at, said.get("after", AFTER_FACE))
 
     def touch(self, body: Any, at: float) -> None:
-        """Which sensors are pressed."""
+        """Note which sensors are pressed."""
         said = self._said.get("touch", {})
         match body:
             case {"name": list(names), "value": list(values)}:
@@ -62,7 +64,7 @@ class Addressing:
                     self._open(TOUCH, at, said.get("after", AFTER_TOUCH))
 
     def closed(self, begin: float, end: float) -> list[Span]:
-        """The stretches between these times [s] in which nobody meant the robot, the earliest first."""
+        """Return the spans between these times [s] in which the robot was not addressed, the earliest first."""
         if self.always:
             return []
         with self._lock:
@@ -71,7 +73,9 @@ class Addressing:
         return [(b, e) for b, e in zip(edges[::2], edges[1::2], strict=True) if b < e]
 
     def state(self, now: float) -> tuple[str, float]:
-        """Why they are open, else `nobody`; and until when that is so [s], if nothing comes."""
+        """Return the reason why the ears are open, or `nobody`; and how long that lasts [s] without further
+        messages.
+        """
         if self.always:
             return ALWAYS, float("inf")
         with self._lock:

@@ -21,7 +21,7 @@ from lumen.run.module import Module
 from lumen.run.sound import Sound, sound_of
 
 LOST_AFTER = 4.0
-"""The states of a brain that is silent for longer no longer count [s]."""
+"""How long the states of a silent brain remain valid [s]."""
 
 
 class ActiveStates:
@@ -36,7 +36,7 @@ class ActiveStates:
         self._until = float("inf")
 
     def state(self, body: Any, at: float) -> None:
-        """Read a message about the behaviour that came at a time [s]; only those after a step have `states`."""
+        """Read a message about the behaviour that arrived at a time [s]; only those after a step have `states`."""
         match body:
             case {"robot": self._robot, "states": list(states)}:
                 self._names = frozenset(map(str, states))
@@ -49,29 +49,29 @@ class ActiveStates:
                 self._until = at + LOST_AFTER
 
     def names(self, at: float) -> frozenset[str] | None:
-        """The names of the active states at a time [s], as `state` has them; None if they are unknown."""
+        """Return the names of the active states at a time [s], as `state` has them; None if they are unknown."""
         if at > self._until:
             self._names = None
         return self._names
 
 
 INTERRUPTS = ("stop",)
-"""The phrases that are heard while the robot speaks, where `lumen.yaml` does not say which."""
+"""The default phrases that are heard while the robot speaks."""
 TICK = 0.05
-"""How exactly it is shown when they close [s]."""
+"""The accuracy of the time at which a change of listening is published [s]."""
 REST = 0.3
-"""How much of the silence before and after what is said a recogniser is given [s]."""
+"""How much of the silence before and after speech the recogniser receives [s]."""
 
 
 class Ears(Module):
-    """The speech half of the audio module: the robot's recordings, and sounds that others send, become texts.
+    """The speech half of the audio module: the robot's recordings, and sounds from other programs, become texts.
 
-    Half duplex: while the robot speaks, and until its echo is gone, only phrases that interrupt it are heard; so it is
-    where `listens` is set and nobody means the robot. What is expected, and what interrupts, depends on the states that
-    are active when a sound comes. A sound has just ended when it comes. Whether they listen, and why, goes out on the
-    route `listening` as it changes. A recogniser of one's own may be handed in, and who finds speech in sounds; else
-    they are PocketSphinx, or the Whisper of the settings, and Silero's network. Raises ModuleError where the recogniser
-    is not there.
+    It is half duplex: while the robot speaks, and until its echo has faded, only phrases that interrupt it are heard.
+    The same applies if `listens` is set and the robot is not addressed. The expected and the interrupting phrases
+    depend on the states that are active when a sound arrives; a sound counts as just ended then. Changes of listening,
+    with their reasons, are published on the route `listening`. A recogniser and a detector of speech may be passed in;
+    the defaults are PocketSphinx, or the Whisper of the settings, and Silero's network. Raises ModuleError if the
+    recogniser is missing.
     """
 
     name = EARS
@@ -94,6 +94,7 @@ class Ears(Module):
         self._shown: dict[str, object] = {}
 
     def hears(self) -> Mapping[str, MessageHandler]:
+        """Return the handlers of the routes that the module listens to."""
         return {
             "recording": self._sound,
             "wav_stream": self._sound,
@@ -104,10 +105,12 @@ class Ears(Module):
         }
 
     def begin(self) -> None:
+        """Start the module and check its settings."""
         super().begin()
         self._look_for_phrases()
 
     def use(self, project: Project) -> None:
+        """Use the settings of another bundle."""
         options = project.modules.get(self.name, ModuleSettings()).options
         if options.get("listens", {}) != self.settings.options.get("listens", {}):
             self._addressing = Addressing(options.get("listens", {}), self.tell)
@@ -115,7 +118,7 @@ class Ears(Module):
         self._look_for_phrases()
 
     def idle(self) -> float | None:
-        """Shows whether they listen, as it changes; in how many seconds it does by itself."""
+        """Publish whether the ears listen if it has changed; return the time until the next change [s]."""
         now = self.clock()
         because, until = self._addressing.state(now)
         if own := self._own_voice.during(now, now + TICK):
@@ -127,7 +130,7 @@ class Ears(Module):
         return None if until == float("inf") else max(TICK, until - now)
 
     def _take(self, route: str, message: Message) -> None:
-        """Faces and touches count when they come, however long a sound before them takes."""
+        """Note faces and touches when they arrive, even if an earlier sound is still being recognised."""
         if take := self._addressing.routes().get(route):
             take(message.body, self.clock())
         super()._take(route, message)
@@ -162,9 +165,9 @@ class Ears(Module):
         self.well()
 
     def _heard(self, sound: Sound) -> Sequence[Hypothesis]:
-        """Return what others may have said in a sound that has just ended; none if they said nothing.
+        """Return what may have been said in a sound that has just ended; none if nothing was.
 
-        Only the likeliest text interrupts the robot: what else its own words may have been often holds a phrase.
+        Only the likeliest text may interrupt the robot: alternatives for its own words often contain a phrase.
         """
         began = self.came - sound.duration
         own = self._own_voice.during(began, self.came)
@@ -180,7 +183,7 @@ class Ears(Module):
         return [Hypothesis(phrase)] if phrase else []
 
     def _words(self, sound: Sound, own: Sequence[Utterance] = ()) -> Sequence[Hypothesis]:
-        """Return what may be said in a sound, the likeliest first; words of the robot's `own` voice are expected."""
+        """Return the likely texts of a sound, the best first; words of the robot's `own` voice are expected."""
         if self._activity:
             spans = self._activity.spans(sound)
             if not spans:
@@ -194,7 +197,7 @@ class Ears(Module):
 
 
 def _interrupting(text: str, sought: Sequence[HeardName], own: Sequence[Utterance]) -> str:
-    """Return the longest phrase of these names in a text that the robot itself does not say."""
+    """Return the longest phrase of these names in a text that the robot does not say itself."""
     for one in sought:
         finder = one.finder()
         said, ours = finder.read(text), " ".join(f" {' '.join(finder.read(u.text).words)} " for u in own)
@@ -205,13 +208,13 @@ def _interrupting(text: str, sought: Sequence[HeardName], own: Sequence[Utteranc
 
 
 def _row(found: Hypothesis) -> dict[str, object]:
-    """Its part of a message."""
+    """Return a hypothesis as part of a message."""
     sure = {} if found.confidence is None else {"confidence": round(found.confidence, 3)}
     return {"result": found.text, **sure}
 
 
 def _recogniser(project: Project, options: Mapping[str, Any]) -> Recogniser:
-    """The one that lumen.yaml says; nobody needs the packages of another."""
+    """Return the recogniser of lumen.yaml; only its own packages are needed."""
     folder = options.get("whisper")
     if folder is None:
         return shared_sphinx()

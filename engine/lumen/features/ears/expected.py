@@ -1,4 +1,4 @@
-"""Sentences that visitors probably say: what the active states hear, and what visitors say in the stories."""
+"""Sentences that visitors are likely to say: those that the active states hear, and those in the stories."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
@@ -17,9 +17,9 @@ from lumen.talk.patterns import Slot, forms, slots_of
 from lumen.talk.speech import TABLES, WORD_LISTS, Speech
 
 MAX_SENTENCES = 1_000
-"""The bound on sentences of one phrase: its forms, with the entries of lists in their slots."""
+"""The most sentences of one phrase: its forms, with the entries of lists in their slots."""
 STORY_WEIGHT = 10
-"""A sentence of a story counts as much as so many forms: it is how people talk, and there are thousands of forms."""
+"""The weight of a story's sentence in forms: stories show how people talk, but there are thousands of forms."""
 _NO_MEANINGS = frozenset((*WORD_LISTS, *TABLES))
 _ENTRY = "context."
 _STRAIGHT = dict.fromkeys(map(ord, APOSTROPHES), "'")
@@ -28,13 +28,15 @@ PhraseLists = Mapping[str, Sequence[Mapping[str, Any]]]
 
 
 class HeardName(NamedTuple):
-    """A name that a state hears, of the phrases, answers or entries of a behaviour."""
+    """A name that a state hears: of phrases, answers or an entry's field."""
 
     machine: MachineDefinition
     name: str
 
     def phrases(self) -> list[str]:
-        """Its phrases in all languages; of an entry's field those of all entries, for any of them may be the one."""
+        """Return its phrases in all languages; for an entry's field those of all entries, since any may be the current
+        one.
+        """
         machine, name = self
         tables: list[Any] = [machine.phrases.get(name), *(row.phrases for row in machine.answers.get(name, ()))]
         if name.startswith(_ENTRY):
@@ -52,8 +54,8 @@ class HeardName(NamedTuple):
 def heard_names(project: Project, states: Collection[str] | None) -> list[HeardName]:
     """Return what the active states hear, in `hears` and in guards that call `heard` or `lookup`.
 
-    `states` are the names of all active states, those around others included. If they are unknown, or other files are
-    running than these, all states of all behaviours count.
+    `states` are the names of all active states, including enclosing ones. If they are unknown, or belong to other files
+    than these, all states of all behaviours count.
     """
     active = None if states is None else _active(project.machine, states)
     if active is None:
@@ -63,9 +65,9 @@ def heard_names(project: Project, states: Collection[str] | None) -> list[HeardN
 
 
 def expected(project: Project, heard: Iterable[HeardName], own: Iterable[str] = ()) -> list[list[str]]:
-    """Return sentences as words in small letters: forms of these names in any language, and what stories say.
+    """Return sentences as words in small letters: forms of these names in any language, and the stories' sentences.
 
-    `own` are texts that the robot itself says meanwhile. Sentences that are likelier than others are repeated.
+    `own` are texts that the robot itself says meanwhile. More likely sentences are repeated.
     """
     phrases = ((phrase, one.machine.lists) for one in heard for phrase in one.phrases())
     found = dict.fromkeys(tuple(words) for phrase in phrases for words in islice(_sentences(*phrase), MAX_SENTENCES))
@@ -75,7 +77,7 @@ def expected(project: Project, heard: Iterable[HeardName], own: Iterable[str] = 
 
 
 def _active(machine: MachineDefinition, names: Collection[str]) -> list[tuple[MachineDefinition, State]] | None:
-    """The states of these names with their machines, and the roots of these; None if a name is unknown."""
+    """Return the states of these names with their machines, and the machines' roots; None if a name is unknown."""
     machines, active = {id(machine): machine}, {(id(machine), "")}
     for name in sorted(names):
         known = [(m, s.path) for m, local in resolutions(machine, name) for s in m.states.values() if s.name == local]
@@ -100,7 +102,7 @@ def _names(state: State) -> Iterator[str]:
 
 
 def _sentences(phrase: str, lists: PhraseLists) -> Iterator[list[str]]:
-    """The forms of a phrase, with the entries of lists in their slots and without what other slots catch."""
+    """Yield the forms of a phrase, with the entries of lists in their slots; other slots are left out."""
     written = {"".join(folded(word)): word for word in _spoken(phrase)}
     entries = {slot: _entries(slot, lists) for slot in slots_of(phrase)}
     for form in forms(phrase):
@@ -115,7 +117,7 @@ def _entries(slot: Slot, lists: PhraseLists) -> list[list[str]]:
 
 
 def _texts(value: Any) -> Iterator[str]:
-    """The texts in lists and maps of them."""
+    """Yield the texts in nested lists and maps."""
     match value:
         case str():
             yield value

@@ -1,4 +1,4 @@
-"""The audio module: recordings come in, texts go out."""
+"""The speech half of the audio module: recordings come in, texts go out."""
 
 from lumen.features.ears.ears import Ears
 from lumen.features.ears.recogniser import Hypothesis, RankingRecogniser, Recogniser

@@ -1,20 +1,20 @@
-"""When the robot itself speaks, by what the bus tells of it."""
+"""Tracks when the robot itself speaks, from messages on the bus."""
 
 from collections import deque
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 ECHO = 0.3
-"""How long after its last word a room still has the robot's voice in it [s]."""
+"""How long a room still contains the robot's voice after its last word [s]."""
 LONGEST = 60.0
-"""A text whose end nobody has told is over after this time [s]: the robot does not stay deaf."""
+"""The time after which a text without a reported end counts as over [s], so that the robot does not stay deaf."""
 MAX_KEPT = 100
-"""Texts that are remembered; a sound lasts two minutes at most."""
+"""The number of texts that are kept; a sound lasts two minutes at most."""
 _SPOKEN = ("started", "accepted")
 
 
 class Utterance(NamedTuple):
-    """A text that the robot says, from `begin` to `end` [s]; empty where only that it speaks is known."""
+    """A text that the robot says, from `begin` to `end` [s]; empty if the text is unknown."""
 
     text: str
     begin: float
@@ -22,14 +22,14 @@ class Utterance(NamedTuple):
 
 
 class OwnVoice:
-    """Knows when the robot speaks: by commands of its behaviour (`state`), and by those that others gave (`report`)."""
+    """Tracks the robot's speech: commands of its behaviour (`state`), and those of other programs (`report`)."""
 
     def __init__(self) -> None:
         self._said: deque[Utterance] = deque(maxlen=MAX_KEPT)
         self._saying: dict[str, Utterance] = {}
 
     def state(self, body: Any, at: float) -> None:
-        """What the behaviour does: a `say` that begins, or the answer to one."""
+        """Read a message about the behaviour: a `say` that begins, or the answer to one."""
         match body:
             case {"command": {"verb": "say", "id": str(id), "text": str(text)}}:
                 self._begin(id, text, at)
@@ -37,7 +37,7 @@ class OwnVoice:
                 self._end(id, at)
 
     def report(self, body: Any, at: float) -> None:
-        """How a command stands that came over the bus."""
+        """Read the state of a command that came over the bus."""
         match body:
             case {"method": str(method), "id": str(id), "state": str(state)} if method.lower() == "say":
                 if state in _SPOKEN:
@@ -46,7 +46,7 @@ class OwnVoice:
                     self._end(id, at)
 
     def during(self, begin: float, end: float) -> list[Utterance]:
-        """What it said in this time [s], with the echo of it, the earliest first."""
+        """Return what the robot said in this time [s], with its echo, the earliest first."""
         now = [u._replace(end=min(end, u.begin + LONGEST)) for u in self._saying.values()]
         heard = [u._replace(end=u.end + ECHO) for u in (*self._said, *now)]
         return sorted((u for u in heard if u.begin < end and u.end > begin), key=lambda u: u.begin)

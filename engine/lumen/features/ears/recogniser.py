@@ -1,4 +1,4 @@
-"""Who turns sound into words."""
+"""The interface of speech recognisers."""
 
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol, runtime_checkable
@@ -12,43 +12,46 @@ class Recogniser(Protocol):
     languages: tuple[str, ...]
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
-        """From now on these are likely to be said, word by word; others may be. It may be called from any thread."""
+        """Set the sentences, as words, that are likely to be said; others may be too. It may be called from any
+        thread.
+        """
         ...
 
     def recognise(self, sound: Sound) -> str:
-        """What is said in it, empty where nothing is. It may take as long as it needs."""
+        """Return the text of a sound, empty if nothing is said. It may take as long as it needs."""
         ...
 
 
 class Hypothesis(NamedTuple):
-    """A text that may have been said, and how sure that is, from 0 to 1; None where that is not known."""
+    """A text that may have been said."""
 
     text: str
     confidence: float | None = None
+    """Its probability, from 0 to 1; None if unknown."""
 
 
 @runtime_checkable
 class RankingRecogniser(Protocol):
-    """A recogniser that also knows what else may have been said; who inherits gets `recognise`."""
+    """A recogniser with alternatives; subclasses inherit `recognise`."""
 
     languages: tuple[str, ...]
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
-        """As of any recogniser."""
+        """Set the sentences that are likely to be said, as for any recogniser."""
         ...
 
     def recognise(self, sound: Sound) -> str:
-        """The likeliest of the hypotheses."""
+        """Return the text of the best hypothesis, empty without one."""
         found = self.hypotheses(sound)
         return found[0].text if found else ""
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
-        """What may be said in it, the likeliest first; none where nothing is."""
+        """Return the likely texts of a sound, the best first; none if nothing is said."""
         ...
 
 
 def hypotheses(recogniser: Recogniser, sound: Sound) -> Sequence[Hypothesis]:
-    """What a recogniser takes a sound for, the likeliest first; none where nothing is said."""
+    """Return a recogniser's hypotheses for a sound, the best first; none if nothing is said."""
     if isinstance(recogniser, RankingRecogniser):
         return recogniser.hypotheses(sound)
     text = recogniser.recognise(sound)

@@ -1,10 +1,10 @@
-"""Sounds at another rate."""
+"""Converts sounds to another sampling rate."""
 
 from lumen.run.sound import Sound
 
 
 def resampled(sound: Sound, rate: int) -> Sound:
-    """The sound at another rate, linearly between its samples."""
+    """Return the sound at another rate, interpolated linearly between its samples."""
     if sound.rate == rate:
         return sound
     import numpy as np

@@ -1,4 +1,4 @@
-"""One recogniser for all robots of a process: they have the same files, so the same is expected of their visitors."""
+"""One recogniser for all robots of a process, since they have the same files and expect the same sentences."""
 
 import threading
 from collections.abc import Callable, Sequence
@@ -12,9 +12,9 @@ _loaded: WeakValueDictionary[str, RankingRecogniser] = WeakValueDictionary()
 
 
 class SharedRecogniser(RankingRecogniser):
-    """The process's recogniser of that `name`, whose model is loaded once; who asks waits for who asked before.
+    """The process's recogniser of that `name`, whose model is loaded once; concurrent calls wait for each other.
 
-    `load` makes it. Raises ModuleError where its package or its model is missing.
+    `load` makes it. Raises ModuleError if its package or its model is missing.
     """
 
     def __init__(self, name: str, load: Callable[[], RankingRecogniser]) -> None:
@@ -25,16 +25,18 @@ class SharedRecogniser(RankingRecogniser):
         self.languages = self._recogniser.languages
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
+        """Set the sentences that this robot expects."""
         self._expected = sentences
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
+        """Return the hypotheses for a sound, with this robot's expected sentences."""
         with _lock:
             self._recogniser.expect(self._expected)
             return self._recogniser.hypotheses(sound)
 
 
 def shared_sphinx() -> SharedRecogniser:
-    """PocketSphinx, as it comes with its package."""
+    """Return the process's PocketSphinx."""
     from lumen.features.ears.sphinx import Sphinx  # needless for another recogniser
 
     return SharedRecogniser("sphinx", Sphinx)

@@ -1,4 +1,4 @@
-"""PocketSphinx, which carries its model of American English in its own package and needs no network."""
+"""PocketSphinx, whose package contains its model of American English, so that it needs no network."""
 
 import re
 from collections import Counter, defaultdict
@@ -27,23 +27,23 @@ _LETTERS = re.compile("|".join(sorted(_SOUNDS, key=len, reverse=True)))
 
 
 def pronounced(word: str) -> str:
-    """The sounds of a word in small letters, as PocketSphinx names them; empty where it has no letters."""
+    """Return the sounds of a word in small letters, by PocketSphinx's names; empty if it has no letters."""
     return " ".join(_SOUNDS[letters] for letters in _LETTERS.findall(word))
 
 
 COMMON_WEIGHT = 0.75
-"""How much of the chance of a word is that of the language, and not that of the expected sentences.
+"""The share of a word's probability that comes from the language, not from the expected sentences.
 
-With less, more of these is understood where it is quiet, and more of other talk is taken for one where it is not.
+With less, expected sentences are understood better in quiet places, but other talk is more often taken for one.
 """
 SENTENCE_BEGIN, SENTENCE_END = "<s>", "</s>"
 
 
 def arpa(sentences: Sequence[Sequence[str]], common: Mapping[str, float]) -> str:
-    """The model in ARPA's format; `common` are words with their chances.
+    """Return the language model in ARPA's format; `common` are words with their probabilities.
 
-    Bigrams are smoothed as Witten and Bell (1991) have it: a word that many different ones follow leaves much to words
-    that never followed it. Without the common words everything that is said would be taken for something expected.
+    Bigrams are smoothed by Witten and Bell (1991): a word with many different successors leaves much probability to
+    others. Without the common words, everything that is said would be taken for something expected.
     """
     pairs = Counter(pair for s in sentences for pair in zip([SENTENCE_BEGIN, *s], [*s, SENTENCE_END], strict=True))
     seen: dict[str, int] = Counter()
@@ -64,7 +64,7 @@ def arpa(sentences: Sequence[Sequence[str]], common: Mapping[str, float]) -> str
 
 
 def _chances(expected: Mapping[str, int], common: Mapping[str, float]) -> dict[str, float]:
-    """The chance of each word by itself."""
+    """Return the probability of each word by itself."""
     total, whole = sum(expected.values()), sum(common.values())
     share = COMMON_WEIGHT if common else 0.0
     chances = {word: (1 - share) * count / total for word, count in expected.items()}
@@ -79,31 +79,33 @@ if TYPE_CHECKING:
 
 INSTALL_EARS = "pip install 'lumen-robot[ears]'"
 SAMPLE_RATE = 16_000
-"""What its model was made from [Hz]."""
+"""The sampling rate of the model [Hz]."""
 REST_SAMPLES = SAMPLE_RATE // 2
-"""Half a second of silence [samples]: the recogniser wants some before and after."""
+"""Half a second of silence [samples], which the recogniser needs before and after the sound."""
 NOISE_LEVEL = 40.0
-"""The noise that is put under each sound, of 32,768: digital silence, which no microphone gives, misleads it."""
+"""The level of noise that is added to each sound, of 32,768: digital silence, unlike a microphone's, misleads it."""
 SILENCE_LEVEL = 300
-"""A sound that nowhere reaches this level, of 32,768, is silence."""
+"""A sound that stays below this level, of 32,768, is silence."""
 COMMON_WORDS = 8_000
-"""How many common words it knows beside what is expected."""
+"""The number of common words that it knows besides the expected ones."""
 MAX_MODELS = 4
-"""How many language models are kept: one takes 0.15 s of processor time to make, and 19 MB."""
+"""The number of language models that are kept: each takes 0.15 s of processor time to make, and 19 MB."""
 LOG_STEP = 1e-4
-"""PocketSphinx counts logarithms in such steps."""
+"""The base of PocketSphinx's logarithms, minus 1."""
 
 MAX_HYPOTHESES, MAX_EXAMINED = 5, 20
-"""How many different texts are given, and how many rows of its list are looked at: many are alike but for silences."""
+"""The number of different texts that are returned, and of hypotheses that are examined: many differ only in
+silences.
+"""
 FILLERS = "<[+"
-"""What begins so is no word, but a silence or a noise."""
+"""The first characters of silences and noises, which are not words."""
 TINY = 1e-9
 
 
 class Sphinx(RankingRecogniser):
-    """What is expected, by a language model of its own, else English freely spoken.
+    """Recognises expected sentences by a language model of their own, otherwise free English.
 
-    Faster than it is spoken. Raises ModuleError where the package or its model is missing.
+    It is faster than real time. Raises ModuleError if the package or its model is missing.
     """
 
     languages: tuple[str, ...] = ("en", "id")
@@ -127,16 +129,17 @@ class Sphinx(RankingRecogniser):
         self._common: dict[str, float] = {}
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
+        """Set the sentences that are likely to be said."""
         self._expected = sentences
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
-        """As many as are wanted. How sure only the first is, is known: the others' scores hardly differ."""
+        """Return the hypotheses for a sound. Only the first has a confidence: the others' scores hardly differ."""
         samples = _samples(sound)
         if abs(samples).max(initial=0) < SILENCE_LEVEL:
             return []
         self._prepare(self._expected)
         decoder = self._decoder
-        decoder.reinit_feat()  # forgets the noise of the sounds before: a sound is heard alike after any others
+        decoder.reinit_feat()  # forget the noise of earlier sounds, so that a sound always gives the same result
         decoder.start_utt()
         decoder.process_raw(_hissing(samples), full_utt=True)
         decoder.end_utt()
@@ -150,7 +153,7 @@ class Sphinx(RankingRecogniser):
         return [Hypothesis(text, None if i else confidence) for i, text in enumerate(islice(texts, MAX_HYPOTHESES))]
 
     def _prepare(self, sentences: Sequence[Sequence[str]]) -> None:
-        """Use the language model of what is expected now: one of those used last, else a new one."""
+        """Activate the language model of the expected sentences: a recent one, or a new one."""
         spoken = (tuple(word for word in sentence if pronounced(word)) for sentence in sentences)
         key = tuple(sentence for sentence in spoken if sentence)
         name = self._models.pop(key, "") if key else self._freely
@@ -173,7 +176,7 @@ class Sphinx(RankingRecogniser):
             self._decoder.add_lm_file(name, str(file))
 
     def _commonest(self) -> dict[str, float]:
-        """The commonest words with their chances, by the model in the package."""
+        """Return the most common words with their probabilities, by the model in the package."""
         lines = self._dictionary.read_text("utf-8").splitlines()
         words = [word for word in (line.partition(" ")[0] for line in lines) if "(" not in word]
         first = sorted(((self._english.prob([word]), word) for word in words), reverse=True)[:COMMON_WORDS]
@@ -187,7 +190,7 @@ def _samples(sound: Sound) -> "NDArray[np.float64]":
 
 
 def _hissing(samples: "NDArray[np.float64]") -> bytes:
-    """The sound between two rests, with a hiss that is always the same."""
+    """Return the sound between two silences, with a hiss that is always the same."""
     import numpy as np
 
     padded = np.pad(samples, REST_SAMPLES)

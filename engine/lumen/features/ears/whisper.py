@@ -1,4 +1,4 @@
-"""Whisper, from a folder of the house: a model in the format of CTranslate2, run by faster-whisper."""
+"""Whisper, with a model in CTranslate2's format from a local folder, run by faster-whisper."""
 
 import re
 from collections.abc import Sequence
@@ -15,19 +15,21 @@ from lumen.run.sound import Sound
 
 INSTALL_WHISPER = "pip install 'lumen-robot[ears-whisper]'"
 SAMPLE_RATE = 16_000
-"""What its models were made from [Hz]."""
+"""The sampling rate of its models [Hz]."""
 FILES = ("config.json", "model.bin", "tokenizer.json")
-"""What a folder has to hold: what is missing would be fetched from the Hub, and nothing is fetched here."""
+"""The files that a folder must contain; missing ones would be downloaded, which Lumen never does."""
 NO_SPEECH = 0.6
-"""A part that is so surely no speech is none, as OpenAI's own program has it: Whisper writes sentences into silence."""
+"""The probability of silence from which a part is ignored, as in OpenAI's program: Whisper invents sentences in
+silence.
+"""
 _NO_WORD = re.compile(r"[^\w\s'’-]|_")
 
 
 class Whisper(RankingRecogniser):
-    """The model of a folder; it is told nothing of what is expected, and knows one text for each sound.
+    """The model in a folder; it ignores expected sentences, and gives one text for each sound.
 
-    Of the `languages` it takes the one that is likeliest for a sound. An engine of one's own may be handed in, with the
-    methods of faster-whisper's `WhisperModel`. Raises ModuleError where the package or the folder is none.
+    For each sound it uses the likeliest of the `languages`. An engine with the methods of faster-whisper's
+    `WhisperModel` may be passed in. Raises ModuleError if the package or the folder is unusable.
     """
 
     def __init__(self, folder: Path, languages: Sequence[str], engine: Any = None) -> None:
@@ -40,9 +42,10 @@ class Whisper(RankingRecogniser):
             )
 
     def expect(self, sentences: Sequence[Sequence[str]]) -> None:
-        """Whatever is said: it knows its languages."""
+        """Do nothing: Whisper uses no expected sentences."""
 
     def hypotheses(self, sound: Sound) -> Sequence[Hypothesis]:
+        """Return the text of a sound as a single hypothesis, none if nothing is said. Raises ModuleError."""
         import numpy as np
 
         samples = np.frombuffer(resampled(sound, SAMPLE_RATE).samples, "<i2").astype(np.float32) / 32_768
@@ -68,12 +71,12 @@ class Whisper(RankingRecogniser):
 
 
 def shared_whisper(folder: Path, languages: Sequence[str]) -> SharedRecogniser:
-    """The process's Whisper of that folder."""
+    """Return the process's Whisper of that folder."""
     return SharedRecogniser(f"whisper {folder}", partial(Whisper, folder, languages))
 
 
 def _loaded(folder: Path) -> Any:
-    """The model of a folder, in eight bits on the processor. Raises ModuleError."""
+    """Return the model in a folder, in eight bits on the processor. Raises ModuleError."""
     if not folder.is_dir():
         raise ModuleError(f"the folder {folder}, which `whisper` names, does not exist: put a CTranslate2 model there")
     missing = [name for name in FILES if not (folder / name).is_file()]
@@ -91,7 +94,7 @@ def _loaded(folder: Path) -> Any:
         ) from None
     try:
         return WhisperModel(str(folder), device="cpu", compute_type="int8", local_files_only=True)
-    except Exception as error:  # what a broken file raises is the engine's, the tokenizer's or json's own
+    except Exception as error:  # the engine, the tokenizer and json raise different errors for damaged files
         raise ModuleError(
             f"faster-whisper cannot load the model in {folder}: {str(error).splitlines()[0][:200]}"
         ) from None

@@ -1,4 +1,4 @@
-"""Where in a file a cursor is while its line is still being written."""
+"""The place of a cursor in the tree of a file while its line is still being written."""
 
 import re
 from collections.abc import Callable
@@ -16,24 +16,25 @@ _PAIRS = {"[": "]", "{": "}"}
 
 
 class Cursor(NamedTuple):
-    """The node that is being written: its path, whether its key or its value, and what of its text stands before.
-
-    `word` is what a completion replaces, `quote` the quote before it; `document` is what stands around, with the
-    cursor's mark in it.
-    """
+    """The node that is being written."""
 
     path: NodePath
     key: bool
+    """Whether the cursor is in its key, not in its value."""
     before: str
+    """The node's text before the cursor."""
     word: str
+    """The word that a completion replaces."""
     quote: str
+    """The quote before the word, empty without one."""
     document: Document
+    """The parsed text around the cursor, with the cursor's mark."""
 
 
 def cursor(text: str, line: int, column: int, readable: Callable[[], str]) -> Cursor | None:
-    """The node at a line and column, from 1, of a text that need not be whole; None where it can't be told.
+    """Return the node at a line and column, from 1, of a text that may be incomplete; None if it can't be determined.
 
-    `readable` makes the text as far as it can be read, which is asked for only where the lines around do not tell.
+    `readable` returns the repaired text; it is called only if the nearby lines are not sufficient.
     """
     lines = lines_of(text)
     if line > len(lines):
@@ -52,7 +53,7 @@ def _cursor(lines: list[str], line: int, column: int) -> Cursor | None:
     head, tail = lines[line - 1][: column - 1], lines[line - 1][column - 1 :]
     found = _BEFORE.search(head)
     word = found[0] if found else ""
-    begun = head[: -len(word)] if word.startswith(("#", "*", "&", "@", "`", "%")) else head  # what YAML reads otherwise
+    begun = head[: -len(word)] if word.startswith(("#", "*", "&", "@", "`", "%")) else head  # otherwise YAML syntax
     for middle in [*_attempts(head, tail), *(_attempts(begun, tail) if begun != head else ())]:
         content = "\n".join([*lines[: line - 1], middle, *lines[line:]])
         document, _ = parse("cursor", content.encode("utf-8", "surrogatepass"))
@@ -64,7 +65,7 @@ def _cursor(lines: list[str], line: int, column: int) -> Cursor | None:
 
 
 def _attempts(head: str, tail: str) -> list[str]:
-    """Lines that could be whole, the likeliest first."""
+    """Return possible completions of the line, the most likely first."""
     rest = head.rstrip("\r")
     closed = _closed(rest)
     whole = [f"{head}{CURSOR_MARK}{tail}"]
@@ -76,7 +77,7 @@ def _attempts(head: str, tail: str) -> list[str]:
 
 
 def _closed(head: str) -> str:
-    """The quotes and brackets that a line leaves open, closed."""
+    """Return the closing quotes and brackets that a line lacks."""
     stack, quote = [], ""
     for character in head:
         if quote:
@@ -91,7 +92,7 @@ def _closed(head: str) -> str:
 
 
 def _marked(document: Document) -> tuple[NodePath, bool, str] | None:
-    """The path of the key or of the text that holds the mark."""
+    """Return the path of the key or text with the mark, whether it is a key, and its text."""
     for path in document.spans:
         if path and isinstance(path[-1], str) and CURSOR_MARK in path[-1]:
             return path, True, path[-1]

@@ -1,4 +1,4 @@
-"""Where faces and people are in a picture, by the models that OpenCV's own package carries."""
+"""Finds faces and people in pictures, with the models in OpenCV's own package."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,19 +11,19 @@ if TYPE_CHECKING:
     from lumen.features.eyes.pictures import Grey
 
 FACE_CASCADE = "haarcascade_frontalface_alt.xml"
-"""The stump-based Haar cascade of R. Lienhart: of those in the package it puts its box tightest around the face."""
+"""The stump-based Haar cascade of R. Lienhart: of those in the package its box fits a face most tightly."""
 SEARCH_WIDTH = 320
-"""Pictures are looked at in this width [px]: a face at 2 m is 22 px wide in it, and a look takes 50 ms."""
+"""The width to which pictures are scaled [px]: a face at 2 m is then 22 px wide, and detection takes 50 ms."""
 SCALE_STEP, MIN_NEIGHBOURS, MIN_FACE_SIZE = 1.05, 3, 20
-"""By what factor the cascade grows, how many overlapping hits are a face, and how small one may be [px]."""
+"""The factor of the cascade's growth, the number of overlapping hits that make a face, and its smallest size [px]."""
 RIM_WIDTH = 30
-"""Pictures are continued so far over their rim [px]: a face whose forehead is cut off is still a face."""
+"""How far pictures are extended beyond their edges [px], so that faces with a cut-off forehead are found."""
 MIN_PERSON_WEIGHT = 0.4
-"""How sure (the distance to the separating plane) a hit of a person has to be."""
+"""The least distance of a person's hit from the separating plane."""
 
 
 class Box(NamedTuple):
-    """A rectangle in a picture [px], from its left upper corner."""
+    """A rectangle in a picture [px], from its upper left corner."""
 
     x: float
     y: float
@@ -32,15 +32,16 @@ class Box(NamedTuple):
 
     @property
     def centre(self) -> tuple[float, float]:
+        """The middle of the rectangle."""
         return self.x + self.width / 2, self.y + self.height / 2
 
     def holds(self, place: tuple[float, float]) -> bool:
-        """Whether a place lies in it."""
+        """Return whether a point is in the rectangle."""
         return 0.0 <= place[0] - self.x <= self.width and 0.0 <= place[1] - self.y <= self.height
 
 
 class PersonDetector:
-    """Finds faces and people. Raises ModuleError where the models can't be loaded."""
+    """Finds faces and people. Raises ModuleError if the models can't be loaded."""
 
     def __init__(self, cascade: Path | None = None) -> None:
         cv2 = self._cv2 = opencv()
@@ -58,16 +59,17 @@ class PersonDetector:
         self._people.setSVMDetector(cv2.HOGDescriptor_getDefaultPeopleDetector())
 
     def faces(self, grey: "Grey") -> list[Box]:
-        """The faces, the largest first: whoever is nearest."""
+        """Return the faces, the largest, and so the nearest, first."""
         small, zoom = self._small(grey)
         framed = self._cv2.copyMakeBorder(small, RIM_WIDTH, RIM_WIDTH, RIM_WIDTH, RIM_WIDTH, self._cv2.BORDER_REPLICATE)
         found = self._faces.detectMultiScale(framed, SCALE_STEP, MIN_NEIGHBOURS, minSize=(MIN_FACE_SIZE, MIN_FACE_SIZE))
         return _sorted([(x - RIM_WIDTH, y - RIM_WIDTH, w, h) for x, y, w, h in found], zoom)
 
     def people(self, grey: "Grey", faces: Sequence[Box] = ()) -> list[Box]:
-        """Those who can be seen from head to foot, or nearly so (Dalal and Triggs, CVPR 2005), and whose face is seen.
+        """Return people who are visible from head to foot (Dalal and Triggs, CVPR 2005), and those of the given faces.
 
-        The largest first. Who stands near the robot is not seen whole: they are where their face is, and below.
+        The largest come first. A person near the robot is not visible as a whole: the box is then derived from the
+        face.
         """
         whole = self._whole(grey)
         near = [_below(face, *grey.shape) for face in faces if not any(box.holds(face.centre) for box in whole)]
@@ -81,7 +83,7 @@ class PersonDetector:
         return _sorted([box for box, weight in zip(found, weights, strict=True) if weight > MIN_PERSON_WEIGHT], zoom)
 
     def _small(self, grey: "Grey") -> tuple[Any, float]:
-        """The picture at the width that is looked at, and what to multiply by to get back."""
+        """Return the picture scaled to the search width, and the factor back to the original."""
         height, width = grey.shape
         if width == SEARCH_WIDTH:
             return grey, 1.0
@@ -92,7 +94,7 @@ class PersonDetector:
 
 
 def _below(face: Box, height: int, width: int) -> Box:
-    """Where the person of a face is, as far as the picture shows them: three faces wide and seven high."""
+    """Return the visible box of the person with that face: three faces wide and seven high."""
     left, top = max(0.0, face.x - face.width), max(0.0, face.y - face.height / 2)
     right, bottom = min(float(width), face.x + 2 * face.width), min(float(height), top + 7 * face.height)
     return Box(left, top, right - left, bottom - top)

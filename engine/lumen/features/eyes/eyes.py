@@ -1,4 +1,4 @@
-"""Looks at the camera's images, and publishes what there is in them."""
+"""Examines the camera's images, and publishes what they show."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -22,14 +22,11 @@ from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 from lumen.run.module import DAY, KEEP_DAYS, Module
 
 ROBOT_CAMERA = "robot"
-"""The value of `camera` that stands for the robot's own."""
+"""The value of `camera` for the robot's own camera."""
 
 
 class VideoSource:
-    """Frames of the webcam of that number, or of a video file in `root`; `read` gives the next one, None at the end.
-
-    Raises ModuleError where there is no such camera or file.
-    """
+    """Frames of a webcam, given by its number, or of a video file in `root`. Raises ModuleError if there is none."""
 
     def __init__(self, camera: int | str, root: Path) -> None:
         cv2 = self._cv2 = opencv()
@@ -50,7 +47,7 @@ class VideoSource:
         self.period = 1.0 / rate if 1.0 <= rate <= 240.0 else 1.0 / 30.0
 
     def read(self) -> Frame | None:
-        """The next frame; its time is unknown to the robot's clock."""
+        """Return the next frame, without a time on the robot's clock; None at the end."""
         there, pixels = self._capture.read()
         if not there:
             return None
@@ -58,37 +55,39 @@ class VideoSource:
         return Frame(self._cv2.cvtColor(pixels, self._cv2.COLOR_BGR2GRAY), None)
 
     def close(self) -> None:
+        """Release the camera or file."""
         self._capture.release()
 
 
 FACES_FILE = "faces.npz"
 LOOK_INTERVAL = 0.1
-"""How often it looks [s]."""
+"""The default time between two examined images [s]."""
 PEOPLE_INTERVAL = 1.0
-"""How often it looks for people [s], which takes longer."""
+"""The time between two searches for people [s], which are slower."""
 NAME_INTERVAL = 2.0
-"""How often it publishes whose face it is, while that stays the same [s]."""
+"""The time between two messages with the same recognised name [s]."""
 NEW_VISITOR_GAP = 1.0
-"""After how long without a face the next one is a new visitor's [s]."""
+"""The time without a face after which the next one is a new visitor's [s]."""
 UNKNOWN, UNRECOGNISED, FAILED = "unknown", "face unrecognized", "error cvException"
-"""What the modules of 2015 said where a face has no name, where there is none to name, and where OpenCV failed."""
+"""The names that the modules of 2015 published for a face without a name, for no face, and for an error of OpenCV."""
 FACE_WIDTH = 0.16
-"""What the detector's box around a grown-up's face spans [m], where `lumen.yaml` does not say."""
+"""The default width of the detector's box around an adult's face [m]."""
 MAX_NAME_CHARACTERS = 60
-"""How long a name may be under which a face is learnt."""
+"""The longest name under which a face is learnt."""
 
 
 class Eyes(Module):
-    """The visual module. A name on `lumen.visual.command` is given to the next faces seen, until it knows them well.
+    """The visual module. A name on `lumen.visual.command` is given to the next faces seen, until they are learnt.
 
-    `file` keeps the faces that have names, None for this process only. Raises ModuleError where there is no OpenCV, its
-    models can't be loaded, or there is no such camera.
+    `file` keeps the faces with names, None for this process only. Raises ModuleError if OpenCV, its models or the
+    camera are missing.
     """
 
     name = EYES
 
     @classmethod
     def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
+        """Make the module with its faces in `folder`, or without a file if that is None."""
         return cls(project, bus, tell, folder and folder / FACES_FILE)
 
     def __init__(
@@ -117,15 +116,19 @@ class Eyes(Module):
         if self._window:
             self._tell(
                 f"see their picture at {self._window.address}"
-            )  # on this terminal only: nobody else is to have it
+            )  # on this terminal only, since the address is a secret
 
     def hears(self) -> Mapping[str, MessageHandler]:
+        """Return the handlers of the routes that the module listens to."""
         heard: dict[str, MessageHandler] = {"visual_command": self._enrol, "forgotten": self._forget}
         if self._window:
             heard["joint"] = self._joints
         return heard if self._source else {str(self.settings.options.get("images", IMAGE)): self._image, **heard}
 
     def idle(self) -> float | None:
+        """Examine the next frame of the module's own source, and delete expired faces; return the time until the next
+        call [s].
+        """
         if self._clock() - self._expired > 3_600.0:
             self._expired = self._clock()
             self._guarded(lambda: self._gallery.expire(self._clock() - self._keep))
@@ -135,13 +138,14 @@ class Eyes(Module):
         return self._source.period if self._source else 3_600.0
 
     def end(self) -> None:
+        """Close the source and the window."""
         if self._source:
             self._source.close()
         if self._window:
             self._window.close()
 
     def look(self, frame: Frame, now: float) -> None:
-        """Publish what there is in a frame that was taken at `now` [s]."""
+        """Publish what a frame shows that was taken at `now` [s]."""
         try:
             faces = self._detector.faces(frame.grey)
             if faces:
@@ -193,7 +197,7 @@ class Eyes(Module):
         self._seen = now
 
     def _joints(self, message: Message) -> None:
-        """Where the head stands, for the window."""
+        """Note the head's angles for the window."""
         match message.body:
             case {"name": list(names), "angle": list(angles)}:
                 found = {n: a for n, a in zip(map(str, names), angles, strict=False) if isinstance(a, int | float)}
@@ -206,7 +210,7 @@ class Eyes(Module):
             self._window.show(frame.grey, faces, self._people, "   ".join([*where, self._head]).strip())
 
     def _place(self, frame: Frame, box: Box) -> tuple[float, float]:
-        """The middle of a box, in pixels of the robot's camera."""
+        """Return the middle of a box, in pixels of the robot's camera."""
         camera, (height, width) = self.project.body.camera, frame.grey.shape
         x, y = box.centre
         if camera is None:
@@ -215,7 +219,7 @@ class Eyes(Module):
         return min(max(x, 0.0), float(camera.width)), min(max(y, 0.0), float(camera.height))
 
     def _distance(self, frame: Frame, face: Box) -> dict[str, float]:
-        """How far it is by its width in the image, of a body whose camera is known."""
+        """Return the face's distance, from its width in the image; empty for a body whose camera is unknown."""
         camera = self.project.body.camera
         if camera is None:
             return {}
@@ -229,14 +233,14 @@ class Eyes(Module):
             self._tell(f"has learnt the face of {self._learning}")
 
     def _enrol(self, message: Message) -> None:
-        """Whose face the next ones are; a bare name, as in 2015."""
+        """Learn the next faces under this name: the message is a bare name, as in 2015."""
         name = message.body.strip() if isinstance(message.body, str) else ""
         if not name or len(name) > MAX_NAME_CHARACTERS or not name.isprintable():
             raise ModuleError(f"a message on {message.key} needs a `name` of at most {MAX_NAME_CHARACTERS} characters")
         self._learning, self._left = name, MAX_PICTURES_PER_NAME
 
     def _forget(self, message: Message) -> None:
-        """Who is forgotten is not recognised either."""
+        """Delete the faces of a forgotten person."""
         match message.body:
             case {"name": str(name)} if name_key(name):
                 if name_key(self._learning) == name_key(name):
@@ -257,7 +261,7 @@ def _when(frame: Frame) -> dict[str, float]:
 
 
 def forget_faces(folder: Path, name: str, found: Forgetting) -> None:
-    """Forget the pictures of a person's face in a home."""
+    """Delete the pictures of a person's face in a home."""
 
     def work() -> None:
         if gone := FaceGallery(file, time.time).forget(name):

@@ -1,4 +1,4 @@
-"""Whose face it is: local binary patterns of the faces that were shown together with a name."""
+"""Recognises faces by local binary patterns of faces that were shown together with a name."""
 
 import io
 from collections.abc import Callable, Iterable
@@ -15,20 +15,20 @@ if TYPE_CHECKING:
     from lumen.features.eyes.pictures import Grey
 
 FACE_SIZE = 96
-"""Faces are compared at this width and height [px]."""
+"""The width and height at which faces are compared [px]."""
 MAX_PICTURES_PER_NAME = 8
-"""How many pictures of a face are kept for a name."""
+"""The number of pictures of a face that are kept for a name."""
 MAX_DISTANCE = 70.0
-"""How far (chi-square distance of the patterns' histograms) a face may be from a known one to be it."""
+"""The largest distance (chi-square of the patterns' histograms) from a known face that counts as the same."""
 MAX_PICTURES = 500
-"""Of all names together; then nobody new is learnt."""
+"""The number of pictures of all names; beyond it no new face is learnt."""
 
 
 class FaceGallery:
-    """The faces that have names, in `file` or, without one, in this process only. What its owner alone may read.
+    """The faces with names, in `file` or, without one, in this process only. Only the owner may read the file.
 
-    It holds pictures of people: `forget` deletes those of a name, `expire` those that were made before a time.
-    Raises ModuleError where the file can't be used.
+    Since these are pictures of people, `forget` deletes those of a name, and `expire` those made before a time. Raises
+    ModuleError if the file is unusable.
     """
 
     def __init__(self, file: Path | None, clock: Callable[[], float]) -> None:
@@ -41,11 +41,11 @@ class FaceGallery:
 
     @property
     def names(self) -> list[str]:
-        """Everybody who is known."""
+        """The known names, sorted."""
         return sorted({name for name, _, _ in self._faces})
 
     def enrol(self, name: str, grey: "Grey", face: Box) -> int:
-        """Remember this face under a name; how many pictures of it there are now. Raises ModuleError where it can't."""
+        """Store this face under a name; return the number of its pictures. Raises ModuleError if that is impossible."""
         key = name_key(name)
         mine = [i for i, (other, _, _) in enumerate(self._faces) if name_key(other) == key]
         if len(mine) >= MAX_PICTURES_PER_NAME:
@@ -59,18 +59,18 @@ class FaceGallery:
         return sum(name_key(other) == key for other, _, _ in self._faces)
 
     def who(self, grey: "Grey", face: Box) -> str:
-        """Whose face that is; empty where it is nobody's that is known."""
+        """Return the name of the face, empty if it is unknown."""
         if self._model is None:
             return ""
         label, distance = self._model.predict(self._cut(grey, face))
         return self.names[label] if distance <= MAX_DISTANCE else ""
 
     def forget(self, name: str) -> int:
-        """Delete what is kept under a name, however that is written; how many pictures that were."""
+        """Delete the pictures of a name, in any spelling of it; return their number."""
         return self._keep([face for face in self._faces if name_key(face[0]) != name_key(name)])
 
     def expire(self, before: float) -> int:
-        """Delete what was learnt before that time [s since 1970]; how many pictures that were."""
+        """Delete the pictures made before that time [s since 1970]; return their number."""
         return self._keep([face for face in self._faces if face[1] >= before])
 
     def _keep(self, faces: list[tuple[str, float, Any]]) -> int:
@@ -98,7 +98,7 @@ class FaceGallery:
             self._model.train([face for _, _, face in self._faces], labels)
 
     def _save(self) -> None:
-        """Compare with these from now on; the file is replaced as a whole."""
+        """Train with the present faces, and replace the file."""
         self._train()
         if self._file is None:
             return
@@ -124,6 +124,6 @@ def _read(file: Path) -> Iterable[tuple[str, float, Any]]:
             names, times, faces = data["names"].tolist(), data["times"].tolist(), data["faces"]
         if faces.shape != (len(names), FACE_SIZE, FACE_SIZE) or faces.dtype != np.uint8 or len(times) != len(names):
             raise ValueError
-    except Exception:  # a damaged file raises whatever zip, numpy and the disk do
+    except Exception:  # zip, numpy and the disk raise different errors for damaged files
         raise ModuleError(f"{file} contains no faces or is damaged: move it away, then teach the names again") from None
     return zip(map(str, names), map(float, times), faces, strict=True)

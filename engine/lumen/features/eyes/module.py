@@ -1,4 +1,4 @@
-"""The visual module: faces, whose they are, and people, found with OpenCV in what a camera sees."""
+"""The visual module: faces, their names, and people, found with OpenCV in a camera's images."""
 
 from lumen.features.eyes.eyes import Eyes
 

@@ -1,4 +1,4 @@
-"""OpenCV, imported late: who has no eyes does not need it."""
+"""OpenCV, imported late, so that only the eyes need it."""
 
 from types import ModuleType
 
@@ -8,7 +8,7 @@ INSTALL_EYES = "pip install 'lumen-robot[eyes]'"
 
 
 def opencv() -> ModuleType:
-    """The module `cv2`. Raises ModuleError where it is missing, or lacks the parts that the eyes use."""
+    """Return the module `cv2`. Raises ModuleError if it is missing, or lacks parts that the eyes use."""
     try:
         import cv2
     except ImportError as error:
@@ -16,7 +16,7 @@ def opencv() -> ModuleType:
     for part in ("CascadeClassifier", "HOGDescriptor", "face"):
         if not hasattr(cv2, part):
             raise ModuleError(f"this OpenCV ({cv2.__version__}) has no `{part}`: uninstall it, then {INSTALL_EYES}")
-    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # what it has to say is said by us, in one line
-    cv2.setNumThreads(1)  # the robot's physics and the behaviour want the other cores
+    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)  # the eyes report errors themselves, in one line
+    cv2.setNumThreads(1)  # the robot's physics and the behaviour need the other cores
     module: ModuleType = cv2
     return module

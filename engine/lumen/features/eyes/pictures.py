@@ -1,4 +1,4 @@
-"""Frames from message bodies, checked before anything is made of them."""
+"""Frames from messages, checked before use."""
 
 import base64
 import binascii
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Grey = NDArray[np.uint8]
-    """Shape (height, width)."""
+    """A grey image, Shape (height, width)."""
 
 MIN_PICTURE_SIZE, MAX_PICTURE_SIZE = 32, 4096
-"""How wide and high a picture may be [px]: nobody is found in a smaller one, a larger one takes too long."""
+"""The range of a picture's width and height [px]: smaller ones show nothing usable, larger ones take too long."""
 
 
 class Frame(NamedTuple):
-    """A picture in shades of grey, and when it was taken [s, the robot's clock]; None where nobody said."""
+    """A grey picture, and its time [s, the robot's clock]; None if unknown."""
 
     grey: "Grey"
     time: float | None
 
 
 def frame_of(body: Any) -> Frame:
-    """The frame in the body of an image. Raises ModuleError for one that is none, or of no sensible size."""
+    """Return the frame in an image's message. Raises ModuleError if it is invalid or its size is out of range."""
     url = body.get("contentUrl") if isinstance(body, dict) else None
     if not isinstance(url, str) or not url.startswith("data:image/"):
         raise ModuleError("an image is ignored: its `contentUrl` must begin with `data:image/`")
@@ -49,13 +49,13 @@ def _grey(data: bytes) -> "Grey":
             grey: Grey = np.asarray(picture.convert("L"))
     except ModuleError:
         raise
-    except Exception as error:  # Pillow raises whatever its decoders do
+    except Exception as error:  # Pillow's decoders raise many types
         raise ModuleError(f"an image is ignored: it cannot be read ({type(error).__name__})") from None
     return grey
 
 
 def check_size(width: int, height: int) -> None:
-    """Raises ModuleError where nobody could be found in a picture of that size [px], or it would take too long."""
+    """Raise ModuleError if the size of a picture [px] is out of range."""
     if not (MIN_PICTURE_SIZE <= width <= MAX_PICTURE_SIZE and MIN_PICTURE_SIZE <= height <= MAX_PICTURE_SIZE):
         bounds = f"between {MIN_PICTURE_SIZE} and {MAX_PICTURE_SIZE}"
         raise ModuleError(f"an image is {width} x {height} px: its width and height must be {bounds}")

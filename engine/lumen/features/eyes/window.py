@@ -1,4 +1,4 @@
-"""What the eyes see and find, live in a browser of this machine."""
+"""A live view of what the eyes see and find, in a browser on this machine."""
 
 import threading
 from typing import TYPE_CHECKING
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
 
 PART_BOUNDARY = "frame"
 FACE_COLOUR, PERSON_COLOUR, TEXT_COLOUR = (0, 200, 0), (200, 120, 0), (255, 255, 255)
-"""Colours, blue first."""
+"""Colours as blue, green, red."""
 WAKE_INTERVAL = 1.0
 """How often a page that has no new picture checks whether the window is closed [s]."""
 
 
 class Window:
-    """`address` as a film of JPEGs; a picture is made only while somebody looks.
+    """Serves `address` as a stream of JPEGs; pictures are made only while a browser is connected.
 
-    Port 0 is any free one. Raises ModuleError where it is taken.
+    Port 0 means any free port. Raises ModuleError if the port is taken.
     """
 
     def __init__(self, port: int) -> None:
@@ -39,7 +39,7 @@ class Window:
         self._thread.start()
 
     def show(self, grey: "Grey", faces: list[Box], people: list[Box], words: str) -> None:
-        """The picture with a frame around the face that counts and each person, and a line of words."""
+        """Show the picture with frames around the visitor's face and each person, and a line of text."""
         if not self._lookers:
             return
         cv2 = self._cv2
@@ -56,7 +56,7 @@ class Window:
             self._changed.notify_all()
 
     def serve(self, page: "WindowPage") -> None:
-        """Send every new picture until the looker goes."""
+        """Send every new picture until the browser disconnects."""
         page.send_response(200)
         page.send_header("Content-Type", f"multipart/x-mixed-replace; boundary={PART_BOUNDARY}")
         page.send_header("Cache-Control", "no-store")
@@ -73,13 +73,13 @@ class Window:
                 head = f"--{PART_BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\n\r\n"
                 page.wfile.write(head.encode() + data + b"\r\n")
         except OSError:
-            pass  # the looker is gone, or takes nothing
+            pass  # the browser is gone, or reads nothing
         finally:
             with self._changed:
                 self._lookers -= 1
 
     def close(self) -> None:
-        """Harmless when repeated."""
+        """Close the window; further calls do nothing."""
         with self._changed:
             self._open = False
             self._changed.notify_all()

@@ -1,4 +1,4 @@
-"""Who may look at the eyes' window: a browser of this machine that was given its address, and few of them."""
+"""The access to the eyes' window: a few browsers on this machine that know its address."""
 
 import hmac
 import secrets
@@ -11,19 +11,18 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import Any
 
 WINDOW_HOST = "127.0.0.1"
-"""Only this machine sees who stands there."""
+"""Only this machine may see the pictures of visitors."""
 MAX_CONNECTIONS = 8
-"""How many are open at once; a further one is closed unanswered."""
+"""The number of open connections; a further one is closed without an answer."""
 REQUEST_TIMEOUT = 5.0
-"""How long a request may take until it is there, and a picture until it is taken [s]."""
+"""How long a request may take to arrive, and a picture to be read [s]."""
 
 
 class WindowServer(ThreadingHTTPServer):
-    """Calls `serve` with each page that was asked for by its whole `address`.
+    """Calls `serve` with each request for its complete `address`.
 
-    That holds a token, new at each start, so that no other program of the machine and no page of the web finds it; and
-    only its own `Host` is answered, so that no other name can be made to mean this machine. Raises OSError where the
-    port is taken.
+    The address contains a token, new at each start, so that other programs and web pages can't find it. Only requests
+    with its own `Host` are answered, which prevents DNS rebinding. Raises OSError if the port is taken.
     """
 
     daemon_threads = True
@@ -39,45 +38,50 @@ class WindowServer(ThreadingHTTPServer):
         self.address = f"http://{self._hosts[0]}/{self._token}/"
 
     def refusal(self, path: str, hosts: list[str]) -> int:
-        """The status of HTTP with which a request is refused, 0 where it is answered."""
+        """Return the HTTP status with which a request is refused, 0 if it is answered."""
         if len(hosts) != 1 or hosts[0].strip().lower() not in self._hosts:
             return 421
         token = path.removeprefix("/").removesuffix("/").encode("utf-8", "replace")
         return 0 if hmac.compare_digest(token, self._token.encode()) else 404
 
     def process_request(self, request: Any, client_address: Any) -> None:
+        """Handle a request in a thread, or close it if there are too many."""
         if self._free.acquire(blocking=False):
             super().process_request(request, client_address)
         else:
             self.shutdown_request(request)
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
+        """Handle a request, then free its place."""
         try:
             super().process_request_thread(request, client_address)
         finally:
             self._free.release()
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Nothing: that a looker has gone is not worth a line."""
+        """Do nothing: a browser that disconnects is not an error."""
 
 
 class WindowPage(BaseHTTPRequestHandler):
-    """One request; it has so long to arrive, however slowly it comes."""
+    """One request, which must arrive within `timeout` [s]."""
 
     server: WindowServer
     timeout = REQUEST_TIMEOUT
 
     def setup(self) -> None:
+        """Start the timer of the request."""
         self._alarm = threading.Timer(self.timeout, self._hang_up)
         self._alarm.daemon = True
         self._alarm.start()
         super().setup()
 
     def finish(self) -> None:
+        """Stop the timer."""
         self._alarm.cancel()
         super().finish()
 
     def do_GET(self) -> None:
+        """Answer the request, or refuse it."""
         self._alarm.cancel()
         if refusal := self.server.refusal(self.path, self.headers.get_all("Host", [])):
             self.send_error(refusal)
@@ -85,12 +89,12 @@ class WindowPage(BaseHTTPRequestHandler):
             self.server.serve(self)
 
     def wanted(self) -> bool:
-        """Whether the looker is there; raises OSError where that is sure not to be so."""
+        """Return whether the browser is still connected. Raises OSError if the connection is broken."""
         said = select.select([self.connection], [], [], 0.0)[0]
         return not said or self.connection.recv(1, socket.MSG_PEEK) != b""
 
     def log_message(self, format: str, *arguments: Any) -> None:
-        """Nothing: that somebody looks is not worth a line."""
+        """Do nothing: requests are not logged."""
 
     def _hang_up(self) -> None:
         with suppress(OSError):

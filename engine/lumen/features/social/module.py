@@ -1,4 +1,4 @@
-"""The stand-in for social media: what would be posted is a line in a file."""
+"""The stand-in for social media: each post becomes a line in a file."""
 
 import json
 import os
@@ -19,19 +19,20 @@ from lumen.upkeep.private_folder import private_folder
 
 POSTS_FILE = "posts.jsonl"
 MAX_FILE_BYTES = 10_000_000
-"""How long the file may grow; then nothing more is written until somebody has moved it away."""
+"""The largest size of the file [bytes]; beyond it nothing more is written until the file is moved away."""
 
 
 class Social(Module):
-    """Takes posts from `lumen.NAO.social.expression`, and says on `.perception` that they were taken.
+    """Accepts posts from `lumen.NAO.social.expression`, and confirms them on `.perception`.
 
-    `file` gets a line of JSON for each, None keeps nothing. Another module in its place would post them.
+    `file` gets a line of JSON for each; None keeps nothing. A real module in its place would post them.
     """
 
     name = SOCIAL
 
     @classmethod
     def make(cls, project: Project, bus: Bus, tell: Callable[[str], None], folder: Path | None) -> Self:
+        """Make the module with its file in `folder`, or without a file if that is None."""
         return cls(project, bus, tell, folder and folder / POSTS_FILE)
 
     def __init__(self, project: Project, bus: Bus, tell: Callable[[str], None], file: Path | None) -> None:
@@ -39,6 +40,7 @@ class Social(Module):
         self._file = file
 
     def hears(self) -> Mapping[str, MessageHandler]:
+        """Return the handlers of the routes that the module listens to."""
         return {"social_expression": self._post, "forgotten": self._forget}
 
     def _post(self, message: Message) -> None:
@@ -53,7 +55,7 @@ class Social(Module):
         self.well()
 
     def _forget(self, message: Message) -> None:
-        """What would have been posted about somebody who is to be forgotten."""
+        """Delete the posts about a person who is to be forgotten."""
         match message.body:
             case {"name": str(name)} if self._file:
                 forget_lines(self._file, PersonName(name))

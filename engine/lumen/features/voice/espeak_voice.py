@@ -1,4 +1,4 @@
-"""espeak-ng through its C interface (`speak_lib.h`): from a text to samples, without a sound device."""
+"""espeak-ng through its C interface (`speak_lib.h`): converts text to samples, without a sound device."""
 
 import ctypes
 import ctypes.util
@@ -12,9 +12,9 @@ from lumen.run.sound import Sound
 
 INSTALL_VOICE = "pip install 'lumen-robot[voice]', or install the package espeak-ng"
 WORDS_PER_MINUTE = 175
-"""How fast it speaks where nobody says."""
+"""The default pace of speech."""
 MAX_TEXT_CHARACTERS = 1_000
-"""How much of a text is spoken; the rest is not."""
+"""The number of characters of a text that are spoken; the rest is not."""
 
 _SYNCHRONOUS, _DONT_EXIT, _UTF8, _CHARACTERS, _RATE = 2, 0x8000, 1, 1, 1
 
@@ -34,7 +34,7 @@ _Callback = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.POINTER(ctypes.c_short), ctype
 
 
 class Espeak:
-    """The library, of which there is one in a process: `espeak()` gives it. Safe from any thread."""
+    """The library, of which a process has one, returned by `espeak()`. It may be used from any thread."""
 
     def __init__(self, library: str, data: str | None) -> None:
         try:
@@ -55,16 +55,16 @@ class Espeak:
         ]  # fmt: skip
 
     def speak(self, text: str, language: str = "en", pace: int = WORDS_PER_MINUTE) -> Sound:
-        """The text in that language, at `pace` words a minute.
+        """Return the text as sound in that language, at `pace` words per minute.
 
-        Raises ModuleError for a language that it has no voice for.
+        Raises ModuleError if there is no voice for the language.
         """
         return self.timed(text, language, pace)[0]
 
     def timed(
         self, text: str, language: str = "en", pace: int = WORDS_PER_MINUTE
     ) -> tuple[Sound, tuple[WordTime, ...]]:
-        """The same, and when each word begins; no words for a voice that does not tell."""
+        """Return the sound and the times at which words begin; none for a voice that does not report them."""
         said = "".join(sign if sign.isprintable() else " " for sign in text[:MAX_TEXT_CHARACTERS])
         data = said.encode("utf-8", "replace") + b"\0"
         with self._lock:
@@ -90,7 +90,7 @@ class Espeak:
 
 @cache
 def espeak() -> Espeak:
-    """The library of the wheel `espeakng-loader`, else of this system. Raises ModuleError where there is none."""
+    """Return the library of the package `espeakng-loader`, else of this system. Raises ModuleError if there is none."""
     try:
         import espeakng_loader
     except ImportError:

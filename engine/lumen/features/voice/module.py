@@ -1,4 +1,4 @@
-"""Texts as sound, spoken by espeak-ng; on the bus, the text-to-speech module."""
+"""Text to speech with espeak-ng: the text-to-speech module on the bus."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -13,7 +13,7 @@ from lumen.run.module import Module
 
 
 class Voice(Module):
-    """Answers each text of `lumen.audio.text.stream` with its sound. Raises ModuleError where there is no espeak-ng."""
+    """Answers each text of `lumen.audio.text.stream` with its sound. Raises ModuleError if espeak-ng is missing."""
 
     name = VOICE
 
@@ -22,6 +22,7 @@ class Voice(Module):
         self._espeak = espeak()
 
     def hears(self) -> Mapping[str, MessageHandler]:
+        """Return the handler of texts."""
         return {"text_stream": self._text}
 
     def _text(self, message: Message) -> None:

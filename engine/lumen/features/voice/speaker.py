@@ -22,9 +22,9 @@ _log = logging.getLogger(__name__)
 class Speaker:
     """A voice of the simulated robot: each text takes as long as its sound.
 
-    With a `file` it writes the sound of the whole run, each text where it was said in simulated time; else the
-    machine's own player gets it. What is said goes into `heard`, too, where that is given. A language that espeak-ng
-    lacks is spoken in `language`.
+    With a `file` it writes the sound of the whole run, each text at its simulated time; otherwise the machine's own
+    player gets it. The sound is also added to `heard`, if given. Texts in languages that espeak-ng lacks are spoken in
+    `language`.
     """
 
     def __init__(self, language: str, file: Path | None, heard: AudioTrack | None = None) -> None:
@@ -40,10 +40,11 @@ class Speaker:
 
     @property
     def mute(self) -> bool:
-        """Whether nobody hears anything."""
+        """Whether the sound goes nowhere: neither to a file nor to a player."""
         return self._file is None and self._player is None
 
     def begin(self, text: str, language: str, volume: float, now: float) -> float:
+        """Begin to speak a text at `now` [s]; return its duration [s]."""
         try:
             sound, self.words = self._espeak.timed(text, language or self._language)
         except ModuleError:
@@ -56,6 +57,7 @@ class Speaker:
         return sound.duration
 
     def end(self, now: float) -> None:
+        """End the text at `now` [s], or cut it off there."""
         if self._saying is None:
             return
         (sound, began), self._saying = self._saying, None
@@ -66,7 +68,7 @@ class Speaker:
             self._append(sound.until(now - began), began)
 
     def close(self) -> None:
-        """Write the file. Raises ModuleError where it can't be."""
+        """Write the file. Raises ModuleError if that fails."""
         if self._saying:
             self.end(self._saying[1] + self._saying[0].duration)
         self._hush()
