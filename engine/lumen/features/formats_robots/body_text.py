@@ -1,4 +1,4 @@
-"""The text of a body file made of a robot's model; what was guessed says so."""
+"""The text of a body file made from a robot's model; guesses are marked."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,15 +12,15 @@ from lumen.project.formats.yaml_document import SCHEMA_COMMENT
 GUESSED = "  # guessed"
 WIDTH, HEIGHT = 320, 240
 SPEED, TURN = 0.5, 1.0
-"""At which a base on wheels is said to drive [m/s, rad/s] until somebody looks it up."""
+"""The speeds of a base on wheels that are written as a guess [m/s, rad/s]."""
 GIVE = 0.1
-"""How far a joint is off [rad] when a servo that we add gives all its torque."""
+"""The distance from its goal [rad] at which an added servo gives its full torque."""
 CIRCLE = pi
-"""The range to both sides [rad] of a joint that turns for ever."""
+"""The range to both sides [rad] of a joint that turns endlessly."""
 
 
 def body_text(model: RobotModel, roles: GuessedRoles, joints: Sequence[ModelJoint], title: str, mjcf: str) -> str:
-    """The file; `joints` are those of the model that it names."""
+    """Return the text of the file; `joints` are the model's joints to include."""
     return SCHEMA_COMMENT.format(kind="body") + "".join(
         f"{line}\n" for line in _lines(model, roles, joints, title, mjcf)
     )
@@ -94,7 +94,7 @@ def _roles(model: RobotModel, roles: GuessedRoles) -> Iterator[str]:
 
 
 def _given(roles: GuessedRoles, prefix: str, names: Sequence[str]) -> dict[str, str]:
-    """The roles beneath a path, as they are written."""
+    """Return the roles below a path in their YAML form."""
     found = {name: path for name in names if (path := f"{prefix}.{name}") in roles.joints}
     return {
         name: f"{{joint: {roles.joints[path]}, reversed: true}}" if path in roles.reversed else roles.joints[path]
@@ -121,7 +121,7 @@ def _flow(words: Mapping[str, str]) -> str:
 
 
 def _quoted(text: str) -> str:
-    """A name as YAML takes it."""
+    """Return a name in its YAML form, quoted if necessary."""
     plain = re.sub(r"[-_. ]", "", text).isalnum() and text.isascii() and text[0].isalpha()
     if (
         plain

@@ -1,4 +1,4 @@
-"""Which joint of a model is what: guessed from names and from how axes lie."""
+"""Guesses the roles of a model's joints from names and the directions of axes."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -28,25 +28,31 @@ _AXES = {"yaw": 2, "pitch": 1, "roll": 0}
 
 @dataclass
 class GuessedRoles:
-    """Joints by the path of their role, `reversed` those whose angle grows the other way, and what else was found.
-
-    `limbs` says which part of the body moves a joint: head, arms or legs.
-    """
+    """The guessed roles of a robot."""
 
     joints: dict[str, str] = field(default_factory=dict)
+    """The joint of each role, by the role's path."""
     reversed: set[str] = field(default_factory=set)
+    """The roles whose joint's angle grows in the opposite direction."""
     wheels: dict[str, str] = field(default_factory=dict)
+    """The wheel joint of each side."""
     soles: dict[str, str] = field(default_factory=dict)
+    """The site below each foot."""
     eyes: list[str] = field(default_factory=list)
+    """The materials of the eyes."""
     camera: ModelCamera | None = None
     face: str = ""
+    """The link with the face."""
     torso: str = ""
+    """The torso's link."""
     biped: bool = False
+    """Whether the robot can walk on two legs."""
     limbs: dict[str, str] = field(default_factory=dict)
+    """The part of the body that moves each joint: head, arms or legs."""
 
 
 def guess_roles(model: RobotModel, findings: ConversionFindings) -> GuessedRoles:
-    """The roles that names and axes give away; what keeps a robot from walking, or arms from gesturing, is told."""
+    """Return the roles that names and axes reveal; report what prevents walking, or gestures of the arms."""
     return _Guesser(model, findings).guess()
 
 
@@ -56,6 +62,7 @@ class _Guesser:
         self.known = [(joint, *_place_of(joint.name)) for joint in model.joints]
 
     def guess(self) -> GuessedRoles:
+        """Return the guessed roles."""
         roles, model = self.roles, self.model
         for joint, side, limb, turn in self.known:
             if joint.wheel or (limb == "wheel" and joint.low is None):
@@ -87,7 +94,7 @@ class _Guesser:
         return roles
 
     def role(self, joint: ModelJoint, side: str, limb: str, turn: str) -> None:
-        """Give a joint its role, where nobody has it."""
+        """Give a joint its role, unless another joint has it."""
         turn = turn or _dominant(joint)
         path = {
             "head": f"head.{turn}",
@@ -99,13 +106,14 @@ class _Guesser:
         self.give(path, joint, joint.axis[_AXES[turn]] < -0.1)
 
     def give(self, path: str, joint: ModelJoint, backwards: bool) -> None:
+        """Set the joint of a role unless the role is taken."""
         if path and path not in self.roles.joints:
             self.roles.joints[path] = joint.name
             if backwards:
                 self.roles.reversed.add(path)
 
     def arm(self, side: str) -> None:
-        """The roles of an arm that points ahead at zero; one that hangs or lies aside is told instead."""
+        """Guess the roles of an arm that points ahead at zero; report an arm that does not."""
         joints = {
             k: [(j, t) for j, s, limb, t in self.known if s == side and limb == k]
             for k in ("shoulder", "elbow", "wrist")
@@ -134,7 +142,7 @@ class _Guesser:
                 self.give(f"arms.{side}.wrist-yaw", joint, joint.axis[0] < 0)
 
     def soles(self) -> dict[str, str]:
-        """A site beneath each foot, by its name."""
+        """Return the sites below both feet, found by name; empty unless both are there."""
         found: dict[str, str] = {}
         for site in self.model.sites:
             side, words = _side(_tokens(site)), site.lower()
@@ -144,7 +152,7 @@ class _Guesser:
         return found if len(found) == len(SIDES) else {}
 
     def walks(self) -> bool:
-        """Whether it has all that walking on feet needs; what is missing of two legs is told."""
+        """Return whether the robot has all that walking needs; report what two legs lack."""
         has = {side: [name for name in LEG_ROLES if f"legs.{side}.{name}" in self.roles.joints] for side in SIDES}
         if not all(has.values()):
             return False
@@ -162,7 +170,7 @@ class _Guesser:
 
 
 def _dominant(joint: ModelJoint) -> str:
-    """What a turn about the joint's axis is, all joints at zero."""
+    """Return the kind of turn about the joint's axis, with all joints at zero."""
     return max(_AXES, key=lambda turn: abs(joint.axis[_AXES[turn]]))
 
 
@@ -178,7 +186,7 @@ def _side(tokens: Sequence[str]) -> str:
 
 
 def _place_of(name: str) -> tuple[str, str, str]:
-    """Side, limb and turn that a joint's name says, each empty where it does not."""
+    """Return the side, limb and turn in a joint's name, each empty if absent."""
     tokens = _tokens(name)
     side = _side(tokens)
     if tokens and not side and tokens[0][0] in "lr" and _limb(tokens[0][1:]):
@@ -188,7 +196,7 @@ def _place_of(name: str) -> tuple[str, str, str]:
 
 
 def _limb(token: str) -> str:
-    """The limb that a word names, or begins with where that is long enough to be meant."""
+    """Return the limb whose word the token is, or begins with if the word is long enough; empty for none."""
     for limb, words in _WORDS.items():
         if token in words or any(len(word) > 3 and token.startswith(word) for word in words):
             return limb

@@ -1,4 +1,4 @@
-"""`lumen import` of a robot: URDF or MJCF as a body file of ours, and URDF as the MJCF that goes with it."""
+"""`lumen import` of a robot: URDF or MJCF as a body file, and URDF also as the MJCF that belongs to it."""
 
 import re
 from pathlib import Path
@@ -14,9 +14,9 @@ from lumen.project.formats.xml_elements import XmlElement, parse_xml
 def robot_body(
     path: Path, content: bytes, output: Path | None, title: str
 ) -> tuple[str, list[Diagnostic], dict[Path, bytes]]:
-    """The body file, what there is to say of it, and files that go beside it.
+    """Return the body file's text, the findings, and further files by path.
 
-    Raises ForeignFileError for what is no robot. A URDF becomes MJCF where `output` says where, and MuJoCo is there.
+    A URDF becomes MJCF if there is an `output` and MuJoCo is installed. Raises ForeignFileError if it is not a robot.
     """
     urdf = parse_xml(str(path), content).tag == "robot"
     mjcf = path.name if not urdf and path.suffix == ".xml" else f"{title}.xml"
@@ -35,7 +35,7 @@ def robot_body(
 
 
 def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[dict[Path, bytes], list[Diagnostic]]:
-    """The MJCF of a URDF and its meshes, and what was lost on the way."""
+    """Return the MJCF of a URDF with its meshes, and findings about what was lost."""
     here = Place(str(path), 1, 1)
     try:
         from lumen.features.formats_robots.urdf_conversion import urdf_as_mjcf
@@ -55,7 +55,7 @@ def _converted(path: Path, content: bytes, output: Path, title: str) -> tuple[di
 
 
 def _refused(path: Path) -> list[Diagnostic]:
-    """Return MuJoCo's error for an MJCF, which is not changed; nothing if MuJoCo is not installed."""
+    """Return MuJoCo's error about an MJCF; nothing if it is valid or MuJoCo is not installed."""
     try:
         from lumen.features.formats_robots.urdf_conversion import mjcf_fault
     except MissingExtraError:

@@ -1,4 +1,4 @@
-"""A robot of MJCF, as far as roles go. MuJoCo is not asked: the file is read where no simulator is installed, too."""
+"""Reads a robot's MJCF as far as roles need. It does not use MuJoCo, which need not be installed."""
 
 from math import degrees, pi, radians
 
@@ -24,7 +24,7 @@ _MAIN = "main"
 
 
 class Defaults:
-    """The classes of a model: attributes of elements by class and tag, those of outer classes within."""
+    """The default classes of a model: attributes of elements by class and tag, with those of enclosing classes."""
 
     def __init__(self, root: XmlElement) -> None:
         self._classes: dict[str, dict[str, dict[str, str]]] = {_MAIN: {}}
@@ -44,11 +44,11 @@ class Defaults:
             self._read(inner, known, name)
 
     def has(self, name: str) -> bool:
-        """Whether the model has a class of that name; no name is the main one."""
+        """Return whether the model has a class of that name; no name means the main class."""
         return not name or name in self._classes
 
     def whole(self, element: XmlElement, childclass: str = "") -> XmlElement:
-        """The element with what its class, else that of the body around it, else the main one says."""
+        """Return the element with the defaults of its class, else of the enclosing body's, else of the main class."""
         name = element.get("class") or childclass or _MAIN
         known = self._classes.get(name, self._classes[_MAIN])
         given = dict(known.get(element.tag, {}))
@@ -59,9 +59,9 @@ class Defaults:
 
 _ORIGIN = (0.0, 0.0, 0.0)
 SAME_ANGLE = 1e-3
-"""Files round angles [rad]."""
+"""The tolerance of rounded angles [rad]."""
 SAME_TORQUE = 1e-3
-"""The part by which the torques of two directions may differ."""
+"""The relative difference of the torques in two directions that is ignored."""
 _FOVY = 45.0
 _EQUAL = (0.0, 1.0, 0.0, 0.0, 0.0)
 """The coefficients of a joint that equals another one."""
@@ -70,7 +70,7 @@ _SENSORS = ("gyro", "accelerometer")
 
 
 def mjcf_model(root: XmlElement, file: str, findings: ConversionFindings) -> RobotModel:
-    """The robot; joints that a body file has no word for, and parts that stand in other files, are told."""
+    """Return the robot; report joints that a body file can't have, and parts in other files."""
     return _MjcfReader(root, file, findings).read()
 
 
@@ -104,7 +104,7 @@ class _MjcfReader:
             self.findings.lost(element.place, message, f"write one of {', '.join(words)}")
 
     def classed(self, element: XmlElement, childclass: str = "") -> XmlElement:
-        """The element with the defaults of its class; a missing class is listed."""
+        """Return the element with the defaults of its class; report a missing class."""
         for name in (element.get("class"), childclass):
             if not self.defaults.has(name):
                 hint = "correct the name, or add the class to `<default>`; MuJoCo rejects the model as it is"
@@ -112,6 +112,7 @@ class _MjcfReader:
         return self.defaults.whole(element, childclass)
 
     def read(self) -> RobotModel:
+        """Return the robot."""
         tell_losses(self.root, KNOWN, self.findings, lambda element: element.tag != "equality")
         for element in self.root.walk():
             if element.tag in _PLACED_ELSEWHERE:
@@ -136,7 +137,7 @@ class _MjcfReader:
         )
 
     def equality(self, pair: XmlElement) -> None:
-        """A joint that equals another; in another way it follows without us."""
+        """Note a joint that equals another; report one that follows in another way."""
         for name, hint in KNOWN["<equality> <joint>"].losses(pair.attributes):
             self.findings.lost(pair.place, f"`{name[:60]}` of `<joint>` in `<equality>` is left out", hint)
         follower, leader = pair.get("joint1"), pair.get("joint2")
@@ -150,7 +151,7 @@ class _MjcfReader:
             self.findings.changed(pair.place, *follows(follower, leader))
 
     def body(self, body: XmlElement, outer: NestedFrame, above: str, childclass: str) -> None:
-        """What hangs on a link, and what hangs on that."""
+        """Read the content of a body, and of the bodies in it."""
         childclass = body.get("childclass") or childclass
         frame = self.frame(body).within(outer)
         name = body.get("name") or above
@@ -170,10 +171,11 @@ class _MjcfReader:
                     self.body(element, frame, name, childclass)
 
     def frame(self, element: XmlElement) -> NestedFrame:
-        """Where an element is in the one around it."""
+        """Return an element's frame in its parent's."""
         return NestedFrame(self.numbers.vector(element, "pos", _ORIGIN), self.turned(element))
 
     def turned(self, element: XmlElement) -> Quaternion:
+        """Return an element's rotation, in any of MJCF's forms."""
         numbers = self.numbers
         if q := numbers.all(element, "quat", 4):
             return unit((q[0], q[1], q[2], q[3]))
@@ -188,6 +190,7 @@ class _MjcfReader:
         return NestedFrame().turned
 
     def joint(self, joint: XmlElement, frame: NestedFrame, link: str) -> None:
+        """Add a hinge joint; report others."""
         name, kind = joint.get("name"), joint.get("type", "hinge")
         if kind == "free":
             self.free(joint)
@@ -211,11 +214,12 @@ class _MjcfReader:
             )  # fmt: skip
 
     def free(self, joint: XmlElement) -> None:
+        """Report a free joint."""
         hint = "delete it: Lumen adds one when it places the robot in a hall"
         self.findings.lost(joint.place, "the model has a free joint to the world", hint)
 
     def limits(self, joint: XmlElement) -> tuple[float | None, float | None]:
-        """The joint's range [rad], or nothing where it turns for ever."""
+        """Return the joint's range [rad], None twice if it turns endlessly."""
         span = self.numbers.all(joint, "range", 2)
         limited = joint.get("limited", "auto")
         self.one_of(joint, limited, "limited", ("true", "false", "auto"))
@@ -229,7 +233,7 @@ class _MjcfReader:
         return span[0] * self.angle, span[1] * self.angle
 
     def held(self, joint: XmlElement, motor: XmlElement | None, low: float | None, high: float | None) -> None:
-        """Report a servo that holds its joint within less than the joint's range; its goals are in [rad]."""
+        """Report a servo that holds its joint in less than the joint's range; its goals are in [rad]."""
         if motor is None or motor.tag != "position":
             return
         span, gear = self.numbers.all(motor, "ctrlrange", 2), self.gear(motor)
@@ -247,11 +251,11 @@ class _MjcfReader:
             self.findings.changed(motor.place, message, "give the joint this `range` in the body")
 
     def gear(self, motor: XmlElement) -> float:
-        """The turns of the motor for each turn of the joint."""
+        """Return the turns of the motor for each turn of the joint."""
         return float(word) if _is_number(word := (motor.get("gear", "1").split() or ["1"])[0]) else 1.0
 
     def effort(self, joint: XmlElement, motor: XmlElement | None) -> float | None:
-        """The greatest torque [N m] that model and motor let through; None where neither says one."""
+        """Return the greatest torque [N m] by model and motor; None if neither has one."""
         most = []
         if span := self.numbers.all(joint, "actuatorfrcrange", 2):
             most.append(max(span))
@@ -266,7 +270,7 @@ class _MjcfReader:
         return min((torque for torque in most if torque > 0), default=None)
 
     def uneven(self, element: XmlElement, spans: list[tuple[float, ...]]) -> None:
-        """Report torques that differ by the direction."""
+        """Report torques that differ between the directions."""
         for low, high in spans:
             if abs(low + high) > SAME_TORQUE * max(abs(low), abs(high)):
                 message = (
@@ -275,6 +279,7 @@ class _MjcfReader:
                 self.findings.changed(element.place, message)
 
     def camera(self, camera: XmlElement, link: str) -> None:
+        """Add a camera with a valid angle of view."""
         if not camera.get("name"):
             return
         given = self.numbers.one(camera, "fovy")

@@ -8,13 +8,13 @@ from lumen.project.formats.xml_elements import XmlElement
 
 
 class Numbers:
-    """Reads attributes; what is no number is reported with its place, and then nothing is said there."""
+    """Reads attributes; invalid numbers are reported with their place and treated as missing."""
 
     def __init__(self, findings: ConversionFindings) -> None:
         self.findings = findings
 
     def all(self, element: XmlElement, name: str, count: int) -> tuple[float, ...] | None:
-        """That many numbers; None where the attribute is missing or holds something else."""
+        """Return `count` numbers; None if the attribute is missing or invalid."""
         text = element.get(name)
         if not text:
             return None
@@ -30,11 +30,11 @@ class Numbers:
         return numbers
 
     def one(self, element: XmlElement, name: str) -> float | None:
-        """One number, or None."""
+        """Return one number, None if it is missing or invalid."""
         found = self.all(element, name, 1)
         return found[0] if found else None
 
     def vector(self, element: XmlElement, name: str, otherwise: Vector) -> Vector:
-        """Three numbers."""
+        """Return three numbers, or `otherwise`."""
         found = self.all(element, name, 3)
         return (found[0], found[1], found[2]) if found else otherwise

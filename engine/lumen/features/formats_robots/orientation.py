@@ -1,4 +1,4 @@
-"""Frames within frames: places and quaternions (w, x, y, z), as URDF and MJCF write them."""
+"""Nested frames: positions and quaternions (w, x, y, z), as in URDF and MJCF."""
 
 from dataclasses import dataclass
 from math import cos, hypot, sin
@@ -12,20 +12,20 @@ UPRIGHT: Quaternion = (1.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class NestedFrame:
-    """Where something is in the frame around it: its place [m] and how it is turned."""
+    """The position [m] and rotation of a frame in its parent's."""
 
     place: Vector = (0.0, 0.0, 0.0)
     turned: Quaternion = UPRIGHT
 
     def within(self, outer: "NestedFrame") -> "NestedFrame":
-        """This frame, seen from where `outer` is seen."""
+        """Return this frame in the frame that `outer` is given in."""
         x, y, z = rotated(outer.turned, self.place)
         a, b, c = outer.place
         return NestedFrame((a + x, b + y, c + z), product(outer.turned, self.turned))
 
 
 def product(a: Quaternion, b: Quaternion) -> Quaternion:
-    """First turned by `b`, then by `a`."""
+    """Return the rotation by `b`, then by `a`."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
     return (
@@ -37,14 +37,14 @@ def product(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def rotated(q: Quaternion, v: Vector) -> Vector:
-    """The vector, turned."""
+    """Return the rotated vector."""
     w, x, y, z = q
     _, a, b, c = product(product(q, (0.0, *v)), (w, -x, -y, -z))
     return a, b, c
 
 
 def turn(axis: Vector, angle: float) -> Quaternion:
-    """About an axis by that angle [rad]; upright where the axis has no length."""
+    """Return the rotation about an axis by that angle [rad]; the identity if the axis has no length."""
     length = hypot(*axis)
     if not length:
         return UPRIGHT
@@ -53,7 +53,9 @@ def turn(axis: Vector, angle: float) -> Quaternion:
 
 
 def euler(angles: Vector, sequence: str = "xyz") -> Quaternion:
-    """Three turns [rad] about the axes of `sequence`: small letters turn along, capitals stay."""
+    """Return three rotations [rad] about the axes of `sequence`: small letters are rotated axes, capitals fixed
+    ones.
+    """
     q = UPRIGHT
     for letter, angle in zip(sequence, angles, strict=False):
         step = turn(AXES.get(letter.lower(), AXES["x"]), angle)
@@ -62,7 +64,7 @@ def euler(angles: Vector, sequence: str = "xyz") -> Quaternion:
 
 
 def between(start: Vector, end: Vector) -> Quaternion:
-    """The smallest turn from one direction to another; half a turn about x where they are opposite."""
+    """Return the smallest rotation from one direction to another; half a turn about x if they are opposite."""
     lengths = hypot(*start) * hypot(*end)
     if not lengths:
         return UPRIGHT
@@ -74,13 +76,13 @@ def between(start: Vector, end: Vector) -> Quaternion:
 
 
 def of_axes(x: Vector, y: Vector) -> Quaternion:
-    """The frame whose x and y axes these are."""
+    """Return the rotation to the frame with these x and y axes."""
     first = between(AXES["x"], x)
     up = rotated(first, AXES["y"])
     return product(between(up, y), first)
 
 
 def unit(q: Quaternion) -> Quaternion:
-    """The quaternion with length one; upright where it has none."""
+    """Return the quaternion scaled to length one; the identity if its length is zero."""
     length = hypot(*q)
     return (q[0] / length, q[1] / length, q[2] / length, q[3] / length) if length else UPRIGHT

@@ -1,4 +1,4 @@
-"""What a robot's model says of its parts, whichever format it stands in."""
+"""The parts of a robot's model, in any format."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -9,57 +9,67 @@ from lumen.language.diagnostics import Place
 
 @dataclass(frozen=True, slots=True)
 class ModelJoint:
-    """A hinge: where it stands and its axis in the robot's frame, all joints at zero [m]; limits, speed, torque in SI.
-
-    `low` and `high` are None for one that turns for ever, `speed` and `effort` where nothing is said. `link` is what it
-    moves. `follows` is a joint that this one equals (another's motor moves both), `servo` whether a position servo of
-    its name drives it, `wheel` whether a velocity motor does.
-    """
+    """A hinge joint."""
 
     name: str
     link: str
+    """The link that it moves."""
     place: Place
     position: Vector
+    """Its position in the robot's frame, with all joints at zero [m]."""
     axis: Vector
+    """Its axis in the robot's frame, with all joints at zero."""
     low: float | None = None
+    """The lower limit [rad], None for a joint that turns endlessly."""
     high: float | None = None
+    """The upper limit [rad], None for a joint that turns endlessly."""
     speed: float | None = None
+    """The greatest speed [rad/s], None if unknown."""
     effort: float | None = None
+    """The greatest torque [N m], None if unknown."""
     follows: str = ""
+    """The joint whose angle it equals, since one motor moves both; empty for none."""
     servo: bool = False
+    """Whether a position servo of its name drives it."""
     wheel: bool = False
+    """Whether a velocity motor drives it."""
 
 
 @dataclass(frozen=True, slots=True)
 class ModelCamera:
-    """A camera: its link, its place there [m], where it looks in the link's axes, vertical angle of view [rad]."""
+    """A camera of a model."""
 
     name: str
     link: str
     position: Vector
+    """Its position in the link's frame [m]."""
     ahead: Vector
+    """Its direction in the link's axes."""
     fovy: float
+    """The vertical angle of view [rad]."""
 
 
 @dataclass(frozen=True)
 class RobotModel:
-    """A robot: hinges in the file's order, links with the link around each, and names of what else roles may ask for.
-
-    `sites` maps a site to its link; `sensors` are the first of each kind; `materials` are names.
-    """
+    """A robot's model."""
 
     name: str
     file: str
     root: Place
     joints: Sequence[ModelJoint]
+    """The hinges, in the file's order."""
     links: Mapping[str, str]
+    """The parent of each link, empty for the root."""
     cameras: Sequence[ModelCamera] = ()
     sites: Mapping[str, str] = field(default_factory=dict)
+    """The link of each site."""
     sensors: Mapping[str, str] = field(default_factory=dict)
+    """The first sensor of each kind."""
     materials: Sequence[str] = ()
+    """The names of materials."""
 
     def carries(self, link: str, other: str) -> bool:
-        """Whether `other` is that link or hangs on it."""
+        """Return whether `other` is that link or a descendant of it."""
         seen = set[str]()
         while other and other not in seen:
             if other == link:
@@ -70,6 +80,6 @@ class RobotModel:
 
 
 def follows(follower: str, leader: str) -> tuple[str, str]:
-    """The message and the hint for a joint that follows another one with a factor or an offset."""
+    """Return the message and the hint for a joint that follows another one with a factor or an offset."""
     message = f"`{follower}` follows `{leader}` with a factor or an offset: only the model moves it"
     return message, "in motions, use the joint that it follows"

@@ -1,4 +1,4 @@
-"""A robot's model as a body file."""
+"""Converts a robot's model to a body file."""
 
 import re
 from collections.abc import Sequence
@@ -17,11 +17,11 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 _BEFORE = re.compile(rb"<\?.*?\?>|<!--.*?-->", re.DOTALL)
 _ROOT = re.compile(rb"<(robot|mujoco)[\s>/]")
 MAX_JOINTS = 1_000
-"""Of a robot; a centipede has fewer."""
+"""The most joints of a robot; even a centipede has fewer."""
 
 
 def begins_robot(content: bytes) -> bool:
-    """Whether XML is a robot's model, by its first element."""
+    """Return whether XML is a robot's model, by its first element."""
     start = content.removeprefix(b"\xef\xbb\xbf")[:100_000].lstrip()
     while before := _BEFORE.match(start):
         start = start[before.end() :].lstrip()
@@ -29,9 +29,9 @@ def begins_robot(content: bytes) -> bool:
 
 
 def read_robot(file: str, content: bytes, title: str, mjcf: str) -> tuple[str, list[Diagnostic]]:
-    """The text of the body file, and what is missing, lost or guessed; `mjcf` is the model's name beside that file.
+    """Return the text of the body file, and findings; `mjcf` is the model's file name in the same folder.
 
-    Raises ForeignFileError for what is no such model, or has no joint that a body could have.
+    Raises ForeignFileError if it is not a robot's model, or has no usable joint.
     """
     root = parse_xml(file, content)
     reader = _READERS.get(root.tag)
@@ -62,7 +62,7 @@ def read_robot(file: str, content: bytes, title: str, mjcf: str) -> tuple[str, l
 
 
 def _named(joints: Sequence[ModelJoint], findings: ConversionFindings) -> list[ModelJoint]:
-    """The joints whose names a body file can say, each once."""
+    """Return the joints whose names are valid in a body file, without duplicates; report the others."""
     found: dict[str, ModelJoint] = {}
     for joint in joints:
         if not _NAME.fullmatch(joint.name):
@@ -76,7 +76,7 @@ def _named(joints: Sequence[ModelJoint], findings: ConversionFindings) -> list[M
 
 
 def _missing(model: RobotModel, joints: Sequence[ModelJoint], findings: ConversionFindings) -> None:
-    """What a body needs that the model does not say."""
+    """Report what a body needs but the model lacks."""
     for joint in joints:
         if joint.low is None:
             hint = f"write its `range` into the body file, which now has [-{CIRCLE:.4g}, {CIRCLE:.4g}]"

@@ -1,4 +1,4 @@
-"""A robot of URDF (wiki.ros.org/urdf/XML): its joints. Transmissions and simulators' tags say nothing here."""
+"""Reads a robot's URDF (wiki.ros.org/urdf/XML): its joints. Transmissions and tags of simulators are ignored."""
 
 from lumen.features.formats_robots.numbers import Numbers
 from lumen.features.formats_robots.orientation import AXES, NestedFrame, Quaternion, euler, rotated
@@ -62,7 +62,7 @@ _ORIGIN = (0.0, 0.0, 0.0)
 
 
 def urdf_model(root: XmlElement, file: str, findings: ConversionFindings) -> RobotModel:
-    """The robot; what its joints say that a body file has no word for is told."""
+    """Return the robot; report properties of joints that a body file can't have."""
     return _UrdfReader(root, file, findings).read()
 
 
@@ -75,6 +75,7 @@ class _UrdfReader:
         self.driven: dict[str, XmlElement] = {}
 
     def read(self) -> RobotModel:
+        """Return the robot."""
         tell_losses(self.root, KNOWN, self.findings)
         joints = [joint for joint in self.root.of("joint") if self.known(joint)]
         frames: dict[str, NestedFrame] = {}
@@ -91,7 +92,9 @@ class _UrdfReader:
         return RobotModel(self.root.get("name"), self.file, self.root.place, found, self.links)
 
     def known(self, joint: XmlElement) -> bool:
-        """Whether a joint stands between two links of the file, each of which hangs on one alone."""
+        """Return whether a joint connects two links of the file, and gives the child its only parent; report it
+        otherwise.
+        """
         name, ends = joint.get("name"), []
         for end in ("parent", "child"):
             link = next((element.get("link") for element in joint.of(end)), "")
@@ -109,13 +112,13 @@ class _UrdfReader:
         return True
 
     def hangs(self, link: str, on: str) -> bool:
-        """Whether a link hangs on another already, or is it."""
+        """Return whether a link is another one or a descendant of it."""
         while link and link != on:
             link = self.links.get(link, "")
         return link == on
 
     def frame(self, joint: XmlElement, frames: dict[str, NestedFrame]) -> NestedFrame:
-        """Where the joint's link is in the robot's frame, all joints at zero."""
+        """Return the frame of the joint's link in the robot's, with all joints at zero."""
         chain: list[XmlElement] = []
         link = next(joint.of("child")).get("link")
         while link in self.above and link not in frames:
@@ -131,6 +134,7 @@ class _UrdfReader:
         return frame
 
     def hinge(self, joint: XmlElement, frame: NestedFrame) -> ModelJoint | None:
+        """Return a turning joint, None for a fixed one; report others."""
         kind, name = joint.get("type"), joint.get("name")
         if kind == "fixed":
             return None
@@ -156,7 +160,9 @@ class _UrdfReader:
         )  # fmt: skip
 
     def limits(self, limit: XmlElement | None) -> tuple[float | None, float | None, float | None, float | None]:
-        """Lowest and highest angle, speed, torque; speed and torque above zero, or None."""
+        """Return lowest and highest angle, speed and torque; None for those that are missing or, except angles, not
+        positive.
+        """
         if limit is None:
             return None, None, None, None
         low, high, speed, effort = (self.numbers.one(limit, key) for key in ("lower", "upper", "velocity", "effort"))
@@ -172,7 +178,7 @@ class _UrdfReader:
         return low, high, speed if speed and speed > 0 else None, effort if effort and effort > 0 else None
 
     def mimic(self, joint: XmlElement) -> tuple[str, bool]:
-        """The joint that this one follows, and whether as its equal."""
+        """Return the joint that this one follows, and whether with the same angle."""
         mimic = next(joint.of("mimic"), None)
         if mimic is None:
             return "", True

@@ -1,4 +1,4 @@
-"""A robot of URDF as MJCF: MuJoCo's own compiler reads it, after what it could not read was taken out."""
+"""Converts a robot's URDF to MJCF with MuJoCo's own compiler, after removing what it can't read."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -14,33 +14,35 @@ demand("simulation", "MuJoCo's model of an imported robot", "mujoco")
 import mujoco  # noqa: E402  if it is installed
 
 READ = (".stl", ".obj", ".msh")
-"""Endings of meshes that MuJoCo reads."""
+"""The endings of meshes that MuJoCo reads."""
 
 MAX_MESH_BYTES = 50_000_000
-"""Of one mesh: larger ones are left out."""
+"""The largest mesh [bytes]; larger ones are left out."""
 
 _COMPILER = {
     "strippath": "true", "discardvisual": "false", "fusestatic": "false", "balanceinertia": "true",
     "boundmass": "0.001", "boundinertia": "0.0000001",
 }  # fmt: skip
 _SEEN, _TOUCHING = 2, 3
-"""Groups of geoms, as in our own models."""
+"""The groups of geoms, as in Lumen's own models."""
 
 
 @dataclass(frozen=True)
 class ConvertedRobot:
-    """The MJCF, the meshes that it names by their new names, and why others are lost, by their number in the URDF."""
+    """A converted robot."""
 
     mjcf: str
     meshes: Mapping[str, bytes]
+    """The meshes that the MJCF refers to, by their new names."""
     lost: Mapping[int, str]
+    """Why other meshes are lost, by their number in the URDF."""
 
 
 def urdf_as_mjcf(content: bytes, folder: Path, name: str) -> ConvertedRobot:
-    """The robot of a URDF that was found to be XML without entities; its meshes are sought from `folder`.
+    """Convert a URDF that is known to be XML without entities; meshes are searched from `folder`.
 
-    A mesh that is not there, or that MuJoCo can't read, is left out with the shape that it is. Raises RobotModelError
-    where MuJoCo can't build what is left.
+    A mesh that is missing, or that MuJoCo can't read, is left out with its shape. Raises RobotModelError if MuJoCo
+    can't build the rest.
     """
     root = ElementTree.fromstring(content)
     meshes, lost = _take_meshes(root, folder)
@@ -60,7 +62,7 @@ def urdf_as_mjcf(content: bytes, folder: Path, name: str) -> ConvertedRobot:
 
 
 def mjcf_fault(path: Path) -> str:
-    """The reason why MuJoCo can't build the robot of an MJCF file; empty if it can."""
+    """Return the reason why MuJoCo can't build the robot of an MJCF file; empty if it can."""
     try:
         mujoco.MjSpec.from_file(str(path)).compile()
     except (ValueError, RuntimeError, mujoco.FatalError) as error:
@@ -69,7 +71,7 @@ def mjcf_fault(path: Path) -> str:
 
 
 def _sort_geoms(spec: mujoco.MjSpec) -> None:
-    """Let shapes that are seen and shapes that touch be in the groups of ours; what stands in a hall stops these."""
+    """Put visible and colliding shapes into Lumen's groups of geoms, and let colliding ones touch things in a hall."""
     for body in spec.bodies:
         seen = [geom for geom in body.geoms if not (geom.contype or geom.conaffinity)]
         for geom in body.geoms:
@@ -79,7 +81,7 @@ def _sort_geoms(spec: mujoco.MjSpec) -> None:
 
 
 def _take_meshes(root: ElementTree.Element, folder: Path) -> tuple[dict[str, bytes], dict[int, str]]:
-    """Give meshes names of their own, and take out the shapes of those that can't be had."""
+    """Give meshes new names, and remove the shapes of unavailable ones."""
     meshes, lost, names = dict[str, bytes](), dict[int, str](), dict[Path, str]()
     numbers = {mesh: number for number, mesh in enumerate(root.iter("mesh"))}
     for link in list(root.iter("link")):
@@ -99,7 +101,7 @@ def _take_meshes(root: ElementTree.Element, folder: Path) -> tuple[dict[str, byt
 
 
 def _found(filename: str, folder: Path) -> tuple[Path | None, str]:
-    """The mesh that a URDF names, or why it can't be had."""
+    """Return the path of a mesh in a URDF, or None and the reason."""
     inner = re.sub(r"^(package|file|model)://", "", filename).lstrip("/")
     ending = Path(inner).suffix.lower()
     if not inner or "\0" in inner:
@@ -116,7 +118,9 @@ def _found(filename: str, folder: Path) -> tuple[Path | None, str]:
 
 
 def _candidates(inner: str, folder: Path) -> Iterator[Path]:
-    """Where a mesh may lie: as it is named, without its package, beside the URDF, each from every folder above."""
+    """Yield possible paths of a mesh: as written, without its package, and beside the URDF, from the folders above as
+    well.
+    """
     here = folder.resolve()
     parts = [part for part in Path(inner).parts if part != ".."]
     for above in (here, *list(here.parents)[:4]):

@@ -1,4 +1,4 @@
-"""Bodies as messages of OSC: fields as arguments, each of the type that its schema declares (OSC 1.0)."""
+"""Bodies as OSC messages: fields as arguments of the types in their schema (OSC 1.0)."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -12,7 +12,7 @@ from lumen.project.message_fields import FieldKind, SchemaField
 
 
 def message_of(address: str, body: Any, fields: Sequence[SchemaField]) -> bytes:
-    """The body's fields as a message to that address. Raises ModuleError for what can't be carried so."""
+    """Return the body's fields as a message to that address. Raises ModuleError if they can't be carried."""
     builder = OscMessageBuilder(address)
     for field in fields:
         if not isinstance(body, Mapping) or field.name not in body:
@@ -26,7 +26,7 @@ def message_of(address: str, body: Any, fields: Sequence[SchemaField]) -> bytes:
 
 
 def messages_of(data: bytes) -> list[tuple[str, list[Any]]]:
-    """The messages in a datagram, those of a bundle too; raises ModuleError for what is no OSC."""
+    """Return the messages in a datagram, including those of bundles. Raises ModuleError if it is not OSC."""
     try:
         return [(timed.message.address, list(timed.message.params)) for timed in OscPacket(data).messages]
     except (ParseError, RecursionError, ValueError, IndexError, OverflowError) as error:
@@ -34,7 +34,7 @@ def messages_of(data: bytes) -> list[tuple[str, list[Any]]]:
 
 
 def body_of_arguments(arguments: Sequence[Any], fields: Sequence[SchemaField]) -> dict[str, Any]:
-    """The arguments under the names of the fields; raises ModuleError where number or types differ."""
+    """Return the arguments by the names of the fields. Raises ModuleError if their number or types differ."""
     if len(arguments) != len(fields):
         names = ", ".join(field.name for field in fields) or "none"
         raise ModuleError(f"arguments in the message: {len(arguments)}; fields of the route: {len(fields)} ({names})")
@@ -59,7 +59,7 @@ def _argument(field: SchemaField, value: Any) -> tuple[str, Any]:
 
 
 def _value(field: SchemaField, value: Any) -> Any:
-    """An argument as the field has it: desks send whole numbers as floats, and 1 and 0 for yes and no."""
+    """Return an argument in the field's type: desks send integers as floats, and booleans as 1 and 0."""
     number = is_finite_number(value)
     match field.kind:
         case FieldKind.NUMBER if number:

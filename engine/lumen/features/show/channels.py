@@ -8,16 +8,18 @@ from lumen.project.message_fields import SchemaField
 
 CHANNELS = 512
 PORT = 5568
-"""Of sACN (E1.31, 9.2)."""
+"""The port of sACN (E1.31, 9.2)."""
 PRIORITY = 100
-"""The usual one (E1.31, 6.2.3): of several sources a receiver takes the greatest."""
+"""The usual priority (E1.31, 6.2.3): of several sources, a receiver uses the highest."""
 FULL = 255
 _LAYOUT = struct.Struct(">HH12sHI16sHI64sBHBBHHBBHHH")
 _TERMINATED = 0x40
 
 
 def channel_level(value: Any, field: SchemaField) -> int:
-    """From 0 to 255: where in the field's range the value is; yes is 255. Raises ModuleError for what is no number."""
+    """Return the level from 0 to 255 of a value in the field's range; True is 255. Raises ModuleError if it is not a
+    number.
+    """
     if isinstance(value, bool):
         return FULL * value
     if not isinstance(value, int | float):
@@ -29,9 +31,9 @@ def channel_level(value: Any, field: SchemaField) -> int:
 def data_packet(
     levels: bytes, universe: int, sequence: int, *, source: str, component: bytes, terminated: bool = False
 ) -> bytes:
-    """A packet of 638 bytes with 512 levels; `component` are the 16 bytes of who sends, `sequence` goes from 0 to 255.
+    """Return a packet of 638 bytes with 512 levels; `component` is the sender's id of 16 bytes, `sequence` 0 to 255.
 
-    `terminated` says that no more come (E1.31, 6.2.6).
+    `terminated` announces the end of the stream (E1.31, 6.2.6).
     """
     head = _LAYOUT.pack(
         0x0010, 0, b"ASC-E1.17\0\0\0", _length(16), 4, component,
@@ -42,10 +44,10 @@ def data_packet(
 
 
 def multicast_group(universe: int) -> str:
-    """Where receivers of a universe listen (E1.31, 9.3.1)."""
+    """Return the multicast address of a universe (E1.31, 9.3.1)."""
     return f"239.255.{universe >> 8}.{universe & 0xFF}"
 
 
 def _length(offset: int) -> int:
-    """Flags and length of a layer that begins at that byte and ends with the packet."""
+    """Return the flags and length of a layer that begins at that byte and ends with the packet."""
     return 0x7000 | (_LAYOUT.size + 1 + CHANNELS - offset)

@@ -1,4 +1,4 @@
-"""A universe of DMX over sACN: the newest level of each channel, sent at each change and kept alive."""
+"""A DMX universe over sACN: the newest level of each channel, sent at each change and repeated."""
 
 import ipaddress
 import socket
@@ -15,17 +15,17 @@ from lumen.features.show.settings import DmxLink
 from lumen.project.message_fields import SchemaField
 
 KEEP_ALIVE = 0.8
-"""How often levels are sent that do not change [s]; E1.31 (6.6.2) wants 0.8 to 1.0."""
+"""The time between two packets with unchanged levels [s]; E1.31 (6.6.2) wants 0.8 to 1.0."""
 GOODBYES = 3
-"""Packets that say that no more come (E1.31, 6.2.6)."""
+"""The number of packets that announce the end (E1.31, 6.2.6)."""
 MULTICAST_REACH = 8
-"""Routers that multicast may pass."""
+"""The number of routers that multicast may pass."""
 
 
 class DmxUniverse:
-    """Sends one universe. Nothing is sent before the first message, so that beginning darkens no hall.
+    """Sends one universe. Nothing is sent before the first message, so that a start does not darken the hall.
 
-    A channel that no field has is 0, and one of a field that was not said yet; a field that a body lacks stays.
+    Channels without a field, and of fields without a value so far, are 0; a field that a body lacks keeps its level.
     """
 
     def __init__(
@@ -46,12 +46,14 @@ class DmxUniverse:
 
     @property
     def routes(self) -> Collection[str]:
+        """The routes that the universe carries."""
         return self._link.routes
 
     def begin(self) -> None:
-        """Nothing is there to be reached: DMX has no answers."""
+        """Do nothing: DMX has no answers, so there is no connection."""
 
     def send(self, route: str, body: Any) -> None:
+        """Send the levels of a body's fields. Raises ModuleError if a value is invalid."""
         if not isinstance(body, Mapping):
             raise ModuleError("the body has no fields")
         wanted = {
@@ -64,11 +66,13 @@ class DmxUniverse:
         self._transmit()
 
     def tick(self) -> None:
+        """Repeat the levels if they are due, and update the health."""
         if self._sent is not None and self._clock() - self._sent >= KEEP_ALIVE:
             self._transmit()
         self._health.tick()
 
     def close(self) -> None:
+        """Announce the end, and close the socket."""
         if self._sent is not None:
             for _ in range(GOODBYES):
                 self._transmit(terminated=True)

@@ -1,14 +1,14 @@
-"""Whether a device is there: that it is gone is said once, and that it is back once it stays."""
+"""Reports that a device is gone, and that it is back once it stays connected."""
 
 import time
 from collections.abc import Callable
 
 STEADY = 3.0
-"""How long a device has to be there until it is called back [s]: one that comes and goes is one trouble."""
+"""How long a device must be connected until it is reported as back [s]: so one that comes and goes is reported once."""
 
 
 class LinkHealth:
-    """Tells that `device` is gone, and why, and when it is back; `tell` says the same only once until `well`."""
+    """Reports that `device` is gone, with the reason, and that it is back; `tell` repeats nothing until `well`."""
 
     def __init__(
         self,
@@ -22,14 +22,17 @@ class LinkHealth:
         self._up_since: float | None = None
 
     def down(self, why: str) -> None:
+        """Report that the device is gone."""
         self._ill, self._up_since = True, None
         self._tell(f"{self.device} {why}")
 
     def up(self) -> None:
+        """Note that the device is connected."""
         if self._up_since is None:
             self._up_since = self._clock()
 
     def tick(self) -> None:
+        """Report that the device is back if it has been connected long enough."""
         if self._ill and self._up_since is not None and self._clock() - self._up_since >= STEADY:
             self._ill = False
             self._well()

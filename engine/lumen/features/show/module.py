@@ -1,9 +1,9 @@
-"""Show control: routes of the exhibition to lamps, screens and sound desks that speak MQTT, OSC or DMX, and back.
+"""Show control: routes of the exhibition to and from lamps, screens and sound desks that use MQTT, OSC or DMX.
 
-show_control.py   the module: what goes out and what comes in, limited and checked
-health.py         whether a device is there, said once
-mqtt.py           a broker of MQTT          payloads.py   bodies as its payloads
-osc.py            a device that takes OSC   arguments.py  bodies as its arguments
+show_control.py   the module: outgoing and incoming messages, limited and checked
+health.py         reports once that a device is gone, and that it is back
+mqtt.py           an MQTT broker            payloads.py   bodies as its payloads
+osc.py            an OSC device             arguments.py  bodies as its arguments
 dmx.py            a universe over sACN      channels.py   bodies as its channels, and the packet
 """
 

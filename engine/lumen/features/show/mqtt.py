@@ -1,4 +1,4 @@
-"""A broker of MQTT 3.1.1: routes as topics, by Eclipse Paho on a thread of its own."""
+"""An MQTT 3.1.1 broker: routes as topics, by Eclipse Paho on a thread of its own."""
 
 import os
 import secrets
@@ -22,7 +22,7 @@ from lumen.upkeep.threads import WatchedThread
 
 
 def payload_of(body: Any, field: SchemaField | None) -> bytes:
-    """The body as JSON, or its field as bare text. Raises ModuleError for what can't be carried so."""
+    """Return the body as JSON, or its field as plain text. Raises ModuleError if it can't be carried."""
     if field is None:
         return _json(body)
     if not isinstance(body, dict) or field.name not in body:
@@ -35,7 +35,7 @@ def payload_of(body: Any, field: SchemaField | None) -> bytes:
 
 
 def body_of_payload(payload: bytes, field: SchemaField | None) -> Any:
-    """What a payload says; raises ModuleError for what is no JSON, or no text."""
+    """Return the body of a payload. Raises ModuleError if it is neither valid JSON nor text, as the field requires."""
     if field and field.kind is FieldKind.STRING:
         try:
             return {field.name: payload.decode()}
@@ -58,21 +58,21 @@ def _json(value: Any) -> bytes:
 CREDENTIALS_VARIABLE = "LUMEN_MQTT_CREDENTIALS"
 """The environment variable that names a file with `NAME:PASSWORD`."""
 MAX_PAYLOAD = 65_536
-"""How long a payload that comes may be [bytes]."""
+"""The largest payload that is accepted [bytes]."""
 MAX_WAITING = 1_000
-"""Messages that wait for the broker's word that it has them."""
+"""The number of messages that may wait for the broker's acknowledgement."""
 FIRST_PAUSE, LONGEST_PAUSE = 1, 30
-"""How long after an attempt to connect the next one comes [s]: twice as long each time."""
+"""The first and the longest pause between two attempts to connect [s]; each is twice as long as the last."""
 KEEP_ALIVE = 15
-"""How often a broker that says nothing is asked whether it is there [s]."""
+"""The time without messages after which the broker is pinged [s]."""
 
 
 class MqttBroker:
-    """Publishes routes of `link`, and hands what comes on the topics of `incoming` to `deliver`.
+    """Publishes routes of `link`, and passes messages on the topics of `incoming` to `deliver`.
 
-    A `carried: telemetry` route is sent at most once (QoS 0), any other at least once (QoS 1). While the broker is away
-    nothing waits: a command that comes late is worse than none; only of a topic that it retains the newest is sent when
-    it is back.
+    A `carried: telemetry` route is sent at most once (QoS 0), any other at least once (QoS 1). While the broker is
+    away, nothing waits, since a late command is worse than none; only the newest message of each retained topic is sent
+    later.
     """
 
     def __init__(
@@ -96,12 +96,15 @@ class MqttBroker:
 
     @property
     def routes(self) -> Collection[str]:
+        """The routes that the broker carries."""
         return self._link.routes
 
     def begin(self) -> None:
+        """Start to connect."""
         self._thread.start()
 
     def send(self, route: str, body: Any) -> None:
+        """Publish a body. Raises ModuleError if the broker is away or the body can't be sent."""
         row, mapping = self._routes[route], self._link.routes[route]
         payload = payload_of(body, self._fields[route])
         if mapping.retain:
@@ -113,11 +116,13 @@ class MqttBroker:
         self._publish(mapping.topic, payload, row, retain=mapping.retain)
 
     def tick(self) -> None:
+        """Update the health of the connection."""
         if self._client.is_connected():
             self._health.up()
         self._health.tick()
 
     def close(self) -> None:
+        """Disconnect and end the thread."""
         self._closing = True
         self._client.disconnect()
         self._thread.join(5.0)

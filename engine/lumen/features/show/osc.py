@@ -1,4 +1,4 @@
-"""A device that takes Open Sound Control over UDP, and is heard on a port of ours where that is wanted."""
+"""A device that receives Open Sound Control over UDP, and may send it to a port of this computer."""
 
 import socket
 import time
@@ -16,18 +16,19 @@ from lumen.upkeep.drops import Drops
 from lumen.upkeep.threads import WatchedThread
 
 POLL = 0.5
-"""How soon a listener notices that it is to end [s]."""
+"""How soon a listener notices that it should end [s]."""
 RETRY = 5.0
-"""How often a port of ours that was taken, or an unknown name, is tried again [s]."""
+"""The time between two attempts with a port that was taken, or a name that was unknown [s]."""
 MAX_DATAGRAM = 65_535
-"""Of UDP [bytes]."""
+"""The largest UDP datagram [bytes]."""
 
 
 class OscDevice:
-    """Sends routes of `link` to the device, and hands what it sends to `deliver`; `incoming` names those routes.
+    """Sends routes of `link` to the device, and passes its messages to `deliver`; `incoming` are the names of those
+    routes.
 
-    What others than the device send is dropped and counted. Where its name is unknown, or the port is taken, that is
-    said, and tried again.
+    Messages from other senders are dropped and counted. An unknown name of the device, or a port that is taken, is
+    reported and tried again.
     """
 
     def __init__(
@@ -50,13 +51,16 @@ class OscDevice:
 
     @property
     def routes(self) -> Collection[str]:
+        """The routes that the device carries."""
         return self._link.routes
 
     def begin(self) -> None:
+        """Open the socket if possible."""
         with suppress(OSError):
             self._opened()
 
     def send(self, route: str, body: Any) -> None:
+        """Send a body on a route. Raises ModuleError if that fails."""
         message = message_of(self._link.routes[route].address, body, self._fields[route])
         try:
             self._opened().sendto(message, self._device)
@@ -65,22 +69,24 @@ class OscDevice:
             raise ModuleError("the device cannot be reached") from None
 
     def tick(self) -> None:
+        """Open a listening socket again if necessary, and update the device's health."""
         if self._socket is None and self._link.listen and self._clock() >= self._again:
             self.begin()
             self._again = self._clock() + RETRY
         self._health.tick()
 
     def close(self) -> None:
+        """Close the socket and end the thread."""
         self._closing = True
         if self._socket:
-            with suppress(OSError):  # a socket of UDP is woken by its end only where it is shut down first
+            with suppress(OSError):  # only a shutdown wakes a thread that waits on a UDP socket
                 self._socket.shutdown(socket.SHUT_RDWR)
             self._socket.close()
         if self._thread:
             self._thread.join(5.0)
 
     def _opened(self) -> socket.socket:
-        """The socket, made where there is none; raises OSError, and says why."""
+        """Return the socket, and open it if necessary. Raises OSError after reporting the reason."""
         if self._socket:
             return self._socket
         try:
@@ -114,7 +120,7 @@ class OscDevice:
             except OSError:
                 if self._closing:
                     return
-                continue  # what was sent before met nobody
+                continue  # an earlier message reached no receiver
             if sender[0] != self._device[0]:
                 self._drops.add(f"the port {self._link.listen} (OSC)", f"{sender[0]} is not {self._link.host}")
                 continue
@@ -136,7 +142,7 @@ class OscDevice:
 
 
 def _own_address(family: int, device: Any) -> str:
-    """The address of ours that leads to the device: nobody is listened to on another network."""
+    """Return the local address on the device's network, so that no other network is listened to."""
     with socket.socket(family, socket.SOCK_DGRAM) as probe:
         probe.connect(device)
         return str(probe.getsockname()[0])

@@ -1,4 +1,4 @@
-"""`modules: {show: …}` of lumen.yaml, from its data to `Show`."""
+"""The section `modules: {show: …}` of lumen.yaml, read into `Show`."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,7 +10,7 @@ from lumen.project.field_reader import read_fields
 
 
 def read_show(main: Mapping[str, Any], report: DocumentReport) -> Show:
-    """Return the devices, from the data of lumen.yaml; a link that was refused is left out."""
+    """Return the devices in the data of lumen.yaml; a link that was refused is left out."""
     data = main["modules"][SHOW]
     mqtt = data.get("mqtt", {})
     port = MQTT_TLS_PORT if mqtt.get("tls") else MQTT_PORT

@@ -1,4 +1,4 @@
-"""What goes to lamps, screens and sound desks, and comes from them: whether the ways can carry it."""
+"""Rules for show control: whether MQTT, OSC and DMX can carry the routes of `modules.show`."""
 
 from collections.abc import Iterator, Mapping
 
@@ -15,13 +15,13 @@ SHOW_DIRECTION = Code("show-direction", "routes", ERROR, "a device can't send on
 SHOW_FIELD = Code("show-field", "routes", ERROR, "a field of a message can't be sent to or from a device")
 
 MAX_TOPIC_BYTES = 65_535
-"""Of MQTT 3.1.1 (4.7.3)."""
+"""The longest topic of MQTT 3.1.1 (4.7.3)."""
 _OSC_RESERVED = " #*,?[]{}"
-"""What no address of a message may hold (OSC 1.0)."""
+"""Characters that an OSC address may not contain (OSC 1.0)."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what is wrong with each way to devices."""
+    """Report errors in the links to devices."""
     settings, report = draft.settings, draft.main
     if settings is None or report is None:
         return
@@ -35,12 +35,13 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Ways:
-    """The rules of each way; `draft` has settings."""
+    """The rules of each link; `draft` has settings."""
 
     def __init__(self, draft: ProjectDraft, report: DocumentReport) -> None:
         self.draft, self.report = draft, report
 
     def mqtt(self, link: MqttLink) -> None:
+        """Report errors in the topics and fields of MQTT."""
         path, taken = (*SHOW_PATH, "mqtt", "routes"), dict[str, str]()
         for name, row in link.routes.items():
             where = _value(self.report, (*path, name), "topic")
@@ -56,6 +57,7 @@ class _Ways:
                 self.field(route, field, where, kinds, "a plain-text message can be only a text, a number or a boolean")
 
     def osc(self, link: OscLink) -> None:
+        """Report errors in the addresses and arguments of OSC."""
         path, taken = (*SHOW_PATH, "osc", "routes"), dict[str, str]()
         for name, row in link.routes.items():
             where = _value(self.report, (*path, name), "address")
@@ -72,6 +74,7 @@ class _Ways:
             self.arguments(route, link.routes[name].fields, (*path, name))
 
     def dmx(self, link: DmxLink) -> None:
+        """Report errors in the channels of DMX."""
         path, taken = (*SHOW_PATH, "dmx", "routes"), dict[int, NodePath]()
         for name, channels in link.routes.items():
             for field, channel in channels.items():
@@ -97,13 +100,14 @@ class _Ways:
                     self.report(SHOW_FIELD, where, message, hint, key=True)
 
     def routes(self, path: NodePath, names: Mapping[str, object]) -> Iterator[tuple[str, Route]]:
-        """Those that lumen.yaml has; the others are reported."""
+        """Yield the routes that lumen.yaml has; report the others."""
         assert self.draft.settings
         for name in names:
             if known_route(self.draft, self.report, (*path, name), name, key=True):
                 yield name, self.draft.settings.routes[name]
 
     def may_come(self, route: Route, path: NodePath) -> bool:
+        """Return whether devices may send on the route, or it is an outgoing one; report it otherwise."""
         if route.direction is Direction.OUT or may_come_from_devices(route):
             return True
         message = f"`{route.name}` has one of Lumen's own keys ({route.key}), on which devices may not send"
@@ -112,12 +116,13 @@ class _Ways:
         return False
 
     def twice(self, taken: dict[str, str], place: str, name: str, path: NodePath) -> None:
+        """Report a topic or address that another route uses already."""
         if (other := taken.setdefault(place, name)) != name:
             message = f"`{other}` already uses `{place}`: the messages of the two routes would mix"
             self.report(SHOW_ADDRESS, path, message, "give each route its own topic or address")
 
     def arguments(self, route: Route, fields: tuple[str, ...] | None, path: NodePath) -> None:
-        """Each field that becomes an argument, those of the schema where none are named."""
+        """Check each field that becomes an argument; those of the schema if none are named."""
         known, kinds = self.fields(route), (FieldKind.STRING, FieldKind.NUMBER, FieldKind.INTEGER, FieldKind.BOOLEAN)
         can = "an argument can be only a text, a number or a boolean"
         if fields is None and not known:
@@ -139,7 +144,7 @@ class _Ways:
         *,
         key: bool = False,
     ) -> SchemaField | None:
-        """The field, where a body has it and it is of one of those kinds; else that is reported."""
+        """Return the field if the body has it and its kind is allowed; report it otherwise."""
         known = self.fields(route)
         if name not in known:
             if self.has_schema(route):
@@ -155,15 +160,16 @@ class _Ways:
         return known[name]
 
     def fields(self, route: Route) -> Mapping[str, SchemaField]:
+        """Return the fields of a route's bodies, by name."""
         return message_fields(self.draft.messages.get(route.schema))
 
     def has_schema(self, route: Route) -> bool:
-        """Whether what is missing in its schema is missing: not where the file has been refused."""
+        """Return whether the route's schema is usable, so that a missing field is an error of the route."""
         return not route.schema or route.schema in self.draft.messages
 
 
 def _value(report: DocumentReport, path: NodePath, name: str) -> NodePath:
-    """The place of a value that stands alone or under its name."""
+    """Return the path of a value that is written alone or under its name."""
     long = (*path, name)
     return long if long in report.document.spans else path
 

@@ -1,4 +1,4 @@
-"""Show control: which routes go to devices that speak MQTT, OSC or DMX, and which come from there."""
+"""Show control: the routes that go to devices with MQTT, OSC or DMX, and those that come from there."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,19 +12,20 @@ MQTT_PORT, MQTT_TLS_PORT = 1883, 8883
 
 @dataclass(frozen=True, slots=True)
 class TopicMapping:
-    """A route as a topic of MQTT: its whole body as JSON, or one `field` of it as bare text.
-
-    `retain`: the broker keeps the newest for whoever comes later, and what it kept counts here when we come.
-    """
+    """A route as an MQTT topic."""
 
     topic: str
     field: str = ""
+    """The field that is sent as plain text; empty for the whole body as JSON."""
     retain: bool = False
+    """Whether the broker keeps the newest message for later subscribers, and whether such a message is accepted from
+    it.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class AddressMapping:
-    """A route as an address of OSC, whose arguments are these `fields`; None for those of its schema, in that order."""
+    """A route as an OSC address, whose arguments are these `fields`; None for those of its schema, in that order."""
 
     address: str
     fields: tuple[str, ...] | None = None
@@ -32,7 +33,7 @@ class AddressMapping:
 
 @dataclass(frozen=True, slots=True)
 class MqttLink:
-    """A broker of MQTT, and the routes that it carries."""
+    """An MQTT broker, and the routes that it carries."""
 
     host: str
     port: int = MQTT_PORT
@@ -42,26 +43,29 @@ class MqttLink:
 
 @dataclass(frozen=True, slots=True)
 class OscLink:
-    """A device that takes OSC over UDP; what it sends is heard on our port `listen`, None for nowhere."""
+    """A device that receives OSC over UDP."""
 
     host: str
     port: int
     listen: int | None = None
+    """The local port for the device's messages, None for none."""
     routes: Mapping[str, AddressMapping] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class DmxLink:
-    """A universe of DMX over sACN, to one `host` or (empty) by multicast; each route's fields have channels."""
+    """A DMX universe over sACN."""
 
     universe: int
     host: str = ""
+    """The receiver's address, empty for multicast."""
     routes: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    """The channel of each field, by route."""
 
 
 @dataclass(frozen=True, slots=True)
 class Show:
-    """What `modules: {show: …}` says of the devices."""
+    """The devices in `modules: {show: …}`."""
 
     mqtt: MqttLink | None = None
     osc: OscLink | None = None
@@ -69,14 +73,16 @@ class Show:
 
     @property
     def routes(self) -> frozenset[str]:
-        """All routes that any of them carries."""
+        """All routes that any of the links carries."""
         return frozenset(name for link in (self.mqtt, self.osc, self.dmx) if link for name in link.routes)
 
 
 SHOW_PATH: NodePath = ("modules", "show")
-"""Where in lumen.yaml it stands."""
+"""The path of the settings in lumen.yaml."""
 
 
 def may_come_from_devices(route: Route) -> bool:
-    """Whether devices may send on it: it comes in, under a key of the exhibition's own: no lamp commands a robot."""
+    """Return whether devices may send on a route: only on incoming ones with a key outside of Lumen's own, so that no
+    device can command a robot.
+    """
     return route.direction is Direction.IN and route.key.split(".")[0] not in KEY_PREFIXES

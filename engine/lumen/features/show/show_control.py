@@ -1,4 +1,4 @@
-"""The module `show`: what goes out to devices, and what comes from them, limited, checked and counted."""
+"""The module `show`: sends messages to devices, and limits, checks and counts what they send."""
 
 import socket
 import threading
@@ -22,14 +22,14 @@ from lumen.upkeep.ratelimit import RateLimiter
 
 LACKING = "MQTT and OSC need two libraries: run `pip install 'lumen-robot[show]'`"
 TICK = 0.2
-"""How often the devices are looked after [s]."""
+"""The time between two checks of the devices [s]."""
 
 
 class ShowControl(Module):
-    """Carries routes to the devices of `modules.show`, and what they send to routes that may come from devices.
+    """Carries routes to the devices of `modules.show`, and their messages to routes that may come from devices.
 
-    A device that is not there, or a message that can't be carried, costs a line and nothing else. Whatever changes in
-    lumen.yaml counts when that is saved: connections are made anew.
+    A device that is missing, or a message that can't be carried, is only reported. A change of the settings opens new
+    connections.
     """
 
     name = SHOW
@@ -43,14 +43,17 @@ class ShowControl(Module):
 
     @property
     def refused(self) -> int:
+        """The number of refused messages."""
         return sum(self._refused.counts.values())
 
     def hears(self) -> Mapping[str, MessageHandler]:
+        """Return the handlers of the outgoing routes."""
         show, routes = self.project.section(Show), self.project.routes
         out = [name for name in show.routes if name in routes and routes[name].direction is Direction.OUT]
         return {name: partial(self._send, name) for name in sorted(out)}
 
     def idle(self) -> float | None:
+        """Update the links, and report refused messages; return the time until the next call [s]."""
         self._link()
         for link in self._links.values():
             link.tick()
@@ -58,6 +61,7 @@ class ShowControl(Module):
         return TICK
 
     def end(self) -> None:
+        """Close the links."""
         self._unlink()
         self._refused.tell(all=True)
 
@@ -71,7 +75,7 @@ class ShowControl(Module):
                     self._refused.add(f"{route} ({name.upper()})", str(error))
 
     def _deliver(self, route: str, place: str, make: Callable[[], Any]) -> None:
-        """What a device sent; called on the threads of the links."""
+        """Publish what a device sent; called on the links' threads."""
         row = self.project.routes.get(route)
         if row is None or not may_come_from_devices(row):
             self._refused.add(place, f"devices may not send to the route `{route}`")
@@ -88,7 +92,7 @@ class ShowControl(Module):
             self._refused.add(place, str(error))
 
     def _link(self) -> None:
-        """Open what lumen.yaml says now, where that is not what is open."""
+        """Open the links of the present settings if they differ from the open ones."""
         show, routes, messages = self.project.section(Show), self.project.routes, self.project.messages
         before = self._linked
         if before and (before.section(Show), before.routes, before.messages) == (show, routes, messages):
@@ -148,7 +152,9 @@ class ShowControl(Module):
         return DmxUniverse(link, fields, f"Lumen {self.project.robot}", self._health(f"DMX universe {link.universe}"))
 
     def _foreign(self, link: MqttLink) -> Mapping[str, TopicMapping]:
-        """The routes but those that our own broker carries itself: what we sent would come back for ever."""
+        """Return the routes except those that the bus's own broker carries as MQTT: their messages would return
+        forever.
+        """
         project, routes = self.project, dict(link.routes)
         broker = self.bus.ability(UsesBroker)
         if broker is None or not same_machine(broker.host, link.host):
@@ -167,13 +173,13 @@ class ShowControl(Module):
         return [name for name in routes if name in known and known[name].direction is Direction.IN]
 
     def _fields(self, route: str) -> Mapping[str, SchemaField]:
-        """The fields of a route's bodies."""
+        """Return the fields of a route's bodies."""
         row = self.project.routes.get(route)
         return message_fields(self.project.messages.get(row.schema) if row else None)
 
 
 def same_machine(one: str, other: str) -> bool:
-    """Whether two names are the same machine's, as far as its addresses say; none is nobody's."""
+    """Return whether two names have an address in common; False for an empty name."""
     if not one or one == other:
         return bool(one)
     try:
