@@ -58,7 +58,7 @@ MAX_PENDING_ALERTS = 100
 FIRST_RETRY, LONGEST_RETRY = 1.0, 300.0
 """The first and the longest wait before another attempt [s]; each is twice as long as the last."""
 RETRY_FOR = 3_600.0
-"""How long delivery of an alert is attempted [s]."""
+"""The time for which delivery of an alert is attempted [s]."""
 
 Deliver = Callable[[Alert], None]
 """Delivers an alert and waits for the result. Raises UndeliveredError."""

@@ -40,7 +40,7 @@ def address(channel: AlertChannel) -> str:
 
 
 CLOSE_TIMEOUT = 10.0
-"""How long the end of a process waits for alerts to arrive [s]."""
+"""The time that the end of a process waits for alerts to arrive [s]."""
 
 
 class AlertDesk:

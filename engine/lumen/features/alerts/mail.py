@@ -12,7 +12,7 @@ from lumen.errors import UndeliveredError
 from lumen.features.alerts.settings import Mail
 
 MAIL_TIMEOUT = 20.0
-"""How long the server may be silent [s]."""
+"""The time for which the server may be silent [s]."""
 USER, PASSWORD = "LUMEN_SMTP_USER", "LUMEN_SMTP_PASSWORD"
 """The environment variables with the user and the password of the mail server; without a user there is no login."""
 

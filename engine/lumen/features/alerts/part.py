@@ -29,7 +29,7 @@ from lumen.statechart import Step
 from lumen.upkeep.threads import WatchedThread
 
 TIME_TO_RISE = 60.0
-"""How long a robot may take to get up [s]; one that gets up by itself takes 20."""
+"""The time in which a robot must get up [s]; one that gets up by itself takes 20."""
 
 
 class FallWatch:
@@ -108,9 +108,9 @@ def room(folder: Path) -> str:
 
 
 BROKER_PATIENCE = 5.0
-"""How long a broker may be away before that is reported [s]: a restart takes less."""
+"""The absence of a broker after which it is reported [s]: a restart takes less."""
 BRAIN_PATIENCE = 5.0
-"""How long a robot's brain may be away [s]."""
+"""The absence of a robot's brain after which it is reported [s]."""
 
 
 class AlertPart(Part, Observer):

@@ -12,7 +12,7 @@ from typing import Any
 from lumen.errors import UndeliveredError
 
 PROGRAM_TIMEOUT = 30.0
-"""How long the program may take [s]; then it is killed, with all processes that it has started."""
+"""The time that the program may take [s]; then it is killed, with all processes that it has started."""
 
 
 def run_program(command: Sequence[str], body: dict[str, Any], root: Path) -> None:

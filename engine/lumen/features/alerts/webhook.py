@@ -10,7 +10,7 @@ from typing import Any
 from lumen.errors import UndeliveredError
 
 POST_TIMEOUT = 10.0
-"""How long the server may be silent [s]."""
+"""The time for which the server may be silent [s]."""
 PASSING = (408, 425, 429, *range(500, 600))
 """The HTTP statuses after which another attempt may succeed."""
 TOKEN = "LUMEN_ALERT_TOKEN"

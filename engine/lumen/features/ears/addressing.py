@@ -10,7 +10,9 @@ ALWAYS, FACE, TOUCH, SPEAKS, NOBODY = "always", "face", "touch", "speaks", "nobo
 AFTER_FACE, AFTER_TOUCH = 3.0, 10.0
 """The default times that the ears stay open [s]: people look away while they think, and step back after a touch."""
 LEAD = 1.0
-"""How long before the face or the touch the ears count as open [s]: people nearby begin to speak before they look."""
+"""The time before the face or the touch in which the ears count as open [s]: people nearby begin to speak before
+they look.
+"""
 MAX_SPANS = 100
 """The number of open spans that are kept; a sound lasts two minutes at most."""
 NO_DISTANCE = "faces come without a `distance`, so `within` has no effect: delete it, or use Lumen's own eyes"

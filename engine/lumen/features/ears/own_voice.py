@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 ECHO = 0.3
-"""How long a room still contains the robot's voice after its last word [s]."""
+"""The time for which a room still contains the robot's voice after its last word [s]."""
 LONGEST = 60.0
 """The time after which a text without a reported end counts as over [s], so that the robot does not stay deaf."""
 MAX_KEPT = 100

@@ -101,12 +101,12 @@ class Analysis:
 
     @cached_property
     def draft(self) -> ProjectDraft:
-        """What could be built of the project."""
+        """The parts of the project that could be built."""
         return draft(self.readable)
 
     @cached_property
     def settings(self) -> ProjectDraft:
-        """What could be built of lumen.yaml and the messages' schemas alone, which takes no time."""
+        """The parts that could be built from lumen.yaml and the messages' schemas alone, which is fast."""
         files = {f: content for f, content in self.files.items() if kind_of(f) in ("lumen", "message")}
         return draft({**files, **{f: each.readable for f, each in broken_files(files, self._before).items()}})
 

@@ -21,7 +21,7 @@ from lumen.features.editor.running import RunningExhibitions
 from lumen.upkeep.threads import WatchedThread
 
 CHECK_DELAY = 0.02
-"""How long nothing may be typed before the project is checked [s]."""
+"""The pause in typing after which the project is checked [s]."""
 
 ACTIVE = "lumen/active"
 """The notification of the active states of a running exhibition: `root`, `states`, and the `places` of their keys."""

@@ -83,7 +83,7 @@ class NameUse(NamedTuple):
 
     @property
     def thing(self) -> tuple[NameKind, str, str]:
-        """What all uses of one thing's name share."""
+        """The values that all uses of one thing's name share."""
         return self.kind, self.scope, self.name
 
 

@@ -22,7 +22,7 @@ class FunctionSignature(NamedTuple):
     active: int
     """The index of the parameter that is being written."""
     documentation: str
-    """What the function does and returns."""
+    """A description of the function and of its result."""
 
     @property
     def label(self) -> str:

@@ -17,7 +17,7 @@ SEARCH_WIDTH = 320
 SCALE_STEP, MIN_NEIGHBOURS, MIN_FACE_SIZE = 1.05, 3, 20
 """The factor of the cascade's growth, the number of overlapping hits that make a face, and its smallest size [px]."""
 RIM_WIDTH = 30
-"""How far pictures are extended beyond their edges [px], so that faces with a cut-off forehead are found."""
+"""The extension of pictures beyond their edges [px], so that faces with a cut-off forehead are found."""
 MIN_PERSON_WEIGHT = 0.4
 """The least distance of a person's hit from the separating plane."""
 

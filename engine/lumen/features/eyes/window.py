@@ -17,7 +17,7 @@ PART_BOUNDARY = "frame"
 FACE_COLOUR, PERSON_COLOUR, TEXT_COLOUR = (0, 200, 0), (200, 120, 0), (255, 255, 255)
 """Colours as blue, green, red."""
 WAKE_INTERVAL = 1.0
-"""How often a page that has no new picture checks whether the window is closed [s]."""
+"""The time between two checks, without a new picture, whether the window is closed [s]."""
 
 
 class Window:

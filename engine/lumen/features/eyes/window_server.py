@@ -15,7 +15,7 @@ WINDOW_HOST = "127.0.0.1"
 MAX_CONNECTIONS = 8
 """The number of open connections; a further one is closed without an answer."""
 REQUEST_TIMEOUT = 5.0
-"""How long a request may take to arrive, and a picture to be read [s]."""
+"""The time in which a request must arrive, and a picture must be read [s]."""
 
 
 class WindowServer(ThreadingHTTPServer):

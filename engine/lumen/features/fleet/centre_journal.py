@@ -13,7 +13,7 @@ from lumen.upkeep.private_folder import private_folder
 
 FILE = "centre.jsonl"
 TAIL = 4_000_000
-"""How much of the file's end is read to find the last state [bytes]."""
+"""The size of the file's end that is read to find the last state [bytes]."""
 
 
 class CentreJournal:

@@ -28,7 +28,7 @@ class AgentMemory:
     trying: str = ""
     """The bundle that is on probation."""
     tries: int = 0
-    """How often this process ended during that probation."""
+    """The number of times that this process ended during that probation."""
     writing: str = ""
     """The hash of files that are being written into the project's folder."""
     now: dict[str, float] = field(default_factory=dict)

@@ -66,7 +66,7 @@ class RolloutPlan:
 
     steps: tuple[StepTarget, ...] = (StepTarget(share=1.0),)
     pause: float = DEFAULT_PAUSE
-    """How long each step is watched [s]."""
+    """The time for which each step is watched [s]."""
     abort_if: str = ""
     """The condition that rolls all robots back, empty for none."""
     try_first: bool = False

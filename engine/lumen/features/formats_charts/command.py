@@ -19,10 +19,11 @@ from lumen.language.machines import MachineDefinition
 PICTURES = (".svg", ".png")
 LAYOUTS = ("auto", "own", "dot")
 DRAWING = 60.0
-"""How long Graphviz may draw [s]."""
+"""The longest time that Graphviz may take [s]."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `lumen graph` to the parser."""
     add = parser.add_argument
     add("behavior", nargs="?", help="a behaviour's name (default: the one in lumen.yaml)")
     which = parser.add_mutually_exclusive_group()
@@ -44,6 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    """Write the graph and return the exit code."""
     project = lumen.load(shown_project(options.project))
     name = options.behavior or project.behavior
     if name not in project.behaviors:

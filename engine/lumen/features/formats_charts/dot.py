@@ -13,7 +13,7 @@ digraph {
 
 
 def dot(machine: MachineDefinition) -> str:
-    """The graph's text, ending with a newline; `dot -Tsvg` draws it.
+    """Return the graph's text, ending with a newline; `dot -Tsvg` draws it.
 
     A state with states within is a cluster; an arrow to or from it ends at its frame. A behaviour that a state invokes
     is a dashed cluster inside it: once, and wherever it is invoked again a box with its name.
@@ -30,7 +30,7 @@ class _DotDrawing:
         self.ids = {path: f"{prefix}s{number}" for number, path in enumerate(machine.states)}
 
     def lines(self, name: str = "") -> Iterator[str]:
-        """Everything; `name` is that of an invocation."""
+        """Yield the whole graph; `name` is that of an invocation."""
         yield from self._cluster(self.machine.root, 1, name)
         for state in self.machine.states.values():
             for transition in state.transitions:
@@ -54,7 +54,7 @@ class _DotDrawing:
         yield f"{indent}}}"
 
     def _inside(self, invoke: Invoke, id: str, depth: int) -> Iterator[str]:
-        """What is invoked, with its arrows."""
+        """Yield an invoked behaviour, with its arrows."""
         indent, machine = "  " * depth, self.machine.invoked.get(invoke.behavior)
         if machine is None or invoke.behavior in self.drawn:
             yield f"{indent}{id} [label={_quoted(invocation(invoke))}, style=dashed]"
@@ -76,7 +76,7 @@ class _DotDrawing:
             yield self._arrow(transition.source, target, f"label={_quoted(caption(transition))}{style}")
 
     def _arrow(self, source: str, target: str, look: str, *, begins: bool = False) -> str:
-        """An arrow; its ends are cut at the frames of clusters that do not hold the other end."""
+        """Return an arrow; its ends are cut at the frames of clusters that do not contain the other end."""
         looks = [look] if look else []
         for end, path, other in (("ltail", source, target), ("lhead", target, source)):
             holds = other == path or not path or other.startswith(f"{path}.")

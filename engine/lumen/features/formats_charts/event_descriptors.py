@@ -1,11 +1,11 @@
-"""Descriptors of events, `a.b`, `a.*` and `*`: which are the same, and which can match the same event."""
+"""Descriptors of events, `a.b`, `a.*` and `*`: which are equal, and which can match the same event."""
 
 
 def normal(descriptor: str) -> str:
-    """`a` for `a`, `a.` and `a.*` (SCXML 3.12.1)."""
+    """Return `a` for `a`, `a.` and `a.*` (SCXML 3.12.1)."""
     return "*" if descriptor == "*" else descriptor.removesuffix("*").rstrip(".") if "." in descriptor else descriptor
 
 
 def overlap(one: str, other: str) -> bool:
-    """Whether an event can match both."""
+    """Return whether an event can match both."""
     return "*" in (one, other) or f"{one}.".startswith(f"{other}.") or f"{other}.".startswith(f"{one}.")

@@ -1,4 +1,4 @@
-"""The states of a foreign chart on their way into ours: what each is called, and how others name it."""
+"""The states of a foreign chart during conversion: their names, and how other states refer to them."""
 
 import re
 from collections.abc import Container, Iterator
@@ -11,7 +11,7 @@ MAX_RENAMED = 1000
 """Ids of one file that may become the same text; the search for a free number takes longer with more."""
 
 MAX_STATE_LEVELS = 40
-"""Of nested states; a YAML file has two levels for each."""
+"""The most nested states; a YAML file has two levels for each."""
 
 _UNFIT_KEY = re.compile(r"[\s.#*]+")
 _UNFIT_ID = re.compile(r"[\s#*]+")
@@ -30,36 +30,36 @@ class ForeignState:
     keys: set[str] = field(default_factory=set)
 
     def add(self, child: "ForeignState") -> None:
-        """One more child."""
+        """Add a child."""
         self.children.append(child)
         self.keys.add(child.key)
 
     @property
     def name(self) -> str:
-        """What the built machine calls it."""
+        """The state's name in the built machine."""
         return self.id or self.path
 
     def lies_below(self, other: "ForeignState") -> bool:
-        """Whether it is anywhere within the other one."""
+        """Return whether it is inside the other one, at any depth."""
         node = self.parent
         while node is not None and node is not other:
             node = node.parent
         return node is other
 
     def walk(self) -> Iterator["ForeignState"]:
-        """Itself and everything below, in document order."""
+        """Yield itself and everything below, in document order."""
         yield self
         for child in self.children:
             yield from child.walk()
 
     def below(self, key: str) -> str:
-        """The path of a child."""
+        """Return the path of a child."""
         return f"{self.path}.{key}" if self.path else key
 
     def calls(self, target: "ForeignState", title: str, *, inside: bool = False) -> str:
-        """How this state names another as a target: its key beside it, `.key` within, else `#id`.
+        """Return how this state refers to a target: a sibling by its key, a child by `.key`, others by `#id`.
 
-        `inside` is for `initial`, where a child is only its key; `title` is the behaviour's own name.
+        `inside` is for `initial`, in which a child is only its key; `title` is the behaviour's own name.
         """
         if target.parent is self:
             return target.key if inside else f".{target.key}"
@@ -69,18 +69,18 @@ class ForeignState:
 
 
 def clean_id(text: str) -> str:
-    """An id that `#id` can hold."""
+    """Return an id that `#id` can refer to."""
     return _UNFIT_ID.sub("_", text)
 
 
 def free_id(text: str, ids: Container[str], taken: Container[str]) -> str:
-    """`clean_id` of the text, with a number if that is the id of another state, or one that was given already."""
+    """Return `clean_id` of the text, with a number if another state has that id or it was given before."""
     wanted = clean_id(text)
     return text if text == wanted else unused_name(wanted, lambda id: id in ids or id in taken, MAX_RENAMED)
 
 
 def free_key(parent: ForeignState, wanted: str, id: str, ids: Container[str]) -> str:
-    """A key like the one wanted that no other child has, and whose path is not the id of another state."""
+    """Return a key like the one wanted that no other child has, and whose path is not another state's id."""
     stem = _UNFIT_KEY.sub("_", wanted) or "state"
 
     def is_taken(key: str) -> bool:
@@ -90,5 +90,5 @@ def free_key(parent: ForeignState, wanted: str, id: str, ids: Container[str]) ->
 
 
 def passing_key(home: ForeignState, taken: Container[str]) -> str:
-    """A key for a state that is passed through on the way into `home`."""
+    """Return a key for a state that is passed through on the way into `home`."""
     return unused_name("begin", lambda key: key in home.keys or key in taken, len(home.keys))

@@ -1,4 +1,6 @@
-"""Rows of `hears` in charts of other tools: no other tool has them, so they become conditions with a name of ours."""
+"""Rows of `hears` in charts of other tools: they become conditions with a name of Lumen's, since no other tool has
+them.
+"""
 
 from collections.abc import Sequence
 
@@ -12,14 +14,16 @@ HEARD_TEXT = "event.data.result"
 
 
 def in_asked_order(transitions: Sequence[Transition]) -> Sequence[Transition]:
-    """The transitions as they are asked: rows of `hears` after `on`, and before what takes anything."""
+    """Return the transitions in the order of their evaluation: rows of `hears` after `on`, and before one for any
+    event.
+    """
     if not any(t.hears for t in transitions):
         return transitions
     return sorted(transitions, key=lambda t: 2 if t.event == "*" else t.hears is not None)
 
 
 def key_of(row: Hears) -> str:
-    """The key of a row, as a file may have it; empty for one that asks for phrases of an entry of a `for`.
+    """Return the key of a row, as in a file; empty for one with phrases of an entry of a `for`.
 
     A chart has no `for`, so nothing could be called by its variable.
     """

@@ -10,7 +10,7 @@ _SPECIAL = re.compile(r"[^\w .,!?()=+*/&|\'\[\]…-]|--+|\b_+")
 
 
 def mermaid(machine: MachineDefinition) -> str:
-    """The diagram's text, ending with a newline.
+    """Return the diagram's text, ending with a newline.
 
     Every state gets an id `s1, s2, …` in document order and its key as its label, since Mermaid takes few characters
     in an id. Events that lead nowhere (no target) stand in the label of their state. A behaviour that a state invokes
@@ -20,7 +20,7 @@ def mermaid(machine: MachineDefinition) -> str:
 
 
 class _MermaidDrawing:
-    """The lines of one diagram. An arrow is drawn in the innermost compound state around both its ends."""
+    """The lines of one diagram. An arrow is drawn in the innermost compound state that contains both its ends."""
 
     def __init__(self, machine: MachineDefinition, prefix: str = "", drawn: set[str] | None = None) -> None:
         self.machine, self.prefix = machine, prefix
@@ -84,7 +84,7 @@ class _MermaidDrawing:
             yield from self._inside(invoke, f"{self.ids[state.path]}i{number}", depth)
 
     def _inside(self, invoke: Invoke, id: str, depth: int) -> Iterator[str]:
-        """What is invoked, in a box of its own."""
+        """Yield an invoked behaviour, in a box of its own."""
         indent, machine = "  " * depth, self.machine.invoked.get(invoke.behavior)
         name = _escaped(invocation(invoke))
         if machine is None or invoke.behavior in self.drawn:
@@ -105,11 +105,11 @@ def _label(state: State) -> str:
 
 
 def _caption(transition: Transition) -> str:
-    """What stands at an arrow: ` : event [guard]`, nothing where it has neither."""
+    """Return the label of an arrow: ` : event [guard]`, empty without both."""
     text = caption(transition)
     return f" : {_escaped(text)}" if text else ""
 
 
 def _escaped(text: str) -> str:
-    """The text with everything that means something to Mermaid as entities (`#58;` for a colon)."""
+    """Return the text with all of Mermaid's special characters as entities (`#58;` for a colon)."""
     return _SPECIAL.sub(lambda found: "".join(f"#{ord(c)};" for c in found[0]), text)

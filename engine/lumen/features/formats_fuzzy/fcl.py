@@ -1,9 +1,4 @@
-"""Fuzzy Control Language (IEC 61131-7) as the data of a controller file; also as jFuzzyLogic and FuzzyLite write it.
-
-`FUNCTION_BLOCK` holds `VAR_INPUT`, `VAR_OUTPUT`, a `FUZZIFY` for each input, a `DEFUZZIFY` for each output, and
-`RULEBLOCK`s. A declaration may name several variables and their range. A term is a row of points, a single value, or
-(not in the norm) a shape with its parameters.
-"""
+"""Reads Fuzzy Control Language (IEC 61131-7), also jFuzzyLogic's and FuzzyLite's, as the data of a controller file."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -64,14 +59,14 @@ _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "mi
 
 
 class FclStatement(NamedTuple):
-    """What stands before a `;`, and the offset at which it begins."""
+    """The text before a `;`, and the offset of its beginning."""
 
     text: str
     offset: int
 
 
 class FclSection(NamedTuple):
-    """`KIND name`, its statements, and where it begins."""
+    """A section `KIND name` with its statements and the offset of its beginning."""
 
     kind: str
     name: str
@@ -81,7 +76,7 @@ class FclSection(NamedTuple):
 
 
 def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no block."""
+    """Return the data of a controller file, and findings. Raises ForeignFileError if there is no function block."""
     findings = ConversionFindings()
     text = text_of(file, content, findings)
     reader = _FclReader(file, text, findings)
@@ -95,7 +90,9 @@ def read_fcl(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
 
 
 def _without_comments(text: str) -> str:
-    """The text with blanks in place of comments, so that all else stays where it is; an unclosed one goes on."""
+    """Return the text with comments replaced by blanks, so that offsets stay the same; an unclosed one extends to the
+    end.
+    """
     parts, at = [], 0
     while match := _COMMENT.search(text, at):
         end = match.end()
@@ -146,7 +143,7 @@ class _FclReader:
         return self.place(statement.offset, len(lines_of(statement.text)[0]))
 
     def first(self, text: str) -> str:
-        """The first function block; that there are more is reported."""
+        """Return the first function block; report further ones."""
         begins = list(re.finditer(r"\bFUNCTION_BLOCK\b", text, re.IGNORECASE))
         if len(begins) < 2:
             return text
@@ -222,7 +219,7 @@ class _FclReader:
                 self.findings.lost(self.at(statement), f"`{match['rest'][:40]}` in a declaration is left out")
 
     def asked(self, sections: list[FclSection]) -> None:
-        """Inputs without terms that formulas ask for: any number may come in."""
+        """Add inputs without terms that formulas use: they accept any number."""
         formulas = " ".join(t.text for s in sections if s.kind == "DEFUZZIFY" for t in s.statements)
         words = set(
             re.findall(r"[A-Za-z_]\w*", " ".join(re.findall(r"(?i):=\s*FUNCTION\b(.*?)(?= TERM |$)", formulas)))
@@ -235,7 +232,7 @@ class _FclReader:
                 self.draft.variable("inputs", name, self.at(statement))["range"] = ranged(*ends)
 
     def operators(self, section: FclSection) -> dict[str, Any]:
-        """What a rule block says of AND, OR and ACT; what it says of ACCU is kept for the outputs."""
+        """Return a rule block's AND, OR and ACT; its ACCU is kept for the outputs."""
         found: dict[str, Any] = {}
         partners: dict[str, str] = {}
         accu, seen = "", set[str]()
@@ -333,7 +330,9 @@ class _FclReader:
                     self.findings.lost(self.at(statement), f"an output can't have `{key} : {said}`")
 
     def accumulated(self, section: FclSection, spec: dict[str, Any]) -> None:
-        """How conclusions about an output become one: the same for single values, of each term's degrees."""
+        """Set how conclusions about an output are combined; the method for single values also applies to each term's
+        degrees.
+        """
         weighted = spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         said = spec.pop("aggregation", "") or self.accu.get("", "")
         if not said and not weighted:
@@ -344,7 +343,7 @@ class _FclReader:
         spec.update(operators({"aggregation": said or None}, {"aggregation": usual}))
 
     def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: FclStatement) -> list[float]:
-        """Where it begins and ends, to know how far the variable reaches."""
+        """Add a term; return the points where its shape begins and ends, from which the variable's range follows."""
         points = [float(number) for point in _POINT.findall(said) for number in point]
         if points and not _POINT.sub("", said).strip():
             self.draft.term(variable, spec, name, "discrete", points, self.at(statement))
@@ -364,7 +363,7 @@ class _FclReader:
     def function(
         self, variable: str, spec: dict[str, Any], name: str, text: str, statement: FclStatement
     ) -> list[float]:
-        """A single value that is computed from the inputs."""
+        """Add a term with a single value that is computed from the inputs; return no points."""
         output = spec is self.draft.sides["outputs"].get(self.draft.names[variable])
         inputs = {theirs: ours for theirs, ours in self.draft.names.items() if ours in self.draft.sides["inputs"]}
         found = function(text, inputs) if output else Trouble("the terms of an input must be sets", 0)
@@ -378,7 +377,7 @@ class _FclReader:
         return []
 
     def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: FclStatement) -> list[float]:
-        """A value for outputs; for a set it has no width."""
+        """Add a term with a single value for outputs, or a set without width; return its point."""
         if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(
             self.draft.names[variable]
         ):

@@ -28,7 +28,7 @@ ORS: Mapping[str, tuple[str, str]] = {
     "einstein": ("einstein-sum", "hamacher-product"), "hsum": ("hamacher-sum", "hamacher-product"),
     "esum": ("einstein-sum", "einstein-product"),
 }  # fmt: skip
-"""What each word means, and what it means for the other one where that is not said."""
+"""The meaning of each word, and the matching word for the other operator if that is not given."""
 
 ACTS: Mapping[str, str] = {word: meant for word, (meant, _) in ANDS.items()}
 ACCUS: Mapping[str, str] = {
@@ -46,7 +46,7 @@ _KINDS = {
 
 
 def shape(said: str) -> tuple[str, list[float] | str] | None:
-    """The kind of a term and its parameters in our order, or its formula; None for what can't be read.
+    """Return the kind of a term and its parameters in Lumen's order, or its formula; None if it can't be read.
 
     jFuzzyLogic's words have its order of parameters; `Cosine` in mixed case is FuzzyLite's.
     """
@@ -74,7 +74,7 @@ def _sigmoid(slope: float, inflection: float) -> str:
 
 
 def function(text: str, names: Mapping[str, str]) -> str | Trouble:
-    """jFuzzyLogic's `FUNCTION` as our formula; `names` are the inputs'.
+    """Return jFuzzyLogic's `FUNCTION` as Lumen's formula; `names` are the inputs'.
 
     Where its order of operations is another than everybody else's (`a % b * c`, `2 ^ 3 ^ 2`, `-2 ^ 2`), and where a
     formula asks for `x`, which has no meaning there, it is refused instead of guessed at.
@@ -90,7 +90,7 @@ def function(text: str, names: Mapping[str, str]) -> str | Trouble:
 
 
 def reach(kind: str, parameters: list[float]) -> list[float]:
-    """Where a shape begins and ends, as jFuzzyLogic takes it (`estimateUniverse`); nothing for shapes it does not have.
+    """Return where a shape begins and ends in jFuzzyLogic (`estimateUniverse`); nothing for shapes it lacks.
 
     A gaussian reaches 4 sigma from its mean, a bell to where it has fallen to 0.001, a sigmoid 9 / slope from its
     inflection.

@@ -70,7 +70,7 @@ _USUAL = {
 
 
 MAX_TERM_NUMBER, MAX_TERM_GAP = 1e6, 10
-"""The limit of a term's number, and the most missing terms of a variable that are listed."""
+"""The greatest number of a term, and the most missing terms of a variable that are listed."""
 
 _TYPES = ("mamdani", "sugeno", "tsukamoto")
 _VARIABLE = Known(read=frozenset(("Name", "Range", "NumMFs", "MF…")))
@@ -89,11 +89,11 @@ KNOWN: FormatTable = {
 """The parts of a MATLAB or Octave system that are carried over, by section; `MF…` means `MF1`, `MF2`, …"""
 
 _HEDGES = {0.5: ("somewhat",), 2.0: ("very",), 4.0: ("very", "very")}
-"""Octave's hedges as powers of a membership: the digits behind the point of a term's number, times ten."""
+"""Octave's hedges as powers of a membership: the digits after the point of a term's number, times ten."""
 
 
 class FisLine(NamedTuple):
-    """`Key=value` of a section, or a rule (without a key), and its place."""
+    """A line `Key=value` of a section, or a rule (without a key), and its place."""
 
     key: str
     value: str
@@ -107,12 +107,12 @@ class FisSection(NamedTuple):
     place: Place
 
     def line(self, key: str) -> FisLine | None:
-        """The line of that key."""
+        """Return the line of that key, None without one."""
         return next((line for line in self.lines if line.key == key), None)
 
 
 class FisVariable(NamedTuple):
-    """An input or output under our name, and its terms by their numbers: our names, empty for those left out."""
+    """An input or output with Lumen's name, and its terms by their numbers: Lumen's names, empty for those left out."""
 
     name: str
     spec: dict[str, Any]
@@ -121,7 +121,7 @@ class FisVariable(NamedTuple):
 
 
 def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no system."""
+    """Return the data of a controller file, and findings. Raises ForeignFileError if it is not a system."""
     findings = ConversionFindings()
     text = text_of(file, content, findings)
     sections = list(_sections(file, text, findings))
@@ -183,7 +183,7 @@ class _FisReader:
         return self.draft.result()
 
     def known(self, section: FisSection) -> None:
-        """List the keys of a section that nothing reads, and those that come twice."""
+        """List the unused keys of a section, and repeated ones."""
         if section.kind == "rules":
             return
         table, seen = KNOWN[f"[{section.kind.capitalize()}]"], set[str]()
@@ -196,7 +196,7 @@ class _FisReader:
             seen.add(line.key)
 
     def numbered(self, sections: list[FisSection]) -> list[FisSection]:
-        """The sections in the order of their numbers, which rules use; gaps in the numbers are listed."""
+        """Return the sections ordered by their numbers, which rules use; list gaps in the numbers."""
         found = sorted(sections, key=lambda section: section.number)
         for number, section in enumerate(found, 1):
             if section.number != number:
@@ -317,7 +317,9 @@ class _FisReader:
         return rule
 
     def propositions(self, side: str, numbers: list[float], line: FisLine) -> list[str] | None:
-        """`variable is [not] term` for each number that is not 0; None, and a finding, if a number has no term."""
+        """Return `variable is [not] term` for each number that is not 0; None, and a finding, if a number has no
+        term.
+        """
         found = []
         for variable, number in zip(self.order[side], numbers, strict=True):
             if not number:
@@ -339,10 +341,7 @@ class _FisReader:
         return found
 
     def derived(self, variable: FisVariable, term: str, power: float, line: FisLine, *, negated: bool) -> str:
-        """Add a term for the complement of a set, or for a power of its membership, which our rules can't express.
-
-        In a conclusion, a hedge here changes the degree of the rule; in Octave it changes the set.
-        """
+        """Add a term for a set's complement or a power of its membership, which Lumen's rules lack; return its name."""
         kind, values = variable.shapes[term]
         formula = set_formula(kind, values)
         what = f"`{variable.name} is {'not ' if negated else ''}{term}`"

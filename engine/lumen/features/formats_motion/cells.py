@@ -1,4 +1,4 @@
-"""Lines of cells with their places, as both dialects of `.motion` have them."""
+"""Lines of cells with their places, as in both dialects of `.motion`."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ Cell = tuple[str, Place]
 
 
 def cells_of(file: str, text: str, separator: str) -> Iterator[list[Cell]]:
-    """The cells of every line that holds something, without the blanks around them."""
+    """Yield the cells of every line that is not empty, without surrounding blanks."""
     for i, line in enumerate(lines_of(text), 1):
         if line.strip():
             yield list(_cells(file, i, line, separator))

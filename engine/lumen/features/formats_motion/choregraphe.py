@@ -18,10 +18,10 @@ from lumen.project.formats.known_elements import local, tell_losses
 from lumen.project.formats.xml_elements import XmlElement, parse_xml
 
 MAX_CHOREGRAPHE_ELEMENTS = 1_000_000
-"""In a project, boxes and curves together."""
+"""The most boxes and curves of a project."""
 
 DEFAULT_FPS = 25.0
-"""Frames a second of a timeline that names none."""
+"""The frames per second of a timeline without a rate."""
 
 NAO_HANDS = ("LHand", "RHand")
 ROOTS = ("ChoregrapheProject", "ChoregrapheBox")
@@ -86,14 +86,13 @@ class Flags(NamedTuple):
     fps: float
 
     def time(self, frame: float) -> float:
-        """The time of a frame [s]; the first frame is number 1."""
+        """Return the time of a frame [s]; the first frame is number 1."""
         return (frame - self.first + 1) / self.fps
 
 
 def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """The curves of the timeline of that name, or of the only one if no name is given. Raises ForeignFileError.
-
-    `hands` of the file are the robot's hands besides NAO's: their keys are openings.
+    """Return the curves of the timeline of that name, or of the only one if no name is given. Raises
+    ForeignFileError.
     """
     root = parse_xml(file.name, file.content, most=MAX_CHOREGRAPHE_ELEMENTS)
     if local(root) not in ROOTS:
@@ -126,7 +125,7 @@ def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCur
 
 
 def is_choregraphe_list(content: bytes) -> bool:
-    """Whether a file is a `.pml`, the file list of a project."""
+    """Return whether a file is a `.pml`, the file list of a project."""
     if b"<Package" not in content[:1_000]:
         return False
     try:
@@ -136,7 +135,7 @@ def is_choregraphe_list(content: bytes) -> bool:
 
 
 def choregraphe_list(content: bytes) -> str:
-    """Say what a `.pml` is, and which files to import instead."""
+    """Return the error that explains a `.pml` and the files to import instead."""
     named = [e for e in parse_xml("", content).walk() if local(e) == "BehaviorDescription"]
     files = [f"{e.get('src')}/{e.get('xar', 'behavior.xar')}".strip("/") for e in named]
     instead = (
@@ -168,7 +167,7 @@ def _tell_around(root: XmlElement, chosen: XmlElement, findings: ConversionFindi
 
 
 def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
-    """The elements from the root to that one."""
+    """Return the elements from the root to that one."""
     above: dict[int, XmlElement] = {}
     for element in root.walk():
         above.update((id(child), element) for child in element.children)
@@ -179,7 +178,7 @@ def _way(root: XmlElement, wanted: XmlElement) -> list[XmlElement]:
 
 
 def _flags(timeline: XmlElement, findings: ConversionFindings) -> Flags:
-    """The Start flag (default 1) and the End flag (default -1)."""
+    """Return the Start flag (default 1) and the End flag (default -1)."""
     found = {}
     for flag, none in (("start_frame", 1.0), ("end_frame", -1.0)):
         said = timeline.get(flag, f"{none:g}")
@@ -217,7 +216,7 @@ def _played(
 
 
 def _pace(timeline: XmlElement, findings: ConversionFindings) -> float:
-    """How many of its frames are a second."""
+    """Return the frames per second of a timeline."""
     fps = number(timeline.get("fps"))
     if fps is not None and fps > 0:
         return fps
@@ -244,7 +243,7 @@ def _chosen(root: XmlElement, timelines: Timelines, name: str) -> XmlElement:
 
 
 def _timelines(element: XmlElement, box: str = "") -> Iterator[tuple[str, XmlElement]]:
-    """The timelines that move joints, by the names of their boxes; a name that comes again has a number."""
+    """Yield the timelines that move joints, by the names of their boxes; repeated names get a number."""
     found: dict[str, int] = {}
     for name, timeline in _all_timelines(element, box):
         if timeline.get("enable") != "0" and any(local(key) == "Key" for key in timeline.walk()):
@@ -263,7 +262,7 @@ def _all_timelines(element: XmlElement, box: str) -> Iterator[tuple[str, XmlElem
 
 
 def _others(root: XmlElement, chosen: XmlElement, findings: ConversionFindings, *, asked: bool) -> None:
-    """List the boxes that do something else; beside a timeline that was asked for they are nothing to be missed."""
+    """List the boxes that do something else; if a timeline was requested, the other boxes are not a loss."""
     inside = {id(element) for element in chosen.walk()}
     for box in root.walk():
         around = any(element is chosen or local(element) == "Box" for element in list(box.walk())[1:])
@@ -304,7 +303,7 @@ def _points(
 
 
 def _factor(curve: XmlElement, findings: ConversionFindings, *, hand: bool) -> float:
-    """The factor of a key's value, for [rad] or a hand's opening; `unit` does not change it."""
+    """Return the factor from a key's value to [rad] or a hand's opening; `unit` does not change it."""
     joint, unit, usual = curve.get("actuator"), curve.get("unit"), "1" if hand else "0"
     if unit not in ("", usual):
         meant = "an opening from 0 to 1" if hand else "an angle in degrees"
@@ -314,7 +313,7 @@ def _factor(curve: XmlElement, findings: ConversionFindings, *, hand: bool) -> f
 
 
 def _handle(tangent: XmlElement | None, fps: float, factor: float, findings: ConversionFindings) -> BezierHandle:
-    """(dt [s], da [rad]) of a tangent; none where it is not a Bezier's."""
+    """Return (dt [s], da [rad]) of a tangent, None if it is not a Bezier's."""
     if tangent is None or tangent.get("interpType") != "bezier":
         return 0.0, 0.0
     frames, value = (number(tangent.get(name, "0")) for name in ("abscissaParam", "ordinateParam"))
@@ -328,7 +327,7 @@ def _handle(tangent: XmlElement | None, fps: float, factor: float, findings: Con
 
 
 def _under(element: XmlElement, tag: str) -> Iterator[XmlElement]:
-    """The elements of that tag that belong to it, not to a box inside."""
+    """Yield the elements of that tag that belong to it, not to a box inside."""
     waiting = list(reversed(element.children))
     while waiting:
         here = waiting.pop()

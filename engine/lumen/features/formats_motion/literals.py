@@ -1,4 +1,6 @@
-"""What a Python file writes out: numbers, texts, lists, and the usual arithmetic on them. Nothing is run."""
+"""Evaluates the literal values in a Python file: numbers, texts, lists, and the usual arithmetic on them. Nothing is
+run.
+"""
 
 import ast
 import math
@@ -27,7 +29,7 @@ class NotWrittenOutError(ValueError):
 
 
 def written(node: ast.AST) -> str:
-    """The node as Python's text; empty for what Python does not write, as `0x` and thousands of digits."""
+    """Return the node as Python's text; empty for literals that Python can't write, such as thousands of digits."""
     try:
         return ast.unparse(node)
     except (ValueError, RecursionError):
@@ -35,7 +37,7 @@ def written(node: ast.AST) -> str:
 
 
 def value_of(node: ast.expr, names: Mapping[str, Any]) -> Any:
-    """The value; `names` are the variables known. Raises NotWrittenOutError."""
+    """Return the value of a node; `names` are the known variables. Raises NotWrittenOutError."""
     match node:
         case ast.Constant(value=value) if value is None or isinstance(value, str | int | float):
             return value

@@ -33,21 +33,25 @@ from lumen.project.formats.joint_curves import MAX_NUMBER, BezierHandle, CurvePo
 
 BEZIER, LINEAR = 3, 1
 MAX_STEPS = 20_000
-"""Statements that are followed: functions that call each other may be endless."""
+"""The most statements that are followed: functions that call each other might never end."""
 MAX_PARTS = 1_000_000
-"""Parts of these statements beyond those of the file: a long list that a loop sets anew costs as much each time."""
+"""The most parts of these statements beyond the file's own: a long list that a loop sets again costs as much each
+time.
+"""
 MAX_ROUNDS = 1_000
-"""Rounds of a loop that are followed."""
+"""The most rounds of a loop that are followed."""
 
 _OLD = (
     (re.compile(r"^([ \t]*except[ \t]+[\w.]+),[ \t]*(\w+)[ \t]*:", re.MULTILINE), r"\1 as \2:"),
     (re.compile(r"^([ \t]*)print\b(?![ \t]*\().*", re.MULTILINE), r"\1pass"),
 )
-"""What Python 2 wrote otherwise, and how it is read."""
+"""Constructs of Python 2, with their form in Python 3."""
 
 
 def read_naoqi(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """The curves that the file hands to ALMotion, or a function of that name. Raises ForeignFileError for none."""
+    """Return the curves that the file, or a function of that name, passes to ALMotion. Raises ForeignFileError for
+    none.
+    """
     tree = _tree(file.name, decoded(file.name, file.content))
     for rounds in (MAX_ROUNDS, 0):
         found = ConversionFindings()
@@ -70,7 +74,7 @@ class _TooManyStepsError(Exception):
 
 
 def _read(file: str, tree: ast.Module, findings: ConversionFindings, timeline: str, rounds: int) -> JointCurves:
-    """The curves, with at most `rounds` rounds of each loop."""
+    """Return the curves, with at most `rounds` rounds of each loop."""
     own = OwnFunctions(tree)
     reading = _Reading(file, findings, tree, own, rounds)
     function = _chosen(file, tree, own, findings, timeline)
@@ -95,7 +99,7 @@ def _read(file: str, tree: ast.Module, findings: ConversionFindings, timeline: s
 def _chosen(
     file: str, tree: ast.Module, own: OwnFunctions, findings: ConversionFindings, name: str
 ) -> FunctionNode | None:
-    """The function that is the motion; None for the statements that run with the file."""
+    """Return the function that contains the motion; None for the statements that run with the file."""
     gestures = {name: function for name, function in own.all.items() if own.is_gesture(function.body)}
     if name:
         if name not in gestures:
@@ -120,11 +124,11 @@ def _chosen(
 
 
 def _tree(file: str, text: str) -> ast.Module:
-    """The file's syntax tree; two statements of Python 2 that every export has are let pass."""
+    """Return the file's syntax tree; two statements of Python 2 that every export has are accepted."""
     for pattern, now in _OLD:
         text = pattern.sub(now, text)
     try:
-        with warnings.catch_warnings(action="ignore"):  # of numbers and escapes that Python finds odd
+        with warnings.catch_warnings(action="ignore"):  # about odd numbers and escapes
             return ast.parse(text)
     except SyntaxError as error:
         line, column = error.lineno or 1, error.offset or 1
@@ -183,7 +187,7 @@ class _Reading:
         return self.sizes[id(statement)]
 
     def _items(self, loop: ast.For) -> list[ast.expr] | None:
-        """The values of a loop's variable, one per round; None if they are not written out, or are too many."""
+        """Return the values of a loop's variable, one per round; None if they are not literal, or too many."""
         if has_jumps(loop):
             return None
         rounds: list[ast.expr]
@@ -219,7 +223,7 @@ class _Reading:
         return result
 
     def _defaults(self, function: FunctionNode) -> dict[str, Any]:
-        """The default values of a function's parameters; a parameter without one is None and hides a global."""
+        """Return the default values of a function's parameters; one without a default is None and hides a global."""
         given = function.args
         names = [argument.arg for argument in (*given.posonlyargs, *given.args)]
         pairs = [*zip(reversed(names), reversed(given.defaults), strict=False)]
@@ -228,7 +232,7 @@ class _Reading:
         return found
 
     def take(self, statement: ast.stmt, branch: Branch) -> None:
-        """Follow what is written out; remember what changes a variable in another way."""
+        """Follow literal statements; remember what changes a variable in another way."""
         if isinstance(statement, ast.Global):
             self.shared.update(statement.names)
         changed = changed_names(statement)
@@ -256,7 +260,7 @@ class _Reading:
         elif name in (PAUSE, WAIT):
             self._pause(call, name, branch)
         elif name in ("setStiffnesses", "stiffnessInterpolation") and self._is_stiff(call):
-            pass  # motors of ours are stiff from the beginning
+            pass  # motors in the simulation are stiff from the beginning
         elif name not in self.own.classes and not is_reading(name) and (name in CALLS.lost or not told):
             for _, hint in CALLS.losses([name]):
                 self.findings.lost(self._place(call), f"`{shown}` is left out", hint)
@@ -301,12 +305,12 @@ class _Reading:
         self.begin += float(seconds)
 
     def _is_stiff(self, call: ast.Call) -> bool:
-        """Whether a call sets motors to full stiffness."""
+        """Return whether a call sets motors to full stiffness."""
         stiffness = self._value(call.args[1]) if len(call.args) > 1 else None
         return all(part == 1 for part in (stiffness if isinstance(stiffness, list) else [stiffness]))
 
     def _value(self, node: ast.expr) -> Any:
-        """The value of a literal expression, or of a call that was followed; else None."""
+        """Return the value of a literal expression, or of a call that was followed; else None."""
         if id(node) in self.returned:
             return self.returned[id(node)]
         try:
@@ -315,7 +319,7 @@ class _Reading:
             return None
 
     def tell_changes(self) -> None:
-        """Report what changes a variable that a call uses, and can't be known without running the file."""
+        """Report what changes a variable of a call in a way that is unknown without running the file."""
         used, waiting = set(), list(self.used)
         while waiting:
             name = waiting.pop()
@@ -335,7 +339,7 @@ class _Reading:
                     self.findings.lost(self._place(statement), message, "write the numbers as literals")
 
     def _followed(self, statement: ast.stmt) -> bool:
-        """Carry out an assignment or an `append` of what is written out; whether the statement is no more than that."""
+        """Follow an assignment or an `append` of literals; return whether the statement is nothing more."""
         match statement:
             case ast.Assign(targets=targets, value=value) if all(isinstance(t, ast.Name) for t in targets):
                 for target in targets:
@@ -363,7 +367,7 @@ class _Reading:
         return False
 
     def play(self, node: ast.AST, names: Any, times: Any, keys: Any) -> None:
-        """Add the curves of one call, which begins when those before it have ended."""
+        """Add the curves of one call, which begins when the calls before it have ended."""
         self.called = True
         end = begin = self.begin
         joints = [joint for name in (names if isinstance(names, list) else [names]) for joint in _joints(name)]
@@ -446,15 +450,12 @@ class _Reading:
 
 
 def _joints(name: Any) -> tuple[Any, ...]:
-    """The joints of a chain, or the joint itself."""
+    """Return the joints of a chain, or the joint itself."""
     return CHAINS.get(name, (name,)) if isinstance(name, str) else (name,)
 
 
 def _rows(times: Any, keys: Any, joints: int) -> list[tuple[list[Any], list[Any]]] | None:
-    """Times and keys of each joint, in every form that ALMotion accepts; None if they do not fit.
-
-    One time for all, one time or angle for each joint, or a list for each of them; for a single joint, its own list.
-    """
+    """Return times and keys of each joint, in every form that ALMotion accepts; None if they do not match."""
     if times == [] or keys == []:
         return None
     if joints == 1 and isinstance(times, list) and not isinstance(times[0], list):
@@ -469,7 +470,7 @@ def _rows(times: Any, keys: Any, joints: int) -> list[tuple[list[Any], list[Any]
 
 
 def _is_posted(node: ast.AST) -> bool:
-    """Whether the script continues while the robot moves: `motion.post.…`, or qi's `_async=True`."""
+    """Return whether the script continues while the robot moves: `motion.post.…`, or qi's `_async=True`."""
     if not isinstance(node, ast.Call):
         return False
     return ".post." in written(node.func) or any(
@@ -478,14 +479,14 @@ def _is_posted(node: ast.AST) -> bool:
 
 
 def _handle(handle: Any) -> tuple[int, BezierHandle]:
-    """The type and (dt [s], da [rad]) of a handle."""
+    """Return the type and (dt [s], da [rad]) of a handle."""
     if isinstance(handle, list) and len(handle) == 3 and all(_is_number(part) for part in handle):
         return int(handle[0]), ((float(handle[1]), float(handle[2])) if handle[0] == BEZIER else (0.0, 0.0))
     return LINEAR, (0.0, 0.0)
 
 
 def _names(node: ast.AST) -> set[str]:
-    """The variables that stand in it."""
+    """Return the variables in an expression."""
     return {inner.id for inner in ast.walk(node) if isinstance(inner, ast.Name)}
 
 

@@ -82,5 +82,5 @@ handles of a key, `[3, -0.1, 0]`."""
 
 
 def is_reading(name: str) -> bool:
-    """Whether a call only reads something, by its name: `getAngles`, `isRunning`."""
+    """Return whether a call only reads something, judged by its name: `getAngles`, `isRunning`."""
     return any(name.startswith(word) and name[len(word) : len(word) + 1].isupper() for word in ("get", "is"))

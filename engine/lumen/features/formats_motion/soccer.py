@@ -16,7 +16,7 @@ POSE = "play"
 
 
 def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurves:
-    """The curves of a motion, joined by lines. Raises ForeignFileError where it names no joint, or one twice."""
+    """Return the curves of a motion, joined by lines. Raises ForeignFileError if it has no joint, or one twice."""
     (first, *rest), *lines = cells_of(file, text, "%")
     behind = first[0].partition(SOCCER_VERSION)[2].lstrip(", ")
     row = [(behind, first[1]), *rest] if behind else lines.pop(0) if lines else []
@@ -45,7 +45,7 @@ def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurv
 
 
 def _takes(cells: list[Cell], joints: int) -> float | None:
-    """What the way to the pose of a line takes [s]; None where the line is no pose."""
+    """Return how long the movement to the pose of a line takes [s]; None if the line is not a pose."""
     if cells[0][0] != POSE or len(cells) != joints + 2:
         return None
     takes = number(cells[-1][0])

@@ -1,4 +1,4 @@
-"""The statements of a Python file in their order, each with what may keep it from being carried out once."""
+"""The statements of a Python file in their order, each marked if it may not run exactly once."""
 
 import ast
 import re
@@ -10,7 +10,7 @@ from lumen.features.formats_motion.naoqi_calls import ALMOTION_CALLS
 
 
 class Branch(Enum):
-    """Where a statement stands: `ALWAYS` is carried out once, as far as a reader can tell."""
+    """The kind of place of a statement: `ALWAYS` runs exactly once, as far as a reader can tell."""
 
     ALWAYS = "always"
     IF = "if"
@@ -60,17 +60,17 @@ def statements(
 
 
 def has_jumps(loop: ast.For) -> bool:
-    """Whether a round of a loop may end early."""
+    """Return whether a round of a loop may end early."""
     return any(isinstance(node, ast.Break | ast.Continue | ast.Return) for node in _inner(loop.body))
 
 
 def _within(around: Branch, branch: Branch) -> Branch:
-    """The branch of a statement within another: what is left out or repeated stays so."""
+    """Return the branch of a nested statement: if the outer one is skipped or repeated, so is the inner one."""
     return branch if around in (Branch.ALWAYS, Branch.IF) else around
 
 
 def _is_main(test: ast.expr) -> bool:
-    """Whether an `if` is the one around what a file does when it is run, or no question at all."""
+    """Return whether an `if` only tests whether the file is run as a program, or is always true."""
     match test:
         case (
             ast.Compare(left=ast.Name(id="__name__"), ops=[ast.Eq()], comparators=[ast.Constant(value="__main__")])
@@ -102,7 +102,7 @@ class OwnFunctions:
         self.classes = {node.name for node in classes}
 
     def called(self, call: ast.Call) -> FunctionNode | None:
-        """The function of the file that a call means."""
+        """Return the function of the file that a call refers to, None if there is none."""
         match call.func:
             case ast.Name(id=name):
                 return self.plain.get(name)
@@ -111,7 +111,7 @@ class OwnFunctions:
         return None
 
     def reached(self, body: list[ast.stmt]) -> set[str]:
-        """The names of the functions that statements call, and of those that these call."""
+        """Return the names of the functions that statements call, directly or indirectly."""
         found: set[str] = set()
         waiting = [body]
         while waiting:
@@ -123,13 +123,13 @@ class OwnFunctions:
         return found
 
     def is_gesture(self, body: list[ast.stmt]) -> bool:
-        """Whether statements, or the functions that they call, move joints, or return the lists of a motion."""
+        """Return whether statements, or the functions that they call, move joints or return the lists of a motion."""
         whole = [body, *(self.all[name].body for name in self.reached(body) if name in self.all)]
         return any(_moves(part) for part in whole) or lists_of(body) is not None
 
 
 _OF_NAOQI = frozenset((*ALMOTION_CALLS, "say", "move", "rest", "play", "sleep", "wait"))
-"""Names that mean NAOqi's, unless `self` is called."""
+"""Names that refer to NAOqi, unless `self` is called."""
 
 
 class NamedLists(NamedTuple):
@@ -144,7 +144,7 @@ USUAL_LISTS = NamedLists("names", "times", "keys")
 
 
 def _inner(body: list[ast.stmt]) -> Iterator[ast.AST]:
-    """The nodes of statements, not those of functions and classes that are defined there."""
+    """Yield the nodes of statements, except those of nested functions and classes."""
     waiting: list[ast.AST] = list(body)
     while waiting:
         node = waiting.pop()
@@ -158,7 +158,7 @@ def _moves(body: list[ast.stmt]) -> bool:
 
 
 def lists_of(body: list[ast.stmt]) -> NamedLists | None:
-    """The lists of a motion that statements fill: those of Choregraphe's export, or three that are returned."""
+    """Return the lists of a motion that statements fill: those of Choregraphe's export, or three that are returned."""
     nodes = list(_inner(body))
     if set(USUAL_LISTS) <= {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}:
         return USUAL_LISTS
@@ -173,7 +173,7 @@ def lists_of(body: list[ast.stmt]) -> NamedLists | None:
 
 
 def attribute(call: ast.Call) -> str:
-    """The last part of the name in a call: `move` of `motion.move()`."""
+    """Return the last part of a call's name: `move` of `motion.move()`."""
     match call.func:
         case ast.Name(id=name) | ast.Attribute(attr=name):
             return name
@@ -184,7 +184,7 @@ MUTATING_METHODS = frozenset(("append", "extend", "insert", "pop", "remove", "so
 
 
 def changed_names(statement: ast.stmt) -> frozenset[str]:
-    """The variables that a statement sets or changes, also within lists."""
+    """Return the variables that a statement sets or changes, also within lists."""
     found: set[str] = set()
     for node in ast.walk(statement):
         match node:
@@ -198,7 +198,7 @@ def changed_names(statement: ast.stmt) -> frozenset[str]:
 
 
 def _targets(target: ast.expr) -> Iterator[str]:
-    """The variables in what is assigned to: of `a, b[0].c` that is `a` and `b`."""
+    """Yield the variables in a target of an assignment: `a` and `b` in `a, b[0].c`."""
     waiting = [target]
     while waiting:
         match waiting.pop():

@@ -15,7 +15,7 @@ from lumen.project.formats.joint_curves import CurvePoint, JointCurves, MotionFi
 from lumen.project.formats.known import FormatTable, Known
 
 FIRST_CELL = "#WEBOTS_MOTION"
-"""What every file begins with."""
+"""The first word of every file."""
 
 WEBOTS_VERSION = "V1.0"
 
@@ -30,7 +30,7 @@ _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
 
 
 def read_webots(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """The curves of a motion, joined by lines. Raises ForeignFileError where it is none."""
+    """Return the curves of a motion, joined by lines. Raises ForeignFileError if it is not a motion."""
     text = decoded(file.name, file.content)
     lines = list(cells_of(file.name, text, ","))
     if lines and [word for word, _ in lines[0][:2]] == [FIRST_CELL, SOCCER_VERSION]:
@@ -59,7 +59,9 @@ def read_webots(file: MotionFile, findings: ConversionFindings) -> JointCurves:
 
 
 def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
-    """The joints, taken off the front of the lines; some tools write their names into the second line."""
+    """Remove the joints from the front of the lines and return them; some tools write their names into the second
+    line.
+    """
     head = lines.pop(0) if lines else []
     if not head or head[0][0] != FIRST_CELL:
         raise broken(Place(file), "not-a-motion", f"this is not a Webots motion: it does not begin with {FIRST_CELL}")
@@ -82,6 +84,8 @@ def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
 
 
 def _time(text: str) -> float | None:
-    """The time of a pose [s], as Webots reads it: minutes and seconds may be missing, milliseconds are a number."""
+    """Return the time of a pose [s] as Webots reads it: minutes and seconds may be missing, milliseconds are a
+    number.
+    """
     match = _TIME.fullmatch(text)
     return int(match[1] or 0) * 60.0 + int(match[2] or 0) + int(match[3]) / 1000.0 if match else None

@@ -1,4 +1,4 @@
-"""A project's routes as an AsyncAPI 3 document: what a module may send, what it may hear, and how each is carried."""
+"""A project's routes as an AsyncAPI 3 document: what a module may send and receive, and how each message is carried."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,7 +13,7 @@ from lumen.language.routes import Carried, Direction, Route
 
 ASYNCAPI_VERSION = "3.0.0"
 BINDING_VERSION = "0.3.0"
-"""Of AsyncAPI's AMQP bindings."""
+"""The version of AsyncAPI's AMQP bindings."""
 
 EXCHANGE = "amq.topic"
 CARRIED_DESCRIPTIONS = {
@@ -25,12 +25,12 @@ CARRIED_DESCRIPTIONS = {
 
 
 def write_asyncapi(project: Project) -> str:
-    """The document as YAML; `send` and `receive` are what Lumen does, so that a module does the other."""
+    """Return the document as YAML; `send` and `receive` are Lumen's actions, so that a module does the opposite."""
     return yaml.safe_dump(document(project), sort_keys=False, allow_unicode=True, width=120)
 
 
 def document(project: Project) -> dict[str, Any]:
-    """The document as plain data."""
+    """Return the document as plain data."""
     routes = project.routes.values()
     old = [route for route in routes if route.alias and project.aliases is not False]
     return {
@@ -58,7 +58,7 @@ def document(project: Project) -> dict[str, Any]:
 
 
 def _server(url: str) -> dict[str, Any]:
-    """Where the broker is, without who may use it."""
+    """Return the broker's address without the user."""
     parts = urlsplit(url if url.startswith("amqp") and not fault_of_broker(url) else "amqp://localhost:5672/")
     host = f"{parts.hostname or 'localhost'}:{parts.port or (5671 if parts.scheme == 'amqps' else 5672)}"
     return {"host": host, "protocol": parts.scheme, "protocolVersion": "0.9.1"}
@@ -82,7 +82,7 @@ def _channel(route: Route, robot: str) -> dict[str, Any]:
 
 
 def _old(route: Route) -> str:
-    """The name of the channel that is a route's alias."""
+    """Return the name of the channel of a route's alias."""
     return f"{route.name}.alias"
 
 
@@ -125,7 +125,7 @@ def _message(route: Route, project: Project) -> dict[str, Any]:
 
 
 def _schema(data: Any, at: str) -> Any:
-    """A message schema at its place in the document: its references lead there, and it names no dialect of its own."""
+    """Return a message schema for its place in the document: its references lead there, and it names no dialect."""
     if isinstance(data, list):
         return [_schema(item, at) for item in data]
     if not isinstance(data, dict):

@@ -26,7 +26,7 @@ WRITE_PERIOD = 0.1
 FORGETTING_SPACING = 2.0
 """The time between two removals of names [s], each of which rewrites files."""
 FORGETTING_SPAN = 10.0
-"""How long a forgotten name is also removed from new messages [s]: the request to forget contains it."""
+"""The time for which a forgotten name is also removed from new messages [s]: the request to forget contains it."""
 MAX_FORGOTTEN = 100
 """The number of names that are removed at a time."""
 FORGOTTEN_ROUTE, IMAGE_ROUTE = "forgotten", "image"

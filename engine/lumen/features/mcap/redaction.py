@@ -17,7 +17,7 @@ from lumen.journal.redaction import redact
 from lumen.language.people import PersonName
 
 AROUND = 600.0
-"""How long before and after their name pictures and sounds may be of them [s]."""
+"""The time before and after a person's name in which pictures and sounds may be of them [s]."""
 PICTURE_FORM = "foxglove.CompressedImage"
 SOUND_FORMS = ("lumen.recording", "lumen.wav.stream")
 

@@ -20,7 +20,7 @@ from lumen.language.retention import RecordingSettings
 PIECE_PERIOD = 30.0
 """The length of a piece of the ring [s]: at most so much more than requested is kept."""
 AFTER = 60.0
-"""How long recording continues after something happened [s]."""
+"""The time for which recording continues after something happened [s]."""
 RETRY_PERIOD = 30.0
 """The pause after an error of the disk [s]."""
 

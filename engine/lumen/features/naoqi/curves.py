@@ -15,7 +15,7 @@ from lumen.motion.trajectories import JointTrack
 MOTION_CYCLE = 0.02
 """ALMotion's period [s]."""
 MAX_CURVE_ERROR = 1e-3
-"""How far a joint may deviate from a minimum-jerk track [rad]."""
+"""The greatest deviation of a joint from a minimum-jerk track [rad]."""
 MIN_PIECE_DURATION = 2 * MOTION_CYCLE
 """The shortest piece [s]."""
 BEZIER_HANDLE = 3

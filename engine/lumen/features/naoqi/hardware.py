@@ -45,7 +45,7 @@ class Hardware:
     edge: str
     """The part that leaves the stage first."""
     reach: float
-    """How far that part is from the robot's position [m]."""
+    """The distance of that part from the robot's position [m]."""
     gets_up: bool
     """Whether the robot gets up by itself after a fall."""
 

@@ -22,7 +22,9 @@ from lumen.robot.command_table import speech_duration
 from lumen.robot.life_layer import LifeLayer
 
 OURS_AFTER = 0.5
-"""How long after a light command the eyes stay untouched [s], because the command's calls may still be on their way."""
+"""The time after a light command in which the eyes stay untouched [s], because the command's calls may still be on
+their way.
+"""
 
 UNLIT = "white"
 """The colour of eyes that no command has lit."""
@@ -68,7 +70,7 @@ SPEED = 0.3
 """The share of their greatest speed at which joints move there."""
 
 REST_AFTER = 0.5
-"""How long no command may have moved the robot before it moves by itself again [s]: NAOqi finishes late."""
+"""The time without commands after which the robot moves by itself again [s]: NAOqi finishes late."""
 
 
 class NaoqiLife:

@@ -15,7 +15,7 @@ AUDIO_DEVICE, MICROPHONE_SERVICE = "ALAudioDevice", "LumenMicrophones"
 FRONT_MICROPHONE, INTERLEAVED = 3, 0
 """The microphone that points at the visitor: ALAudioDevice offers a single one at 16 kHz, all four only at 48 kHz."""
 RECORDING_GRACE = 3.0
-"""How much longer than its duration a recording may take to arrive [s]."""
+"""The time beyond its duration in which a recording must arrive [s]."""
 
 
 class Microphones:

@@ -90,14 +90,14 @@ class MotionPlayer:
                 )
 
     def _stand(self, joints: list[str]) -> CallSteps:
-        """Return the commanded angles of these joints, from which NAOqi begins."""
+        """Request and return the commanded angles of these joints, from which NAOqi begins."""
         if not joints:
             return {}
         angles = yield self._post("ALMotion", "getAngles", joints, False)
         return dict(zip(joints, angles, strict=True))
 
     def _recover(self, home: Mapping[str, float]) -> CallSteps:
-        """Return the joints to the starting posture: a killed motion leaves them where they are."""
+        """Move the joints back to the starting posture: a killed motion stops on its way."""
         if home:
             here = yield from self._stand(list(home))
             yield self._go(home, here, RECOVERY_TIME)

@@ -26,7 +26,7 @@ OPTIONAL_SERVICES = {
 """Services that a tour can do without, and what is missing without them."""
 OLDEST_NAOQI, TESTED_NAOQI = (2, 1), ((2, 1), (2, 8))
 AUTONOMOUS_LIFE_TIMEOUT = 10.0
-"""How long autonomous life may take to end [s]: it lets the robot finish its present activity."""
+"""The time that autonomous life may take to end [s]: it lets the robot finish its present activity."""
 
 _log = logging.getLogger(__name__)
 

@@ -23,7 +23,7 @@ class ConnectionChange(NamedTuple):
     name: str
     """`robot.lost` or `robot.back`."""
     seconds: float
-    """How long the robot was away [s]."""
+    """The time for which the robot was away [s]."""
     reason: str
     """Why it was lost."""
 

@@ -10,7 +10,7 @@ from lumen.upkeep.threads import WatchedThread
 
 NAOQI_PORT = 9559
 CALL_TIMEOUT = 2.0
-"""How long a waiting call may take [s]; a robot that is silent for longer counts as lost."""
+"""The time that a waiting call may take [s]; a robot that is silent for longer counts as lost."""
 CONNECT_TIMEOUT = 5.0
 MAX_ERROR_LENGTH = 200
 

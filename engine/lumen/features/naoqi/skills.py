@@ -49,7 +49,7 @@ def language_of(code: str, spoken: Sequence[str]) -> str:
 LOOK_TOLERANCE = 0.03
 """A head that is nearer than this to its goal has reached it [rad]."""
 LOOK_GRACE = 1.0
-"""How much longer than necessary a look may take [s]."""
+"""The time that a look may take beyond what is necessary [s]."""
 WAKE_SPEED = 0.5
 SOUND_FOLDER = "/home/nao/lumen"
 """The folder of the exhibition's sounds on the robot: NAOqi plays only files on its own disk."""

@@ -11,11 +11,11 @@ from lumen.ports import Sonar, Whereabouts
 from lumen.robot.hazards import danger
 
 FALL_DRIFT = 0.6
-"""How far the robot may have slid in a fall and while getting up [m], the same as for the simulated robot."""
+"""The distance that the robot may have slid in a fall and while getting up [m], the same as for the simulated robot."""
 MOST_BETWEEN_LOOKS = 0.5
 """A larger distance between two readings of the position means that the odometry was reset [m]."""
 MAX_STAGE_DRIFT = 0.03
-"""How far a walk to a place may leave the stage [m]."""
+"""The distance by which a walk to a place may leave the stage [m]."""
 
 GroundPose = Sequence[float]
 """x, y [m] and theta [rad], as from `ALMotion.getRobotPosition`."""

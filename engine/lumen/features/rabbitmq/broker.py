@@ -19,9 +19,9 @@ from lumen.language.addresses import fault_of_broker, public
 HEARTBEAT_INTERVAL = 10
 """The time between heartbeats in both directions [s], unless the address has another."""
 SOCKET_TIMEOUT = 5.0
-"""How long connecting, and each answer during login, may take [s]."""
+"""The time that connecting, and each answer during login, may take [s]."""
 BROKER_TIMEOUT = 2 * SOCKET_TIMEOUT
-"""How long the broker may take to answer a request [s]."""
+"""The time in which the broker must answer a request [s]."""
 CREDENTIALS_VARIABLE = "LUMEN_BUS_CREDENTIALS"
 """The environment variable that names a file with `NAME:PASSWORD`."""
 MIN_RABBITMQ_VERSION = (3, 10)

@@ -24,13 +24,13 @@ from lumen.upkeep.drops import DropLog
 PREFETCH = 64
 """The number of deliveries that the broker sends ahead for each subscription."""
 BIND_TIMEOUT = 5.0
-"""How long a subscription waits for the broker to confirm it [s]."""
+"""The time that a subscription waits for the broker to confirm it [s]."""
 TURN_TIME = 1.0
 """The longest time in one turn of the connection [s]."""
 FLOOD_PAUSE = 0.02
 """The pause in reading after an excess of messages [s]: one tick, so that all of them are read at once."""
 UNBOUND_READ_TIME = 2.0
-"""How long a queue is still read after it is unbound [s]: by then its remaining messages have arrived."""
+"""The time for which a queue is still read after it is unbound [s]: by then its remaining messages have arrived."""
 
 _log = logging.getLogger(__name__)
 

@@ -24,7 +24,7 @@ from lumen.features.rabbitmq.poll_loop import PollLoop
 from lumen.features.rabbitmq.wire import MessageReader, WireConnection
 
 STALL_TIME = 0.5
-"""How much longer than planned a turn may take [s] before this process counts as having been suspended."""
+"""A turn that takes so much longer than planned [s] means that this process was suspended."""
 
 
 class TurnClock:

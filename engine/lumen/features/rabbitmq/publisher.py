@@ -33,9 +33,9 @@ MAX_BY_GUEST = 8
 MAX_UNCONFIRMED_BYTES = 4 * 1024 * 1024
 """The total size of the bodies of messages that may be sent but not confirmed yet [bytes]."""
 CONFIRM_TIME = 0.01
-"""How long the broker's confirmations are left to accumulate while more messages are sent [s]."""
+"""The time for which the broker's confirmations accumulate while more messages are sent [s]."""
 IDLE_TIME = 0.5
-"""How long the connection waits for events if there is nothing to send [s]."""
+"""The time that the connection waits for events if there is nothing to send [s]."""
 MAX_WARNED_KEYS = 1_000
 """The number of keys without a receiver that are warned of; further ones are not."""
 PROBE_PERIOD = 1.0
@@ -52,7 +52,7 @@ class _Sent(NamedTuple):
     size: int
     """The size of its body [bytes]."""
     again: OutgoingMessage | None
-    """What to send again if the connection is lost, None for nothing."""
+    """The message to send again if the connection is lost, None for none."""
 
 
 class Publisher(BrokerConnection):

@@ -39,8 +39,8 @@ HOUR = 60 * 60 * 1000
 UNUSED_EXPIRY = 10 * 60 * 1000
 """The time without a reader after which a queue of commands is deleted [ms]."""
 QUORUM_SETTLE_TIME = 1.0
-"""How long a new quorum queue stays unbound [s]. RabbitMQ saves which log belongs to the queue half a second later; if
-it is killed before, the queue's content is lost (docs/decisions).
+"""The time for which a new quorum queue stays unbound [s]. RabbitMQ saves which log belongs to the queue half
+a second later; if it is killed before, the queue's content is lost (docs/decisions).
 """
 
 SIDE_EXCHANGE = "fanout"

@@ -18,7 +18,7 @@ PREFETCH = 200
 MOST_READ = 2000
 """The number of messages that may wait for `take`; beyond it no more are requested."""
 TURN = 0.2
-"""How long the connection's thread waits for events before it checks whether to end [s]."""
+"""The time that the connection's thread waits for events before it checks whether to end [s]."""
 
 
 class StreamReader(BrokerConnection):

@@ -26,7 +26,7 @@ ASIDE_RATE = 10.0
 others.
 """
 REPLY_LIFETIME = 30.0
-"""How long a reply waits for a broker that is away [s]."""
+"""The time that a reply waits for a broker that is away [s]."""
 
 
 class Transport:

@@ -4,7 +4,9 @@ import time
 from collections.abc import Callable
 
 STEADY = 3.0
-"""How long a device must be connected until it is reported as back [s]: so one that comes and goes is reported once."""
+"""The time that a device must be connected until it is reported as back [s]: so one that comes and goes is
+reported once.
+"""
 
 
 class LinkHealth:

@@ -19,7 +19,7 @@ MAX_TRIM = 0.15
 _SMOOTHING = 0.3
 
 HIP_SAG, _SAG_SMOOTHING = 0.02, 0.8
-"""How far the hip of a leg that supports the robot alone sags [rad]: its servo lags under load and its gear has play.
+"""The sag of the hip of a leg that supports the robot alone [rad]: its servo lags under load and its gear has play.
 """
 
 LEAN, LEAN_RATE, LEAN_GAIN = 0.12, 0.1, 5.0
@@ -28,13 +28,13 @@ per m]; the last for legs as long as those that the paces were tuned with.
 """
 
 STANDING_AHEAD = 0.005
-"""How much farther ahead than in a walk the weight should be in standing [m], for such legs."""
+"""The distance by which the weight should be farther ahead than in a walk while standing [m], for such legs."""
 
 HEEL_MARGIN = 0.01
 """The robot falls backwards if its DCM is nearer than this to the heels' edge [m], for such legs."""
 
 ARM_SWING, HIP_STRETCH = 3.0, 0.3
-"""How far arms swing up and back, and hips stretch, against a fall [rad]."""
+"""The swing of the arms up and back, and the stretch of the hips, against a fall [rad]."""
 
 ARM_SPEED, HIP_SPEED = 8.2, 6.0
 """The speeds of that movement [rad/s], if the joints reach them."""

@@ -1,4 +1,4 @@
-"""The interface of bases: what a simulated robot stands on and moves with, made for the kind that its body has."""
+"""The interface of bases: legs, wheels or a mount under a simulated robot, made for the kind that its body has."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from lumen.robot.executor import Activity
 
 @dataclass(frozen=True)
 class BaseRequest:
-    """What a base is made from. Only the base may move its world and motors."""
+    """The parts that a base is made from. Only the base may move its world and motors."""
 
     world: World
     models: Path

@@ -28,12 +28,12 @@ beyond the edge: pressed toes would only make a certain fall harder.
 """
 
 KNEE_LIFT, LIFTS_EARLY = 0.25, 0.7
-"""How far the knee of a foot that steps back bends [rad], and the exponent of time: below 1 it bends most before
+"""The bend of the knee of a foot that steps back [rad], and the exponent of time: below 1 it bends most before
 halfway.
 """
 
 KNEE_GIVES, GIVES_LATE = 0.8, 0.15
-"""How far the other knee yields when a foot steps back [rad], and from which share of the step on."""
+"""The yielding of the other knee when a foot steps back [rad], and the share of the step at which it begins."""
 
 UPRIGHT_GAIN, UPRIGHT_LEAN = 0.8, 0.45
 """The gain and the target of the torso's forward lean [rad], held by the supporting hip. Thighs hardly move backwards
@@ -93,7 +93,7 @@ class CatchStep:
         return now - self._begin >= self._seconds
 
     def _step_back(self, part: float, goal: CapturePoint, measured: Mapping[str, float]) -> dict[str, float]:
-        """Step back, bending the knee first; meanwhile lean the torso forward and lower the body."""
+        """Return the angles of a step back: the knee bends first, the torso leans forward and the body is lowered."""
         side, bears, sent = self.side, self.bears, self._sent
         end, way = self._level(np.array([*goal, 0.0])), min(1.0, part / _LANDS)
         joints = {**sent, **{n: sent[n] + way * (angle - sent[n]) for n, angle in end.items()}}

@@ -23,7 +23,7 @@ stay loaded, and arms and hips help more than a foot that does not leave the gro
 """
 
 BRACE_TIME, CALM_TIME, RETURN_TIME = 0.5, 0.3, 1.0
-"""How long the legs take to bring the body between the feet, to rest there, and to return to their earlier task [s]."""
+"""The times to bring the body between the feet, to rest there, and to return to the legs' earlier task [s]."""
 
 NEXT_STEP = 0.2
 """The pause after a step before the next may begin [s]."""
@@ -150,7 +150,7 @@ class FallCatcher:
             self._motors.aim(self._legs)
 
     def _return(self, now: float) -> None:
-        """Return the legs to their goals."""
+        """Move the legs back to their goals."""
         part = smooth((now - self._since) / RETURN_TIME)
         wanted = self._motors.wanted(self._names)
         self._legs = {name: angle + part * (wanted[name] - angle) for name, angle in self._landed.items()}

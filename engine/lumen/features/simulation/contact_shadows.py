@@ -16,7 +16,7 @@ SHADOW_FADES = 0.05
 
 LAYERS, LAYER_OPACITY = (0.75, 1.0, 1.3, 1.65), 0.13
 BEYOND_SOLE, VISITOR_SIZE = (0.018, 0.015), (0.17, 0.2)
-"""How far a spot extends beyond half a sole, ahead and sideways, and half the length and width of a visitor's spot [m].
+"""A spot's extent beyond half a sole, ahead and sideways, and half the length and width of a visitor's [m].
 """
 
 _THICKNESS = 4e-4

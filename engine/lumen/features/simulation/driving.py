@@ -27,7 +27,7 @@ BRAKES_EARLY = 0.85
 """The share of the greatest braking speed that is used: motors react late."""
 
 MOTORS_LATE = 0.06
-"""How long the wheels keep their speed before a command acts [s]."""
+"""The time for which the wheels keep their speed before a command acts [s]."""
 
 STUCK_TIME = 3.0
 """A robot that has not moved for this long is stuck [s]."""
@@ -173,14 +173,14 @@ class DriveTo(DriveActivity):
         return True
 
     def _face(self, seen: Pose) -> bool:
-        """Turn the front, or the back, towards the goal."""
+        """Turn the front, or the back, towards the goal; return False."""
         bearing = atan2(-seen.y, -seen.x) if self._back else atan2(seen.y, seen.x)
         if self._round(bearing):
             self._phase = self._approach
         return False
 
     def _approach(self, seen: Pose) -> bool:
-        """Drive to the goal; correct sideways errors while enough distance remains."""
+        """Drive to the goal, correcting sideways errors while enough distance remains; return False."""
         ahead = -1.0 if self._back else 1.0
         left, drive = ahead * seen.x, self.drive
         if left < NEAR:
@@ -193,7 +193,7 @@ class DriveTo(DriveActivity):
         return False
 
     def _turn(self, seen: Pose) -> bool:
-        """Turn to the goal's heading."""
+        """Turn to the goal's heading; return True when done."""
         return self._round(seen.theta)
 
     def _round(self, angle: float) -> bool:

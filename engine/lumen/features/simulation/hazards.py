@@ -1,4 +1,4 @@
-"""What forbids a step: an obstacle ahead, or a hand on a button."""
+"""Hazards that forbid a step: an obstacle ahead, or a hand on a button."""
 
 from collections.abc import Mapping
 

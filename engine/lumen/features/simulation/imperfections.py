@@ -28,7 +28,9 @@ LATENCY = 1
 """The delay until a command acts, in control periods: the cycle of NAOqi's DCM and of LoLA, 10 to 12 ms."""
 
 BACKLASH = 0.01
-"""How far a joint can turn while its motor stands still [rad]: Webots' value for ROBOTIS OP2, a robot of that size."""
+"""The angle by which a joint can turn while its motor does not move [rad]: Webots' value for ROBOTIS OP2, a robot
+of that size.
+"""
 
 NOMINAL_VOLTAGE, FULL_VOLTAGE, EMPTY_VOLTAGE = 21.6, 25.2, 18.0
 """The voltages of NAO's battery [V]: six lithium cells in series (data sheet: 21.6 V), each 4.2 V full and 3.0 V empty.

@@ -21,7 +21,7 @@ MEETING_TOLERANCE = 1e-3
 """The distance below which axes intersect, and legs are alike [m]."""
 
 STRAIGHT_TOLERANCE = 0.02
-"""How far an axis may deviate from its direction [rad]."""
+"""The deviation of an axis from its direction that is accepted [rad]."""
 
 NANOMETRES = 9
 """The decimals that are kept [m], [rad]: enough for the MJCF's numbers, without the rounding errors of their sums."""

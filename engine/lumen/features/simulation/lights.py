@@ -17,7 +17,7 @@ RENDERED_COLOURS: Mapping[object, int] = {
 """The colours of lit LEDs as seen through their covers; other names and values are CSS colours."""
 
 PROPS = ("microphone",)
-"""What the robot can hold for show: materials of the MJCF, invisible until then."""
+"""Things that the robot can hold for show: materials of the MJCF, invisible until then."""
 
 _SPEAKING = (0.4, 0.9, 1.0)
 _WHITE = np.array([channel / 255 for channel in RENDERED_COLOURS["white"].to_bytes(3, "big")], np.float32)

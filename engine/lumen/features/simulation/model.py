@@ -83,7 +83,7 @@ def load(
 ) -> mjcf.RootElement:
     """Return the hall with the robot on its stage; `hall` is relative to `models`, or absolute.
 
-    The robot can fall, unless its base is fixed: then it is part of what it is mounted on. Raises RobotError if a file
+    The robot can fall, unless its base is fixed: then it is part of its mount. Raises RobotError if a file
     is not MJCF or lacks elements that the simulation needs; the error lists all of them.
     """
     world = read_hall(models, hall)

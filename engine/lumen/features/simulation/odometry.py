@@ -14,13 +14,14 @@ _FEET = {"L": "left", "R": "right"}
 
 
 DRIFT_AFTER_SITTING, DRIFT_AFTER_LYING_BACK, DRIFT_AFTER_FALL = 0.1, 0.25, 0.6
-"""How far the robot may have moved when it stands again [m]: after sitting, after lying on its back, and after lying on
-its belly or falling. Six robots of various weights on various floors were off by at most 0.05, 0.13 and 0.47 m.
+"""The distances that the robot may have moved when it stands again [m]: after sitting, after lying on its back, and
+after lying on its belly or falling. Six robots of various weights on various floors were off by at most 0.05, 0.13 and
+0.47 m.
 """
 
 
 DRIFT_AFTER_CATCH = 0.1
-"""How far the feet may have slid while steps caught a fall [m]."""
+"""The distance that the feet may have slid while steps caught a fall [m]."""
 
 
 class Odometry:

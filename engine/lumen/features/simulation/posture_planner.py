@@ -14,13 +14,13 @@ from lumen.motion.postures import lies, passage, route
 from lumen.motion.trajectories import Trajectory
 
 MAX_ATTEMPTS = 3
-"""How often a robot that ends on the floor tries, in all."""
+"""The number of attempts, in all, of a robot that ends on the floor."""
 
 LYING_TILT = pi / 3
 """A torso that leans more than this is lying [rad]; that of a relaxed, sitting robot leans half as much."""
 
 SETTLING_TIME, REST_TIME = 1.5, 0.4
-"""How long the joints take to the posture in which a robot lies or sits, before it moves on, and to rest [s]."""
+"""The times of moving the joints to the posture in which a robot lies or sits, and of resting afterwards [s]."""
 
 
 class UprightSensor(Protocol):

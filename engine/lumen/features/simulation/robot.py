@@ -119,7 +119,7 @@ _CONDITION_EVERY = 10
 
 
 class SimulatedRobot(ExecutingRobot):
-    """A robot under physics that stands on its stage; its time passes only in `advance`, in the caller's thread.
+    """A robot under physics, on its stage; its time passes only in `advance`, in the caller's thread.
 
     `models` is the folder of the MJCF files, `hall` the name of one of them. The same seed and calls give the same run.
     Without `imperfections` it has those of a NAO; `stage` bounds its feet. If it shares a `world` and the visitor's

@@ -33,13 +33,13 @@ MAX_WALK_DISTANCE = 10.0
 """The longest walk that is accepted [m]."""
 
 MAX_STAGE_DRIFT = 0.02
-"""How far beyond the stage a later step may be planned [m]: each foot lands a little off its plan."""
+"""The distance beyond the stage at which a later step may be planned [m]: each foot lands a little off its plan."""
 
 ARRIVAL_TOLERANCE, HEADING_TOLERANCE = 0.02, 0.05
 """A walk that ends farther than this from its goal [m], [rad] has failed."""
 
 WALK_POSTURE_TIME, WALK_REST_TIME = 0.8, 0.2
-"""How long it takes to reach the walk's posture, and to come to rest there [s]."""
+"""The time to reach the walk's posture, and to come to rest there [s]."""
 
 HAZARD_CHECK_PERIOD = 0.1
 """The time between two checks for hazards [s]."""
@@ -203,7 +203,7 @@ class WalkActivity:
             self._gait.stop()
 
     def _go_on(self, now: float) -> bool:
-        """Continue from where the feet are after a caught fall; a cancelled walk ends there."""
+        """Continue from the feet's present places after a caught fall; return True if a cancelled walk ends there."""
         walker, gait = self._walker, self._gait
         self._stumbled, self._landed = False, 0
         self._gait = Gait(walker.legs, walker.odometry.feet, gait.goal, walker.centre_of_mass, gait.pace)

@@ -42,7 +42,7 @@ class WheelOdometry:
 
     @property
     def doubt(self) -> float:
-        """How far the robot may be from the estimate because it was down [m]."""
+        """The possible distance of the robot from the estimate because it was down [m]."""
         return self._reckoning.slid
 
     def feel(self, dt: float) -> None:

@@ -28,7 +28,7 @@ from lumen.run.one_robot import one_robot
 from lumen.run.reaching import reach_exhibition
 
 ANSWER_TIMEOUT = 2.0
-"""How long a running exhibition's memory may take to answer [s]; without an answer, all modules are notified."""
+"""The time in which a running exhibition's memory must answer [s]; without an answer, all modules are notified."""
 
 WHATS = ("visitors", "journal", "forget")
 

@@ -16,7 +16,7 @@ from lumen.language.people import PersonName, name_key
 from lumen.upkeep.private_folder import private_folder
 
 LOCK_TIMEOUT = 0.5
-"""How long to wait for a locked database [s]."""
+"""The time to wait for a locked database [s]."""
 MAX_ROWS = 1_000
 """The most rows of one answer."""
 
@@ -45,7 +45,7 @@ class JournalEntry(NamedTuple):
 
 
 class Forgotten(NamedTuple):
-    """What was deleted of a person."""
+    """The data that was deleted of a person."""
 
     visitors: int
     """The number of visitors."""

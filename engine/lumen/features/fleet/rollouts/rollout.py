@@ -1,4 +1,4 @@
-"""A rollout: it gives a bundle to more and more robots, or takes it back from all of them.
+"""A rollout: it gives a bundle to more and more robots, or withdraws it from all of them.
 
 The invariant, whatever is late, lost, killed or duplicated: no more robots run an unproved bundle than the present step
 allows. So a robot that was given the bundle counts until it has reported that it is back.
@@ -19,7 +19,7 @@ from lumen.features.fleet.settings import Fleet, RolloutPlan, StepTarget
 LONGEST_LOOK = 30.0
 """The longest time that one tick may count [s], so that a changed clock or a dead centre skips no waiting."""
 PATIENCE = 900.0
-"""How long beyond twice its pause a step may remain unproved before a person is asked [s]."""
+"""The time beyond twice its pause after which a person is asked about an unproved step [s]."""
 
 
 def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:

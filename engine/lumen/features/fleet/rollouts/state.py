@@ -23,9 +23,9 @@ class Rollout:
     assigned: tuple[str, ...] = ()
     """The robots that were given the bundle; their number only grows."""
     watched: float = 0.0
-    """How long most of them have run it in this step while the centre ran [s]."""
+    """The time for which most of them have run it in this step while the centre ran [s]."""
     waited: float = 0.0
-    """How long this step has been under way while the centre ran [s]."""
+    """The time for which this step has been under way while the centre ran [s]."""
     state: str = GOING
     reason: str = ""
     """The reason for its state."""
@@ -34,7 +34,7 @@ class Rollout:
     version: int = 0
     """The version of the last order before it."""
     prior: Mapping[str, str] = field(default_factory=dict)
-    """What was wanted of the assigned robots before."""
+    """The bundles that were wanted of the assigned robots before."""
     tried: bool = False
     """Whether the trials before the first step are over."""
 
@@ -57,7 +57,7 @@ class CentreState:
     wanted: Mapping[str, str] = field(default_factory=dict)
     """The bundle that each robot should run (a hash, or `!HASH`), by HOUSE/ROBOT."""
     exposed: Mapping[str, tuple[str, int]] = field(default_factory=dict)
-    """The robots that may run an unproved bundle: the bundle, and the version that took it back, 0 for none."""
+    """The robots that may run an unproved bundle: the bundle, and the version that withdrew it, 0 for none."""
     proved: tuple[str, ...] = ()
     """The bundles whose rollout was finished."""
     pinned: tuple[str, ...] = ()

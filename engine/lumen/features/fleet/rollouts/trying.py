@@ -11,9 +11,9 @@ from lumen.features.fleet.rollouts.state import GOING, PERSON, CentreState, Hear
 from lumen.features.fleet.settings import Fleet
 
 FRESH = 60.0
-"""How long a robot counts as present after its last report [s]."""
+"""The time for which a robot counts as present after its last report [s]."""
 TRYING = 600.0
-"""How long present robots may try a bundle before a person is asked [s]."""
+"""The time that present robots may try a bundle before a person is asked [s]."""
 
 HeardRobots = Mapping[str, HeardPresence]
 

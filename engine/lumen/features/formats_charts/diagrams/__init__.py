@@ -1,4 +1,4 @@
-"""Pictures of behaviours that need nobody's help: what is in them, where it stands, and how it is drawn."""
+"""Pictures of behaviours, drawn without other programs: their content, their layout, and their drawing."""
 
 from lumen.features.formats_charts.diagrams.dot_writer import dot_text
 from lumen.features.formats_charts.diagrams.svg_writer import svg

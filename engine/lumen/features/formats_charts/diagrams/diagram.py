@@ -1,4 +1,4 @@
-"""What a picture of a behaviour shows: boxes within boxes, and arrows between them."""
+"""The content of a behaviour's picture: boxes within boxes, and arrows between them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -30,7 +30,7 @@ class Diagram:
     arrows: tuple[tuple[str, str], ...] = field(default=())
 
     def all(self) -> Iterator[StateBox]:
-        """Every box, the outer ones first."""
+        """Yield every box, outer ones first."""
         waiting = list(self.boxes)
         while waiting:
             box = waiting.pop(0)

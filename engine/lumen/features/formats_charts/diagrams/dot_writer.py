@@ -12,7 +12,7 @@ digraph {
 
 
 def dot_text(diagram: Diagram) -> str:
-    """The graph's text, ending with a newline; `dot -Tsvg` draws it."""
+    """Return the graph's text, ending with a newline; `dot -Tsvg` draws it."""
     ids = {box.id: f"s{number}" for number, box in enumerate(diagram.all())}
     boxes = {box.id: box for box in diagram.all()}
     lines = [_HEAD, f"  label={_quoted(diagram.title)}"]
@@ -35,7 +35,7 @@ def _box(box: StateBox, ids: dict[str, str], depth: int) -> Iterator[str]:
 
 
 def _arrow(one: StateBox, other: StateBox, ids: dict[str, str]) -> str:
-    """An arrow to or from a frame ends at it."""
+    """Return an arrow; one to or from a frame ends at the frame."""
     looks = [f"{end}=cluster_{ids[box.id]}" for end, box in (("ltail", one), ("lhead", other)) if box.within]
     shown = f" [{', '.join(looks)}]" if looks else ""
     return f"  {ids[_leaf(one).id]} -> {ids[_leaf(other).id]}{shown}"

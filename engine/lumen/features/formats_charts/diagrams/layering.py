@@ -8,13 +8,13 @@ from collections.abc import Hashable, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 SWEEPS = 12
-"""How often the order of the layers is bettered."""
+"""The number of passes that improve the order of the layers."""
 SETTLING = 12
-"""How often nodes are moved towards those they are joined with."""
+"""The number of passes that move nodes towards their neighbours."""
 GAP, LAYER_GAP = 28.0, 46.0
-"""Between two nodes of a layer, and between layers [px]."""
+"""The distances between two nodes of a layer, and between layers [px]."""
 WAY = 14.0
-"""How much room an arrow has that passes through a layer [px]."""
+"""The room for an arrow that passes through a layer [px]."""
 
 
 class Extent(NamedTuple):
@@ -25,7 +25,7 @@ class Extent(NamedTuple):
 
 
 class Point(NamedTuple):
-    """A place in the picture, from its upper left corner [px]."""
+    """A point in the picture, from its upper left corner [px]."""
 
     x: float
     y: float
@@ -36,7 +36,7 @@ Edge = tuple[N, N]
 
 
 class Layering(NamedTuple):
-    """Where the upper left corner of each node stands, how large it all is, and through which points each edge goes."""
+    """The upper left corner of each node, the size of the picture, and the points that each edge passes."""
 
     corners: Mapping[object, Point]
     size: Extent
@@ -44,7 +44,7 @@ class Layering(NamedTuple):
 
 
 def layered(sizes: Mapping[N, Extent], edges: Sequence[Edge[N]], widest: float) -> Layering:
-    """Lay out nodes in layers that are at most as wide as `widest` [px] where that can be, from top to bottom.
+    """Return nodes laid out in layers from top to bottom, each at most `widest` [px] wide if possible.
 
     An edge that leads up again is laid out as if it led down.
     """
@@ -74,13 +74,13 @@ def layered(sizes: Mapping[N, Extent], edges: Sequence[Edge[N]], widest: float) 
 def _way(
     chain: Sequence[object], passed: Mapping[object, tuple[Point, Point]], corners: Mapping[object, Point]
 ) -> tuple[Point, ...]:
-    """Where an edge enters and leaves each layer that it passes through."""
+    """Return the points at which an edge enters and leaves each layer that it passes."""
     down = corners[chain[0]].y < corners[chain[-1]].y
     return tuple(point for n in chain[1:-1] for point in (passed[n] if down else passed[n][::-1]))
 
 
 def _without_cycles(nodes: Sequence[N], edges: Sequence[Edge[N]]) -> list[Edge[N]]:
-    """The edges, those turned round that close a cycle when one walks from the first node on."""
+    """Return the edges, with those reversed that close a cycle when walking from the first node."""
     out: dict[N, list[N]] = {n: [] for n in nodes}
     for one, other in edges:
         out[one].append(other)
@@ -104,7 +104,7 @@ def _without_cycles(nodes: Sequence[N], edges: Sequence[Edge[N]]) -> list[Edge[N
 
 
 def _ranks(nodes: Sequence[N], down: Sequence[Edge[N]]) -> dict[N, int]:
-    """The longest way from above to each node."""
+    """Return the length of the longest path from the top to each node."""
     below: dict[N, list[N]] = {n: [] for n in nodes}
     above = dict.fromkeys(nodes, 0)
     for one, other in down:
@@ -112,7 +112,7 @@ def _ranks(nodes: Sequence[N], down: Sequence[Edge[N]]) -> dict[N, int]:
         above[other] += 1
     ranks = dict.fromkeys(nodes, 0)
     ready = [n for n in nodes if not above[n]]
-    for n in ready:  # which grows meanwhile
+    for n in ready:  # it grows meanwhile
         for other in below[n]:
             ranks[other] = max(ranks[other], ranks[n] + 1)
             above[other] -= 1
@@ -122,7 +122,7 @@ def _ranks(nodes: Sequence[N], down: Sequence[Edge[N]]) -> dict[N, int]:
 
 
 def _narrow(ranks: Mapping[N, int], sizes: Mapping[N, Extent], widest: float) -> dict[N, int]:
-    """The ranks, those cut into several that are too wide."""
+    """Return the ranks, with those that are too wide split."""
     found: dict[N, int] = {}
     last = -1
     for rank in sorted(set(ranks.values())):
@@ -137,7 +137,9 @@ def _narrow(ranks: Mapping[N, int], sizes: Mapping[N, Extent], widest: float) ->
 def _with_ways(
     ranks: Mapping[N, int], room: dict[N, Extent], edges: Sequence[Edge[N]]
 ) -> tuple[list[list[object]], dict[tuple[object, object], list[object]], dict[object, Extent]]:
-    """The layers, with a narrow node wherever an edge passes through one; each edge as the nodes along it."""
+    """Return the layers, with a narrow node wherever an edge passes through one, and each edge as the nodes along
+    it.
+    """
     layers: list[list[object]] = [[] for _ in range(max(ranks.values(), default=-1) + 1)]
     for n, rank in ranks.items():
         layers[rank].append(n)
@@ -198,7 +200,7 @@ def _crossings(layers: Sequence[Sequence[object]], joined: Mapping[object, Seque
 def _centres(
     layers: Sequence[Sequence[object]], joined: Mapping[object, Sequence[object]], room: Mapping[object, Extent]
 ) -> dict[object, float]:
-    """Where the middle of each node stands from the left: near its neighbours, and not on top of another."""
+    """Return the middle of each node from the left: near its neighbours, without overlap."""
     centres: dict[object, float] = {}
     for layer in layers:
         whole = sum(room[n].width for n in layer) + GAP * (len(layer) - 1)
@@ -214,7 +216,9 @@ def _centres(
 
 
 def _apart(wished: Sequence[float], widths: Sequence[float]) -> list[float]:
-    """The places nearest to those that are wished, in the same order and apart: the mean of pushing right and left."""
+    """Return the places nearest to the wished ones, in the same order and with distance: the mean of pushing right and
+    left.
+    """
     right, left = list(wished), list(wished)
     for i in range(1, len(right)):
         right[i] = max(right[i], right[i - 1] + (widths[i - 1] + widths[i]) / 2 + GAP)

@@ -1,4 +1,6 @@
-"""Where the boxes of a diagram stand: what is within a box is laid out first, and is one node of what is around it."""
+"""Places the boxes of a diagram: the content of a box is laid out first, then counts as one node of its
+surroundings.
+"""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -7,19 +9,21 @@ from lumen.features.formats_charts.diagrams.diagram import Diagram, StateBox
 from lumen.features.formats_charts.diagrams.layering import GAP, Extent, Point, layered
 
 WIDEST, WAYS = 1260.0, 60.0
-"""How wide a layer may be, and what each frame leaves to arrows [px], so that the whole is read on 1400."""
+"""The greatest width of a layer, and the room around each frame for arrows [px], so that the whole is readable at
+1400.
+"""
 TITLE, ROW = 14.0, 12.0
 """Sizes of letters [px]."""
 TITLE_HEIGHT, ROW_HEIGHT = 20.0, 16.0
 PADDING = 12.0
 FRAME = 22.0
-"""Between a frame and what is within it [px]."""
+"""The distance between a frame and its content [px]."""
 _NARROW, _WIDE = frozenset("iljtfrI.,:;'|!()[]/ ’"), frozenset("mwMW@%—…→←")
 _BOLD = 1.14
 
 
 class PlacedBox(NamedTuple):
-    """A box with its upper left corner in the picture [px]; `within` those inside."""
+    """A box with its upper left corner in the picture [px]; `within` are the boxes inside."""
 
     box: StateBox
     corner: Point
@@ -42,7 +46,7 @@ class PlacedDiagram(NamedTuple):
 
 
 class _Inside(NamedTuple):
-    """What is within a frame, from its own corner on."""
+    """The content of a frame, relative to its corner."""
 
     boxes: tuple[PlacedBox, ...]
     arrows: tuple[PlacedArrow, ...]
@@ -50,18 +54,18 @@ class _Inside(NamedTuple):
 
 
 def place(diagram: Diagram) -> PlacedDiagram:
-    """Where everything stands; the same each time."""
+    """Return the places of all boxes; the result is always the same for the same diagram."""
     return PlacedDiagram(*_inside(diagram.boxes, diagram.arrows, WIDEST, side_by_side=False))
 
 
 def text_width(text: str, size: float) -> float:
-    """How wide a text is in the widest font that stands for Helvetica, about [px]."""
+    """Return the approximate width of a text in the widest substitute for Helvetica [px]."""
     units = (0.39 if c in _NARROW else 0.98 if c in _WIDE else 0.72 if c.isupper() else 0.62 for c in text)
     return size * sum(units)
 
 
 def header_height(box: StateBox) -> float:
-    """How high title and rows are together [px]."""
+    """Return the height of title and rows together [px]."""
     return TITLE_HEIGHT + ROW_HEIGHT * len(box.rows) + (4.0 if box.rows else 0.0)
 
 
@@ -83,7 +87,7 @@ def _inside(
 
 
 def _measured(box: StateBox, arrows: Sequence[tuple[str, str]], widest: float) -> _Inside:
-    """One box at the origin, with what is within it."""
+    """Return one box at the origin, with its content."""
     rows = [text_width(row, ROW) for row in box.rows]
     header = max([text_width(box.title, TITLE) * _BOLD, *rows]) + 2 * PADDING
     height = header_height(box) + PADDING
@@ -99,14 +103,14 @@ def _measured(box: StateBox, arrows: Sequence[tuple[str, str]], widest: float) -
 
 
 def _between(boxes: Sequence[StateBox], arrows: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
-    """Arrows that lead from one of these boxes, or what is within it, to another of them; each once."""
+    """Return the arrows from one of these boxes, or its content, to another of them, each once."""
     owner = {inner.id: box.id for box in boxes for inner in Diagram("", (box,)).all()}
     lifted = ((owner.get(a, ""), owner.get(b, "")) for a, b in arrows)
     return list(dict.fromkeys((a, b) for a, b in lifted if a and b and a != b))
 
 
 def _shelves(sizes: Mapping[str, Extent], widest: float) -> tuple[dict[str, Point], Extent]:
-    """One beside the other, and below where there is no more room."""
+    """Return the corners of boxes side by side, and below if there is no more room, with the size of all."""
     corners: dict[str, Point] = {}
     x = y = height = width = 0.0
     for id, size in sizes.items():

@@ -1,4 +1,4 @@
-"""A diagram as SVG, in one file that needs nothing else."""
+"""Writes a diagram as SVG, in one file without dependencies."""
 
 import itertools
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ from lumen.features.formats_charts.diagrams.placing import (
 
 MARGIN = 28.0
 MAX_WIDTH = 1400.0
-"""How wide a picture is at most [px]; a wider one is drawn smaller."""
+"""The greatest width of a picture [px]; a wider one is scaled down."""
 FONT = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 INK, QUIET, LINE, ARROW = "#1f2d3d", "#51637a", "#5b7492", "#8496ac"
 FRAMES = ("#f4f7fb", "#eaf0f7", "#e0e9f3", "#d7e2ef")
@@ -30,7 +30,7 @@ SPREAD = 0.6
 
 
 def svg(diagram: Diagram) -> str:
-    """The picture's text, ending with a newline."""
+    """Return the picture's text, ending with a newline."""
     placement = place(diagram)
     top = MARGIN + 34
     width, height = placement.size.width + 2 * MARGIN, placement.size.height + top + MARGIN
@@ -56,7 +56,7 @@ def svg(diagram: Diagram) -> str:
 
 
 def _frames(placed: PlacedBox, depth: int) -> Iterator[str]:
-    """The frames around others, which lie beneath everything."""
+    """Yield the frames around others, which are below everything."""
     if not placed.within:
         return
     x, y, width, height = *placed.corner, *placed.size
@@ -104,7 +104,9 @@ def _arrows(arrows: tuple[PlacedArrow, ...]) -> Iterator[str]:
 
 
 def _spread(arrows: tuple[PlacedArrow, ...]) -> dict[tuple[int, bool], Point]:
-    """Where each arrow begins (True) and ends, spread along the side of its box in the order of where it goes."""
+    """Return the points at which arrows begin (True) and end, spread along a box's side in the order of their other
+    ends.
+    """
     sides: dict[tuple[str, bool], list[tuple[float, int, bool, PlacedBox]]] = {}
     for number, arrow in enumerate(arrows):
         down = arrow.start.corner.y < arrow.end.corner.y

@@ -1,4 +1,4 @@
-"""What of a behaviour a picture shows: the whole, one region, or one state with its neighbours."""
+"""The views of a behaviour that a picture can show: the whole, one region, or one state with its neighbours."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable
@@ -11,13 +11,13 @@ from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.run.captions import invocation
 
 MAX_STATES_WITH_ROWS = 16
-"""With more, the whole shows no more than states and arrows."""
+"""The number of states above which the whole shows only states and arrows."""
 MAX_ARROWS_IN = 5
-"""With more arrows a state is a hub: they would hide the others, and its box counts them."""
+"""The number of arrows above which a state is a hub: they would hide the others, so its box shows their number."""
 
 
 def overview(machine: MachineDefinition) -> Diagram:
-    """The whole behaviour, the behaviours that it invokes as rows."""
+    """Return the whole behaviour, with the invoked behaviours as rows."""
     root = machine.root
     rows = len(machine.states) <= MAX_STATES_WITH_ROWS
     box = _box(machine, root, _led_here(machine), rows=rows)
@@ -25,14 +25,14 @@ def overview(machine: MachineDefinition) -> Diagram:
 
 
 def region(machine: MachineDefinition, name: str) -> Diagram:
-    """What is within one state, with what leads on. Raises UsageError where there is none of that name."""
+    """Return the content of one state, with its transitions. Raises UsageError if the state does not exist."""
     state = _named(machine, name, lambda state: bool(state.children))
     box = _box(machine, state, _led_here(machine), rows=True)
     return Diagram(f"{machine.id}: {state.name}", (box,), _arrows(machine, state.path))
 
 
 def neighbourhood(machine: MachineDefinition, name: str) -> Diagram:
-    """One state, those that lead there and those that it leads to. Raises UsageError where there is none."""
+    """Return one state, and the states before and after it. Raises UsageError if it does not exist."""
     state = _named(machine, name, lambda _: True)
     around = [state, *(machine.states[path] for path in _above(machine, state))]
     out = {target for each in around for t in each.transitions for target in t.targets}
@@ -48,7 +48,7 @@ def neighbourhood(machine: MachineDefinition, name: str) -> Diagram:
 
 
 def _box(machine: MachineDefinition, state: State, led: Counter[str], *, rows: bool, first: bool = False) -> StateBox:
-    """A state with what is within it; `led` is how many others lead to each."""
+    """Return a state with its content; `led` is the number of other states that lead to each."""
     children = [machine.states[path] for path in state.children]
     within = [child for child in children if child.kind is not StateKind.HISTORY and not made(child.where)]
     begins = [within[0].path] if state.for_each else state.initial
@@ -82,14 +82,14 @@ def _rows(machine: MachineDefinition, state: State) -> Iterable[str]:
 
 
 def _runs(state: State) -> Iterable[str]:
-    """What goes on in it besides its states: other behaviours, rounds."""
+    """Yield a state's activities besides its states: other behaviours, rounds."""
     yield from (f"invokes {invocation(invoke)}" for invoke in state.invoke)
     if state.for_each:
         yield f"for each {state.for_each.variable}"
 
 
 def _arrows(machine: MachineDefinition, within: str = "") -> tuple[tuple[str, str], ...]:
-    """Which states lead to which; none to a hub, or between a state and what is within it."""
+    """Return which states lead to which, except to a hub, or between a state and its content."""
     hubs = {path for path, count in _led_here(machine).items() if count > MAX_ARROWS_IN}
     found: dict[tuple[str, str], None] = {}
     for state in machine.states.values():
@@ -102,19 +102,19 @@ def _arrows(machine: MachineDefinition, within: str = "") -> tuple[tuple[str, st
 
 
 def _drawn(machine: MachineDefinition, path: str) -> str:
-    """A state that has a box: of a history the one around it."""
+    """Return the state with a box: for a history the enclosing one."""
     state = machine.states[path]
     return state.parent or "" if state.kind is StateKind.HISTORY else path
 
 
 def _led_here(machine: MachineDefinition) -> Counter[str]:
-    """How many other states lead to each."""
+    """Return the number of other states that lead to each."""
     pairs = {(s.path, _drawn(machine, e)) for s in machine.states.values() for t in s.transitions for e in t.targets}
     return Counter(end for start, end in pairs if start != end)
 
 
 def _inside(path: str, other: str) -> bool:
-    """Whether a state is another one, or within it."""
+    """Return whether a state is another one, or within it."""
     return not other or path == other or path.startswith(f"{other}.")
 
 

@@ -1,4 +1,4 @@
-"""Values that are written out in an expression."""
+"""Literal values in an expression."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from lumen.expressions.tree import ExpressionNode, Identifier, ListLiteral, Lite
 
 
 def constant(tree: ExpressionNode, otherwise: Any) -> Any:
-    """The JSON value that a tree of ECMAScript is, `otherwise` where it has to be computed."""
+    """Return the JSON value of a literal ECMAScript tree, `otherwise` if it must be computed."""
     match tree:
         case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
             return float(value)

@@ -1,4 +1,4 @@
-"""ECMAScript's equality in our language: of values, of what is missing, and of what may be."""
+"""ECMAScript's equality in Lumen's language: of values, of missing ones, and of possibly missing ones."""
 
 from lumen.expressions.kinds import LIST, MAP, NULL
 from lumen.expressions.tree import (
@@ -18,20 +18,20 @@ from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
 from lumen.features.formats_charts.ecmascript.translation import Translation
 
 EVENT, HAPPENED = Identifier("_event"), FunctionCall("has", (FieldAccess(Identifier("event"), "name"),))
-"""An event as a whole, and that there is one: before the first `_event` is undefined (SCXML 5.10.1)."""
+"""The event as a whole, and the test that there is one: at first `_event` is undefined (SCXML 5.10.1)."""
 
 _UNDEFINED = Identifier("undefined")
 
 
 def equality(translation: Translation, node: Binary) -> ExpressionNode:
-    """`==`, `!=`, `===` and `!==` in our words."""
+    """Return `==`, `!=`, `===` or `!==` in Lumen's language."""
     positive, strict = node.sign in ("==", "==="), len(node.sign) == 3
     found = _undefined(translation, node, strict) or _index(translation, node) or _equal(translation, node, strict)
     return found if positive else negated(found)
 
 
 def _undefined(translation: Translation, node: Binary, strict: bool) -> ExpressionNode | None:
-    """`typeof x === 'undefined'`, `x === undefined` and `x == null`: is there nothing?"""
+    """Translate `typeof x === 'undefined'`, `x === undefined` and `x == null`: the test that a value is missing."""
     for one, other in ((node.left, node.right), (node.right, node.left)):
         kind_asked = isinstance(one, Unary) and one.sign == "typeof"
         if isinstance(one, Unary) and kind_asked and other != Literal("undefined"):
@@ -56,7 +56,7 @@ def _absent(translation: Translation, tree: ExpressionNode, or_null: bool) -> Ex
 
 
 def _index(translation: Translation, node: Binary) -> ExpressionNode | None:
-    """`text.indexOf(part) == -1`: negated, does the text hold the part?"""
+    """Translate `text.indexOf(part) == -1`: the text does not contain the part."""
     match node:
         case Binary(left=FunctionCall(function=".indexOf", arguments=(text, part)), right=Literal(value=-1)):
             return Unary("!", FunctionCall("contains", (translation.value(text), translation.value(part))))
@@ -76,7 +76,7 @@ def _equal(translation: Translation, node: Binary, strict: bool) -> ExpressionNo
 
 
 def guarded(translation: Translation, node: ExpressionNode, *operands: ExpressionNode) -> ExpressionNode:
-    """The comparison, false where a field of the event is missing (which ECMAScript calls undefined)."""
+    """Return the comparison, false if a field of the event is missing (undefined in ECMAScript)."""
     paths = {path: operand for operand in operands if is_data(path := path_of(operand))}
     missing = [FunctionCall("has", (operand,)) for path, operand in paths.items() if path not in translation.present]
     return Logic("&&", (*missing, node)) if missing else node

@@ -1,4 +1,4 @@
-"""Which kind a value is of, as far as its expression shows."""
+"""Infers the kind of a value from its expression."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -22,7 +22,7 @@ UNKNOWN_KIND = ""
 
 
 def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
-    """One of the kinds of our values, or UNKNOWN_KIND; `context` has those of the context's keys that keep theirs."""
+    """Return one of the kinds of Lumen's values, or UNKNOWN_KIND; `context` has those of keys with a constant kind."""
     match node:
         case Literal(value=value):
             return kind_of(value)
@@ -55,7 +55,7 @@ def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
 
 
 def is_float(node: ExpressionNode) -> bool:
-    """Whether a number is certainly no whole one to `/`."""
+    """Return whether a number is certainly not an integer for `/`."""
     match node:
         case Literal(value=value):
             return isinstance(value, float)
@@ -67,5 +67,5 @@ def is_float(node: ExpressionNode) -> bool:
 
 
 def kinds_of(context: Mapping[str, Any], types: Mapping[str, Any]) -> dict[str, str]:
-    """The kinds that context keys keep: those of their first values, where `types` declares nothing wider."""
+    """Return the constant kinds of context keys: those of their first values, unless `types` declares a wider one."""
     return {key: kind_of(value) for key, value in context.items() if value is not None and key not in types}

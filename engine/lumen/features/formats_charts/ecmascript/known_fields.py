@@ -1,10 +1,10 @@
-"""Which fields of an event are known to be there: ECMAScript's undefined is a missing field here."""
+"""The fields of an event that are known to be present: ECMAScript's undefined is a missing field in Lumen."""
 
 from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, Literal, Logic, Unary, path_of
 
 
 def negated(node: ExpressionNode) -> ExpressionNode:
-    """Not that, without a needless `!`."""
+    """Return the negation, without a needless `!`."""
     match node:
         case Unary(sign="!", operand=operand):
             return operand
@@ -18,12 +18,12 @@ def negated(node: ExpressionNode) -> ExpressionNode:
 
 
 def is_data(path: tuple[str, ...] | None) -> bool:
-    """Whether a path leads to a field of the event's data."""
+    """Return whether a path leads to a field of the event's data."""
     return path is not None and path[:2] == ("event", "data") and len(path) > 2
 
 
 def known(node: ExpressionNode, holds: bool) -> frozenset[tuple[str, ...]]:
-    """The fields that are there where the node holds (or does not)."""
+    """Return the fields that are present if the node holds (or does not hold)."""
     match node:
         case FunctionCall(function="has", arguments=(target,)) if holds:
             path = path_of(target)

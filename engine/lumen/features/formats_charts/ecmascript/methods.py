@@ -1,4 +1,4 @@
-"""Methods and functions of ECMAScript, and what they are here."""
+"""ECMAScript's methods and functions, and their counterparts in Lumen."""
 
 import re
 
@@ -45,7 +45,7 @@ _COUNTS = {".toLowerCase": 0, ".trim": 0, ".replaceAll": 2, ".includes": 1, ".st
 
 
 def method(translation: Translation, node: FunctionCall) -> ExpressionNode:
-    """The call of a method in our words; raises ScriptError where we have none."""
+    """Return the call of a method in Lumen's language. Raises ScriptError if there is no counterpart."""
     name, (owner, *arguments) = node.function, node.arguments
     if owner == Identifier("Math"):
         return _mathematics(translation, name, arguments)

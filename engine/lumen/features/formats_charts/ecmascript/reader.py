@@ -1,4 +1,4 @@
-"""From ECMAScript's tree to ours: the same meaning, or a ScriptError where there is no counterpart."""
+"""Translates ECMAScript's tree to Lumen's with the same meaning; ScriptError means that there is no counterpart."""
 
 import re
 from collections.abc import Mapping
@@ -50,19 +50,21 @@ class ScriptNames:
 
 
 def read_condition(source: str, names: ScriptNames) -> str:
-    """Our expression, true where ECMAScript's is truthy; raises ScriptError."""
+    """Return Lumen's expression that is true if ECMAScript's is truthy. Raises ScriptError."""
     return printed(ScriptTranslator(names).condition(parse_script(source)))
 
 
 def read_value(source: str, names: ScriptNames) -> ExpressionNode:
-    """The tree of our expression with the same value; raises ScriptError."""
+    """Return the tree of Lumen's expression with the same value. Raises ScriptError."""
     tree = ScriptTranslator(names).value(parse_script(source))
     printed(tree)
     return tree
 
 
 def printed(tree: ExpressionNode) -> str:
-    """The text of one of our trees; raises ScriptError where it is longer or deeper than an expression may be."""
+    """Return the text of one of Lumen's trees. Raises ScriptError if it is longer or deeper than an expression may
+    be.
+    """
     if any(level > MAX_TREE_DEPTH for _, level in walk(tree)):
         raise ScriptError("it is nested too deeply")
     text = unparse(tree)
@@ -72,7 +74,7 @@ def printed(tree: ExpressionNode) -> str:
 
 
 class ScriptTranslator:
-    """Translates one expression; `present` are the fields of the event that are known to be there so far."""
+    """Translates one expression; `present` are the fields of the event known to be present so far."""
 
     def __init__(self, names: ScriptNames) -> None:
         self.names = names
@@ -82,7 +84,7 @@ class ScriptTranslator:
         return kind(node, self.names.kinds)
 
     def condition(self, tree: ExpressionNode) -> ExpressionNode:
-        """True where the value is truthy."""
+        """Return a tree that is true if the value is truthy."""
         match tree:
             case Logic(sign=sign, operands=operands):
                 return self._logic(sign, operands)
@@ -117,7 +119,7 @@ class ScriptTranslator:
         return guarded(self, Unary("!", Binary("in", node, _FALSY)), node)
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """The same value."""
+        """Return a tree with the same value."""
         match tree:
             case Literal(value=int() as value) if not isinstance(value, bool) and not MIN_INT <= value <= MAX_INT:
                 return Literal(float(value))
@@ -180,7 +182,7 @@ class ScriptTranslator:
         return read if node.sign == "+" else Unary("-", read)
 
     def _either(self, node: Logic) -> ExpressionNode:
-        """`a || b` is one of the two values, not true or false."""
+        """Translate `a || b`, which is one of the two values, not a boolean."""
         values = [self.value(operand) for operand in node.operands]
         if all(self.kind(value) == BOOLEAN for value in values):
             return self._logic(node.sign, node.operands)
@@ -208,7 +210,7 @@ class ScriptTranslator:
         return Binary(sign, left, right)
 
     def _renamed(self, node: Binary) -> Binary:
-        """A comparison with the name of an event, by our name for it."""
+        """Translate a comparison with the name of an event, using Lumen's name for it."""
         name = FieldAccess(EVENT, "name")
         match node.left, node.right:
             case left, Literal(value=str() as event) if left == name:
@@ -235,7 +237,7 @@ class ScriptTranslator:
         return FunctionCall(node.function, arguments)
 
     def _in(self, node: FunctionCall) -> ExpressionNode:
-        """`In('id')`; and `In(id)`, as the data model `null` writes it (SCXML B.1.2)."""
+        """Translate `In('id')`; and `In(id)`, as in the data model `null` (SCXML B.1.2)."""
         states = self.names.states
         match node.arguments:
             case (Literal(value=str() as state),):
@@ -250,7 +252,7 @@ class ScriptTranslator:
 
 
 def _floats(left: ExpressionNode, right: ExpressionNode) -> tuple[ExpressionNode, ExpressionNode]:
-    """Operands of `/` for a quotient with its fraction."""
+    """Return the operands of `/` for a quotient with its fraction."""
     match left, right:
         case _, Literal(value=int() as value):
             return left, Literal(float(value))

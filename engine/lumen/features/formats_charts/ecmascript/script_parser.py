@@ -1,4 +1,4 @@
-"""From the text of an ECMAScript expression to its tree."""
+"""Parses the text of an ECMAScript expression to its tree."""
 
 from collections.abc import Collection
 from typing import ClassVar
@@ -24,12 +24,12 @@ _RESERVED = frozenset((
 
 
 def parse_script(source: str) -> ExpressionNode:
-    """The tree of an expression; raises ScriptError where it is none, or uses what our language has not."""
+    """Return the tree of an expression. Raises ScriptError if it is invalid, or uses what Lumen's language lacks."""
     return _ScriptParser(tokenize_script(source)).bounded()
 
 
 def is_reserved(name: str) -> bool:
-    """Whether ECMAScript, or SCXML, means something by it."""
+    """Return whether a name has a meaning in ECMAScript or SCXML."""
     return name in _FOREIGN or name in CONSTANTS or name in _RESERVED
 
 
@@ -50,7 +50,7 @@ class _ScriptParser(PrattParser):
         return ScriptError("it is nested too deeply")
 
     def minus(self, power: int) -> ExpressionNode:
-        """`-operand`; of a number it is a number."""
+        """Return `-operand`; a negated number is a number."""
         negative = self.unary(power)
         operand = negative.operand
         if not isinstance(operand, Literal) or isinstance(operand.value, bool | str | None):

@@ -20,11 +20,13 @@ _SIMPLE = {"n": "\n", "t": "\t", "r": "\r", "b": "\b", "f": "\f", "v": "\v", "0"
 
 
 class ScriptError(Exception):
-    """An expression that our language can't represent; the message is the reason."""
+    """An expression that Lumen's language can't represent; the message is the reason."""
 
 
 def tokenize_script(source: str) -> list[Token]:
-    """The tokens of an expression, of the kinds number, text, name and sign, and last `end`; raises ScriptError."""
+    """Return the tokens of an expression, of the kinds number, text, name and sign, and a final `end`. Raises
+    ScriptError.
+    """
     if len(source) > MAX_EXPRESSION_LENGTH:
         raise ScriptError(f"it is longer than {MAX_EXPRESSION_LENGTH:,} characters")
     found, offset = [], 0

@@ -1,4 +1,4 @@
-"""What the parts of a translation need of the whole, which has the names and goes down the tree."""
+"""The interface that the parts of a translation need: the translation of subexpressions and names."""
 
 from typing import Protocol
 
@@ -6,12 +6,12 @@ from lumen.expressions.tree import ExpressionNode
 
 
 class Translation(Protocol):
-    """One expression of ECMAScript on its way into ours; `present` are the fields of the event known to be there."""
+    """The translation of one ECMAScript expression; `present` are the fields of the event known to be present."""
 
     present: frozenset[tuple[str, ...]]
 
     def value(self, tree: ExpressionNode) -> ExpressionNode:
-        """Our tree with the same value; raises ScriptError."""
+        """Return Lumen's tree with the same value. Raises ScriptError."""
 
     def kind(self, node: ExpressionNode) -> str:
-        """The kind of one of our trees, or UNKNOWN_KIND."""
+        """Return the kind of one of Lumen's trees, or UNKNOWN_KIND."""

@@ -1,4 +1,4 @@
-"""From our expressions to ECMAScript's, and the names in them that only Lumen has."""
+"""Translates Lumen's expressions to ECMAScript, and collects the names in them that only Lumen has."""
 
 import re
 from collections.abc import Mapping
@@ -32,7 +32,7 @@ _SUFFIX = re.compile(r"((?:\\[^\w\s]|[\w\s])+)\$", re.ASCII)
 
 
 class WrittenScript(NamedTuple):
-    """The ECMAScript, and the names in it that other tools do not know."""
+    """An ECMAScript expression, and the names in it that other tools do not know."""
 
     text: str
     foreign: tuple[str, ...] = ()
@@ -47,7 +47,9 @@ class Vocabulary(NamedTuple):
 
 
 def write_expression(source: str, vocabulary: Vocabulary) -> WrittenScript:
-    """One of our expressions in ECMAScript; raises ScriptError where it uses the context or the event as a whole."""
+    """Return one of Lumen's expressions in ECMAScript. Raises ScriptError if it uses the context or the event as a
+    whole.
+    """
     writer = _ScriptWriter(vocabulary)
     text = unparse(writer.node(parse_expression(as_written(source))))
     return WrittenScript(text, tuple(dict.fromkeys(writer.foreign)))
@@ -147,7 +149,7 @@ class _ScriptWriter:
         return self._own(node.function, *arguments)
 
     def _typeof(self, sign: str, target: ExpressionNode) -> ExpressionNode:
-        """Whether something is there; where an event's name is, there is an event."""
+        """Translate the test that something is present; if an event's name is, there is an event."""
         asked = Identifier("_event") if path_of(target) == ("event", "name") else self.node(target)
         return Binary(sign, Unary("typeof", asked), Literal("undefined"))
 

@@ -1,4 +1,4 @@
-"""Executable content of SCXML (section 4) as our actions."""
+"""Reads executable content of SCXML (section 4) as Lumen's actions."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -22,7 +22,7 @@ _STATEMENT = re.compile(
 
 
 def assignments(source: str) -> list[tuple[str, str]] | None:
-    """The names and values of `x = 1; y += x; z++`, in order; None where the script does anything else."""
+    """Return the names and values of `x = 1; y += x; z++`, in order; None if the script does anything else."""
     text = re.sub(r"//[^\n]*|/\*.*?\*/", "", source, flags=re.DOTALL)
     if "'" in text or '"' in text:
         return None
@@ -60,7 +60,7 @@ class ScxmlActionReader:
         self.context, self.findings = context, findings
 
     def block(self, elements: Iterable[XmlElement]) -> list[ActionData]:
-        """The actions of these elements; what has no counterpart in Lumen is reported and left out."""
+        """Return the actions of these elements; report and leave out those without a counterpart in Lumen."""
         return [action for element in elements for action in self.actions(element)]
 
     def actions(self, element: XmlElement) -> Iterator[ActionData]:
@@ -72,7 +72,7 @@ class ScxmlActionReader:
             self.findings.lost(element.place, f"`<{element.tag}>`: {error}")
 
     def condition(self, source: str) -> str:
-        """Our guard; raises ScriptError."""
+        """Return Lumen's guard. Raises ScriptError."""
         return read_condition(source, self.context.names)
 
     def _actions(self, element: XmlElement) -> Iterator[ActionData]:
@@ -122,7 +122,7 @@ class ScxmlActionReader:
         return {"assign": {".".join((self.context.keys[id], *within)): value}}
 
     def _script(self, element: XmlElement) -> Iterator[ActionData]:
-        """A script that only assigns; raises where it does more."""
+        """Yield the assignments of a script. Raises LeftOutError if it does anything else."""
         found = assignments(element.text) if "src" not in element.attributes else None
         keys = self.context.keys
         if found is None or any(name not in keys for name, _ in found):
@@ -130,7 +130,7 @@ class ScxmlActionReader:
         yield from ({"assign": {keys[name]: self.value(source)}} for name, source in found)
 
     def value(self, source: str) -> Any:
-        """A value of ours: what is written out as such, the rest as an expression."""
+        """Return a value in Lumen's form: literals as such, the rest as an expression."""
         read = constant(parse_script(source), _NOT_CONSTANT)
         if read is not _NOT_CONSTANT:
             return quoted(read)
@@ -188,7 +188,7 @@ class ScxmlActionReader:
         return length
 
     def _constant(self, element: XmlElement, name: str, computed: str, *, optional: bool = False) -> str:
-        """The text of an attribute, or of the other one's expression; raises where that has to be computed."""
+        """Return the text of an attribute, or of its expression. Raises an error if that must be computed."""
         if computed in element.attributes:
             source = element.get(computed)
             read = constant(parse_script(source), _NOT_CONSTANT)
@@ -203,7 +203,7 @@ class ScxmlActionReader:
         return element.get(name)
 
     def data(self, element: XmlElement) -> Any:
-        """The data of a `<send>` or `<donedata>`: names, parameters, or content; None without any."""
+        """Return the data of a `<send>` or `<donedata>`: names, parameters, or content; None without any."""
         found: dict[str, Any] = {}
         for name in element.get("namelist").split():
             found[name] = unparse(read_value(name, self.context.names))
@@ -220,7 +220,7 @@ class ScxmlActionReader:
 
 
 def own(element: XmlElement) -> Any:
-    """What only Lumen has, as JSON in an element of its namespace."""
+    """Return what only Lumen has, as JSON in an element of its namespace."""
     try:
         return foreign_json(element.text)
     except (ValueError, RecursionError):

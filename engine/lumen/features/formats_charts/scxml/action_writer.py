@@ -1,4 +1,4 @@
-"""Our actions as SCXML's executable content."""
+"""Writes Lumen's actions as SCXML's executable content."""
 
 import json
 import re
@@ -36,11 +36,11 @@ class ScxmlActionWriter:
         self.vocabulary, self.report = vocabulary, report
 
     def block(self, steps: Sequence[PlacedAction]) -> list[XmlTag]:
-        """The elements of these actions."""
+        """Return the elements of these actions."""
         return [tag for step in steps for tag in self._one(step)]
 
     def expression(self, expression: Expression) -> str:
-        """ECMAScript; raises ScriptError."""
+        """Return an expression in ECMAScript. Raises ScriptError."""
         written = write_expression(expression.source, self.vocabulary)
         self._foreign(written.foreign, expression.where)
         return written.text
@@ -103,13 +103,13 @@ class ScxmlActionWriter:
                 yield from self.block(choice.otherwise)
 
     def data(self, value: ComputedValue) -> list[XmlTag]:
-        """Parameters for a map, content for everything else; raises ScriptError."""
+        """Return parameters for a map, content for everything else. Raises ScriptError."""
         if isinstance(value, Mapping) and value and all(value):
             return [XmlTag("param", {"name": key, "expr": self.value(item)}) for key, item in value.items()]
         return [XmlTag("content", {"expr": self.value(value)})]
 
     def value(self, value: ComputedValue) -> str:
-        """A value as ECMAScript; raises ScriptError."""
+        """Return a value as ECMAScript. Raises ScriptError."""
         match value:
             case Expression():
                 return self.expression(value)
@@ -120,7 +120,7 @@ class ScxmlActionWriter:
         return unparse(Literal(plain_value(value)))
 
     def literal(self, value: Any) -> str:
-        """JSON as ECMAScript."""
+        """Return JSON as ECMAScript."""
         match value:
             case list() | tuple():
                 return f"[{', '.join(map(self.literal, value))}]"
@@ -131,5 +131,5 @@ class ScxmlActionWriter:
 
 
 def is_constant(source: str) -> bool:
-    """Whether an expression of ours can't fail."""
+    """Return whether one of Lumen's expressions can't fail."""
     return isinstance(parse_expression(source), Literal)

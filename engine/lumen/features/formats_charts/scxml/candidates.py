@@ -20,9 +20,9 @@ from lumen.project.formats.behavior_data import TransitionData, single
 
 
 def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[TransitionData], None]) -> dict[str, Any]:
-    """`on` for these candidates, tried in this order; a descriptor with one candidate has it without a list.
+    """Return `on` for these candidates, tried in this order; a single candidate is written without a list.
 
-    Where the same descriptor stands before and after one that an event may match as well, all of these become
+    If the same descriptor comes before and after one that an event may match as well, all of these become
     candidates of the most general one, which ask for the event's name. One whose guard becomes too long is left out.
     """
     heads = _heads({descriptor for descriptor, _ in rows})
@@ -43,33 +43,33 @@ def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[Transit
 
 
 def _heads(descriptors: set[str]) -> dict[str, str]:
-    """For each descriptor the most general one that shares events with it."""
+    """Return for each descriptor the most general one that shares events with it."""
     return {d: next((general for general in _prefixes(d) if general in descriptors), d) for d in descriptors}
 
 
 class _DescriptorOrder:
-    """Where each descriptor stands, and the last one that lies below each."""
+    """The place of each descriptor, and of the last one below each."""
 
     def __init__(self) -> None:
         self.place: dict[str, int] = {}
         self.below: dict[str, int] = {}
 
     def add(self, descriptor: str) -> None:
-        """Let it stand last, if it does not stand anywhere."""
+        """Put it last if it has no place."""
         if descriptor not in self.place:
             place = self.place[descriptor] = len(self.place)
             for general in _prefixes(descriptor):
                 self.below[general] = place
 
     def passed(self, descriptor: str) -> bool:
-        """Whether one that an event may match as well stands after it."""
+        """Return whether a descriptor that matches some of its events comes after it."""
         place = self.place.get(descriptor, len(self.place))
         later = [self.place.get(general, -1) for general in _prefixes(descriptor)]
         return max([self.below.get(descriptor, -1), *later]) > place
 
 
 def _prefixes(descriptor: str) -> list[str]:
-    """All that are more general: `*`, `a` and `a.b` for `a.b.c`."""
+    """Return all more general descriptors: `*`, `a` and `a.b` for `a.b.c`."""
     if descriptor == "*":
         return []
     words = descriptor.split(".")
@@ -77,7 +77,7 @@ def _prefixes(descriptor: str) -> list[str]:
 
 
 def _narrowed(name: str, general: str, row: TransitionData) -> TransitionData | None:
-    """The row as a candidate of the general descriptor, None where its guard can't be that long."""
+    """Return the row as a candidate of the general descriptor, None if its guard would be too long."""
     if name == general:
         return row
     event = FieldAccess(Identifier("event"), "name")

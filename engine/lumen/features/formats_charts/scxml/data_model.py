@@ -1,4 +1,4 @@
-"""The data model of an SCXML document as our context."""
+"""Converts the data model of an SCXML document to Lumen's context."""
 
 import re
 from collections.abc import Iterator
@@ -19,14 +19,14 @@ _UNFIT = re.compile(r"\W+", re.ASCII)
 _NOTHING = object()
 
 MAX_KIND_PASSES = 10
-"""How often kinds are looked at again: after that, whatever is assigned may be of any."""
+"""The most passes over the kinds; after that, all assigned keys may have any kind."""
 
 
 class ScxmlDataModel:
-    """`first` are the values of our context's keys, `late` those that have to be computed, in order.
+    """`first` are the values of the context's keys, `late` those that must be computed, in order.
 
-    `names` is what expressions see. Where a key is given values of several kinds, `wide` has it, and `types` in our
-    file lets it hold anything.
+    `names` are the names in expressions. A key that receives values of several kinds is in `wide`, and `types` in the
+    file allows it any value.
     """
 
     def __init__(self, outline: ScxmlStateTree, findings: ConversionFindings) -> None:
@@ -99,7 +99,7 @@ class ScxmlDataModel:
             )
 
     def _widen(self, outline: ScxmlStateTree) -> None:
-        """Find the keys that are given values of another kind than their first."""
+        """Find the keys that receive values of another kind than their first."""
         assigned = [e for e in outline.scxml.walk() if e.tag == "assign" and e.get("location") in self.keys]
         for turn in range(MAX_KIND_PASSES):
             before = len(self.wide)
@@ -125,7 +125,9 @@ class ScxmlDataModel:
 
 
 def written(text: str) -> Any:
-    """The value of inline content (SCXML B.2.8.1): JSON, or a list or text as ECMAScript writes it, else the text."""
+    """Return the value of inline content (SCXML B.2.8.1): JSON, a list or text in ECMAScript's form, or else the
+    text.
+    """
     stripped = text.strip()
     if not stripped:
         return None
@@ -150,7 +152,7 @@ def _top_data(scxml: XmlElement) -> Iterator[XmlElement]:
 
 
 def _data(top: XmlElement, scxml: XmlElement) -> Iterator[XmlElement]:
-    """All `<data>`, those of the document first."""
+    """Yield all `<data>`, the document's first."""
     yield from _top_data(scxml)
     for state in scxml.walk():
         if state is not scxml and state.tag in STATES:

@@ -9,12 +9,12 @@ _AND, _END = " && (", ")"
 
 
 def row_condition(key: str, guard: str) -> str:
-    """The condition of the row of that key; `guard` is its own in ECMAScript, empty if it has none."""
+    """Return the condition of the row of that key; `guard` is its own in ECMAScript, empty without one."""
     return _asked(key) + (f"{_AND}{guard}{_END}" if guard else "")
 
 
 def guard_in(key: str, condition: str) -> str:
-    """The row's own guard in a condition as `row_condition` makes it, empty for none; else raises ScriptError."""
+    """Return the row's own guard in a condition of `row_condition`, empty for none. Raises ScriptError for others."""
     asked = _asked(key)
     if condition == asked:
         return ""

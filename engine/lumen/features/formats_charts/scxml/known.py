@@ -110,10 +110,10 @@ ELEMENTS: FormatTable = {
     "if": Known(_ACTION_NAMES | {"elseif", "else"}, _OTHER_ACTIONS),
     "send": Known(_PARAMETERS),
 }  # fmt: skip
-"""The elements that each element may hold; those that are not listed hold none, or any XML."""
+"""The elements that each element may contain; those that are not listed contain none, or any XML."""
 
 OPEN = frozenset(("data", "assign", "content"))
-"""Elements that may hold any XML, which is no part of the chart."""
+"""Elements that may contain any XML, which is not part of the chart."""
 
 ACTION_HOLDERS = frozenset(tag for tag, known in ELEMENTS.items() if "raise" in known.read)
 """Elements whose children are executable content."""
@@ -124,7 +124,7 @@ MEANINGLESS_ELEMENTS = {
     "graphics": "the layout in an editor", "position": "the layout in an editor",
     "metadata": "notes for readers", "documentation": "notes for readers", "description": "notes for readers",
 }  # fmt: skip
-"""Elements of other namespaces that are no actions, wherever they are."""
+"""Elements of other namespaces that are never actions."""
 
 VALUES: Mapping[tuple[str, str], tuple[str, ...]] = {
     ("scxml", "binding"): ("early", "late"),
@@ -136,13 +136,13 @@ VALUES: Mapping[tuple[str, str], tuple[str, ...]] = {
     ("final", "lumen:end"): ("true",),
     ("transition", "lumen:end"): ("true",),
 }
-"""The values of attributes that have only these."""
+"""The values of attributes with a fixed set of values."""
 
 SINGLE = frozenset(
     (("state", "initial"), ("initial", "transition"), ("history", "transition"), ("final", "donedata"),
      ("donedata", "content"), ("send", "content"), ("invoke", "content"))
 )  # fmt: skip
-"""Elements of which another holds at most one, as it does of each `lumen:` element."""
+"""Elements of which a parent has at most one; the same applies to each `lumen:` element."""
 
 TEXT = "text"
 ALTERNATIVES: Mapping[str, tuple[tuple[str, ...], ...]] = {
@@ -160,13 +160,13 @@ ALTERNATIVES: Mapping[str, tuple[tuple[str, ...], ...]] = {
     "cancel": (("sendid", "sendidexpr"),),
     "invoke": (("type", "typeexpr"), ("src", "srcexpr", "<content>"), ("id", "idlocation")),
 }  # fmt: skip
-"""Of these an element has one, as the recommendation says."""
+"""Alternatives: of each group, an element has one at most, by the recommendation."""
 
 REQUIRED: Mapping[str, str] = {"data": "id", "param": "name"}
 
 
 def _place(tag: str) -> Known:
-    """The attributes of an element, and in angle brackets the elements in it."""
+    """Return the attributes of an element, and in angle brackets the elements in it."""
     own, within = ATTRIBUTES.get(tag, Known()), ELEMENTS.get(tag, Known())
     return Known(
         own.read | {f"<{name}>" for name in within.read},
@@ -183,5 +183,5 @@ KNOWN: FormatTable = {
 
 
 def plain(name: str) -> str:
-    """`lumen:do` for our own names; those of other namespaces keep theirs, in braces."""
+    """Return `lumen:do` for Lumen's own names; names of other namespaces keep these, in braces."""
     return name.replace(f"{{{LUMEN_NAMESPACE}}}", "lumen:", 1)

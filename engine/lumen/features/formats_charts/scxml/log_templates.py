@@ -1,4 +1,4 @@
-"""`<log>` and our texts with `{{ … }}`, both ways."""
+"""Converts `<log>` to Lumen's texts with `{{ … }}`, and back."""
 
 import re
 
@@ -19,21 +19,21 @@ from lumen.project.formats.xml_elements import XmlElement
 
 
 def template_of(element: XmlElement, names: ScriptNames) -> str:
-    """The text of a `<log>`: its label, and its expression with texts joined to values; raises ScriptError."""
+    """Return the text of a `<log>`: its label, and its expression with texts joined to values. Raises ScriptError."""
     source = element.get("expr")
     parts = _parts(parse_script(source), names) if source else ()
     return plain_template(element, "") + "".join(_piece(part) for part in parts)
 
 
 def plain_template(element: XmlElement, text: str) -> str:
-    """The label of a `<log>`, and a text as it stands."""
+    """Return the label of a `<log>`, and a text unchanged."""
     label = element.get("label")
     between = ": " if label and element.get("expr") else ""
     return _piece(Literal(label + between + text))
 
 
 def _parts(tree: ExpressionNode, names: ScriptNames) -> list[ExpressionNode]:
-    """What stands between the `+` of a text put together, else the one value; read already."""
+    """Return the parts between the `+` of a joined text, else the single value."""
     chain: list[ExpressionNode] = []
     rest = tree
     while isinstance(rest, Binary) and rest.sign == "+":
@@ -52,7 +52,7 @@ def _piece(node: ExpressionNode) -> str:
 
 
 def expression_of(text: str, vocabulary: Vocabulary) -> tuple[str, tuple[str, ...]]:
-    """The ECMAScript of our text, and the names in it that only Lumen has; raises ScriptError."""
+    """Return the ECMAScript of Lumen's text, and the names in it that only Lumen has. Raises ScriptError."""
     parts = split_template(text)
     if not any(isinstance(part, Placeholder) for part in parts):
         return unparse(Literal(text)), ()

@@ -1,4 +1,4 @@
-"""The names by which SCXML's elements, its invocations and what is Lumen's own are known."""
+"""The names of SCXML's elements and invocations, and the namespace of Lumen's own."""
 
 SCXML_NAMESPACE = "http://www.w3.org/2005/07/scxml"
 

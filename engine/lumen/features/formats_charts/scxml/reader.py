@@ -1,4 +1,4 @@
-"""An SCXML document as the data of a behaviour file."""
+"""Reads an SCXML document as the data of a behaviour file."""
 
 import re
 from pathlib import PurePosixPath
@@ -25,7 +25,9 @@ _ID = re.compile(r"[^\s@*]+")
 
 
 def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, Any]:
-    """The behaviour named as the file, with its id and its input; raises LeftOutError or ScriptError for all else."""
+    """Return an invocation of the behaviour named like the file, with its id and input. Raises LeftOutError or
+    ScriptError.
+    """
     kind, source = element.get("type"), element.get("src").removeprefix("file:")
     if kind.rstrip("/") not in {p.rstrip("/") for p in PROCESSORS} or "typeexpr" in element.attributes:
         raise LeftOutError(f"the service `{kind or element.get('typeexpr')}` is not carried over")
@@ -48,9 +50,9 @@ def invocation(element: XmlElement, contents: ScxmlActionReader) -> dict[str, An
 
 
 def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """The data of our file, and everything that is not, or not quite, in it; raises ForeignFileError.
+    """Return the data of a behaviour file, and findings about lost and changed parts. Raises ForeignFileError.
 
-    `title` is the behaviour's name where the document has none.
+    `title` is the behaviour's name if the document has none.
     """
     root = parse_xml(file, content, SCXML_NAMESPACE)
     if root.tag != "scxml":
@@ -63,7 +65,7 @@ def read_scxml(file: str, content: bytes, title: str) -> tuple[dict[str, Any], l
 
 
 class _ScxmlReader:
-    """Reads one document, its states from the outside to the inside."""
+    """Reads one document, its states from the outermost to the innermost."""
 
     def __init__(self, scxml: XmlElement, title: str) -> None:
         self.scxml = scxml
@@ -135,7 +137,7 @@ class _ScxmlReader:
         return data if "target" in data else data | self._remembered(node)
 
     def _remembered(self, node: ForeignState) -> dict[str, Any]:
-        """Where a history leads that names no target (which SCXML does not allow): as its parent begins."""
+        """Return the target of a history without one (which SCXML does not allow): as its parent begins."""
         home = node.parent
         found = regular(home)[: None if home.source.tag == "parallel" else 1] if home else []
         return {"target": self.transitions.named(node, found)} if found else {}
@@ -148,7 +150,7 @@ class _ScxmlReader:
                 self.findings.lost(transition.attribute_place(name), message, "delete it")
 
     def _default(self, node: ForeignState, transition: XmlElement, key: str) -> dict[str, Any]:
-        """`initial` or a history's `target`, with the actions on the way."""
+        """Return `initial` or a history's `target`, with the actions on the way."""
         home = node if key == "initial" else node.parent
         found = self.transitions.targets(transition)
         if found is None or not found:
@@ -174,7 +176,7 @@ class _ScxmlReader:
     def _pass_through(
         self, home: ForeignState, transition: XmlElement, targets: list[ForeignState], actions: list[ActionData]
     ) -> str:
-        """A state that is left at once, doing on the way what SCXML does between `home` and its states."""
+        """Add a state that is left at once, with the actions between `home` and its states; return its key."""
         passed = self.passed.setdefault(home, {})
         key = passing_key(home, passed)
         hint = "the behaviour passes through it immediately"
@@ -234,7 +236,7 @@ class _ScxmlReader:
         return data
 
     def _invokes(self, node: ForeignState) -> list[dict[str, Any]]:
-        """The charts in other files that it invokes; what else it invokes is reported."""
+        """Return the charts in other files that it invokes; report its other invocations."""
         rows = []
         for element in node.source.of("invoke"):
             try:
@@ -257,7 +259,7 @@ class _ScxmlReader:
         return rows
 
     def _named_apart(self, node: ForeignState, element: XmlElement, row: dict[str, Any]) -> dict[str, Any]:
-        """The row with an id that nothing else has at the same time; raises LeftOutError if the file gives the id."""
+        """Return the row with an id that is unique at any time. Raises LeftOutError if the id is from the file."""
         id = row.get("id", row["behavior"])
 
         def is_taken(name: str) -> bool:
@@ -279,7 +281,7 @@ class _ScxmlReader:
                 self.findings.changed(block.place, f"several `<{block.tag}>` become one list", hint)
 
     def _afters(self, node: ForeignState) -> dict[str, Any]:
-        """The `<send>`, `<cancel>` and events that an `after` of ours was written as."""
+        """Return the events of the `<send>` and `<cancel>` that an `after` of Lumen's was written as."""
         found: dict[str, Any] = {"onentry": [], "onexit": [], "events": {}}
         name = node.name or self.outline.title
         exits: dict[str, list[XmlElement]] = {}
@@ -309,10 +311,7 @@ class _ScxmlReader:
 
 
 class _ActiveTogether:
-    """A set of states, which finds whether a further one can be active together with one of them.
-
-    Two states can if one is in the other, or if they are in different regions of a parallel state.
-    """
+    """A set of states that finds whether another one can be active together with one of them."""
 
     def __init__(self) -> None:
         self._states: set[ForeignState] = set()
@@ -337,6 +336,8 @@ class _ActiveTogether:
 
 
 def _with_entry(data: dict[str, Any], late: list[ActionData]) -> dict[str, Any]:
-    """Values that have to be computed are, before anything else."""
+    """Return the data with `late` as the first actions of `entry`: these values must be computed before anything
+    else.
+    """
     entry = [*late, *data.pop("entry", [])]
     return {**{k: v for k, v in data.items() if k != "states"}, "entry": entry, "states": data["states"]}

@@ -1,4 +1,4 @@
-"""The states of an SCXML document before anything in them is read: their keys and paths in our tree."""
+"""The states of an SCXML document before their content is read: their keys and paths in Lumen's tree."""
 
 from lumen.features.formats_charts.foreign_states import MAX_STATE_LEVELS, ForeignState, clean_id, free_id, free_key
 from lumen.features.formats_charts.scxml.namespaces import LUMEN_NAMESPACE
@@ -9,7 +9,7 @@ STATES = ("state", "parallel", "final", "history")
 
 
 def regular(node: ForeignState) -> list[ForeignState]:
-    """The children that can be active."""
+    """Return the children that can be active."""
     return [child for child in node.children if child.source.tag != "history"]
 
 
@@ -35,10 +35,10 @@ class ScxmlStateTree:
         self.events = {
             f"done.state.{id}": f"done.state.{node.name}" for id, node in self.by_id.items() if id != node.name != ""
         }
-        """The end events of states whose ids differ here."""
+        """The end events of states whose ids differ in Lumen."""
 
     def _top(self) -> XmlElement:
-        """The document itself, or the one state that Lumen wrapped its root in."""
+        """Return the document itself, or the one state that Lumen wrapped its root in."""
         states = [state for state in self.scxml.of(*STATES) if not _ends_document(state)]
         if len(states) != 1 or states[0].get(f"{{{LUMEN_NAMESPACE}}}root") != "true":
             return self.scxml
@@ -91,5 +91,5 @@ class ScxmlStateTree:
 
 
 def _ends_document(element: XmlElement) -> bool:
-    """Whether Lumen wrote it so that the document ends with the root that it wrapped."""
+    """Return whether Lumen wrote it so that the document ends with the root that it wrapped."""
     return element.get(f"{{{LUMEN_NAMESPACE}}}end") == "true"

@@ -1,4 +1,4 @@
-"""Transitions of SCXML as `on`, `always`, `after`, `onDone` and `onError`."""
+"""Reads transitions of SCXML as `on`, `always`, `after`, `onDone` and `onError`."""
 
 import re
 from collections.abc import Iterator
@@ -87,7 +87,7 @@ class ScxmlTransitionReader:
     def _done(
         self, node: ForeignState, rows: list[tuple[str, TransitionData]]
     ) -> tuple[dict[str, Any], list[tuple[str, TransitionData]]]:
-        """`onDone` and `onError` out of the candidates, where nothing else can be meant by them."""
+        """Return `onDone` and `onError` if the candidates can have no other meaning, and the remaining candidates."""
         name = node.name or self.outline.title
         kind = "do" if not regular(node) else "state"
         has_do = bool(list(node.source.of(f"{{{LUMEN_NAMESPACE}}}do")))
@@ -106,7 +106,7 @@ class ScxmlTransitionReader:
 
     @cached_property
     def _dones(self) -> set[str]:
-        """What the names of states begin with whose end is an event: up to each of their dots."""
+        """Return the prefixes of the states' names whose end is an event: up to each of their dots."""
         names = (node.name.split(".") for node in self.outline.root.walk() if node.children)
         return {".".join(words[:n]) for words in names for n in range(1, len(words))}
 
@@ -136,7 +136,7 @@ class ScxmlTransitionReader:
         return row
 
     def targets(self, element: XmlElement) -> list[ForeignState] | None:
-        """The states of `target`, None (and reported) where one does not exist."""
+        """Return the states of `target`, None (and report it) if one does not exist."""
         found = []
         for id in element.get("target").split():
             node = self.outline.by_id.get(id)
@@ -156,7 +156,7 @@ class ScxmlTransitionReader:
 
 
 def _heard(element: XmlElement) -> str:
-    """The key of the row of `hears` that a transition was written from; empty for none."""
+    """Return the key of the row of `hears` that a transition was written from; empty for none."""
     return element.get(f"{{{LUMEN_NAMESPACE}}}hears") if element.get("event") == HEARD else ""
 
 

@@ -95,7 +95,7 @@ class UnreadParts:
         element.attributes = found
 
     def _is_read(self, element: XmlElement, child: XmlElement) -> bool:
-        """Whether the reader gets a child; if not, it is reported."""
+        """Return whether the reader gets a child; report it if not."""
         shown, name = plain(element.tag), plain(child.tag)
         if _is_foreign(child.tag):
             local = child.tag.rpartition("}")[2]
@@ -161,7 +161,7 @@ def _is_foreign(name: str) -> bool:
 
 
 def _lost(known: Known, shown: str, name: str, hint: str) -> tuple[str, str]:
-    """The message and the hint: a known loss gives its reason, any other may be a slip."""
+    """Return the message and the hint: a known loss gives its reason, any other may be a mistake."""
     if name in known.lost:
         return f"{shown}: {hint}", ""
     return f"{shown} has no counterpart in Lumen", hint

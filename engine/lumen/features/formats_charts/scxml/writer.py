@@ -1,4 +1,4 @@
-"""A machine as an SCXML document."""
+"""Writes a machine as an SCXML document."""
 
 import json
 from collections.abc import Container, Iterator, Sequence
@@ -23,9 +23,9 @@ _TAGS = {StateKind.PARALLEL: "parallel", StateKind.FINAL: "final", StateKind.HIS
 
 
 def write_scxml(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
-    """The document, and what in it is missing or means something to Lumen only.
+    """Return the document, and findings about what is missing in it or has a meaning only for Lumen.
 
-    What SCXML has no word for (robot verbs, `do`, phrases, answers) stands in a namespace of its own: coming back to
+    What SCXML lacks (robot verbs, `do`, phrases, answers) is in a namespace of its own: coming back to
     Lumen nothing of it is lost, and other tools pass over it.
     """
     report = ExportReport(place)
@@ -75,7 +75,7 @@ class _ScxmlWriter:
         return XmlTag("data", {"id": self.vocabulary.keys[key], "expr": self.orders.literal(value)})
 
     def _own(self) -> Iterator[XmlTag]:
-        """What a whole machine has that SCXML has not."""
+        """Yield elements of Lumen's own for what a whole machine has and SCXML lacks."""
         machine = self.machine
         phrases = {name: plain_phrases(table, anyhow=name in machine.anyhow) for name, table in machine.phrases.items()}
         answers = {
@@ -94,7 +94,7 @@ class _ScxmlWriter:
             yield _json("machine", found)
 
     def _below(self, state: State) -> Iterator[str]:
-        """All children in document order, history states included."""
+        """Yield all children in document order, including history states."""
         return (path for path, child in self.machine.states.items() if child.parent == state.path and path)
 
     def _ids(self, paths: Sequence[str]) -> str:
@@ -153,7 +153,7 @@ class _ScxmlWriter:
                 yield XmlTag(tag, {}, block)
 
     def _invokes(self, state: State) -> Iterator[XmlTag]:
-        """The behaviours that run within it, by the names of the files that they are in when exported too."""
+        """Yield the invoked behaviours, by the names of their exported files."""
         for invoke in state.invoke:
             file = f"{invoke.behavior}.scxml"
             try:
@@ -171,7 +171,7 @@ class _ScxmlWriter:
             )
 
     def _event(self, state: State, event: str) -> str:
-        """An event of the state's own (`after`, `onDone`), by its id in the document."""
+        """Return an event of the state's own (`after`, `onDone`), by its id in the document."""
         return event.removesuffix(state.name) + self.ids[state.path] if event.endswith(f".{state.name}") else event
 
     def _transitions(self, state: State) -> Iterator[XmlTag]:
@@ -219,7 +219,7 @@ class _ScxmlWriter:
         return {"cond": self.orders.expression(condition)}
 
     def _wrapped(self, state: XmlTag) -> Iterator[XmlTag]:
-        """The root as a state in the document; with its end the document ends."""
+        """Yield the root as a state in the document, at whose end the document ends."""
         root, id, mark = self.machine.root, self.ids[""], {"lumen:end": "true"}
         yield state
         if root.kind is StateKind.PARALLEL or any(
@@ -245,7 +245,7 @@ class _ScxmlWriter:
 
 
 def _free(key: str, others: Container[str]) -> str:
-    """A name for a context key that ECMAScript leaves to the author."""
+    """Return a name for a context key that ECMAScript allows."""
     name = key
     while is_reserved(name) or (name != key and name in others):
         name += "_"

@@ -1,4 +1,4 @@
-"""XML as text, indented."""
+"""Writes XML as indented text."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -11,7 +11,7 @@ _QUOTES = {'"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 
 @dataclass
 class XmlTag:
-    """An element to be written; attributes that are empty are left out."""
+    """An element to be written; empty attributes are left out."""
 
     name: str
     attributes: Mapping[str, str] = field(default_factory=dict)
@@ -34,5 +34,5 @@ class XmlTag:
 
 
 def _sound(text: str) -> str:
-    """The text without characters that XML can't hold."""
+    """Return the text without characters that XML does not allow."""
     return _FORBIDDEN.sub("\ufffd", text)

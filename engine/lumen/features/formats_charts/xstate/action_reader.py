@@ -1,4 +1,4 @@
-"""Actions, guards and delays of XState: names whose code lies elsewhere, and those that Lumen wrote."""
+"""Reads actions, guards and delays of XState: names whose code is elsewhere, and those that Lumen wrote."""
 
 import json
 import re
@@ -29,14 +29,14 @@ _UNFIT = re.compile(r"\W+", re.ASCII)
 
 
 class XStateActionReader:
-    """Reads what stands in the states of one file; `context` gets a key for every guard whose code is not there."""
+    """Reads the content of one file's states; `context` gets a key for every guard without code."""
 
     def __init__(
         self, source: JsonSource, context: dict[str, Any], names: XStateNames, findings: ConversionFindings
     ) -> None:
         self.source, self.context, self.names, self.findings = source, context, names, findings
         self.wide: dict[str, dict[str, Any]] = {}
-        """The context keys that are given values of several kinds, as `types` has them."""
+        """Context keys that receive values of several kinds, as in `types`."""
         self.surroundings: dict[str, Any] = {}
         self.row = ""
         """The key of the row of `hears` whose actions are read, empty for other transitions."""
@@ -49,7 +49,7 @@ class XStateActionReader:
         self.findings.changed(self.source.place(where), message, hint)
 
     def actions(self, data: Any, where: NodePath) -> list[ActionData]:
-        """A name, an object, or a list of these."""
+        """Return actions from a name, an object, or a list of these."""
         if data is None:
             return []
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
@@ -85,7 +85,7 @@ class XStateActionReader:
         return _logged(shown_name(kind, data))
 
     def _params(self, place: str, data: Mapping[str, Any], where: NodePath) -> None:
-        """Report the parts of the other form of an XState action that are not carried over."""
+        """Report the parts of an XState action's other form that are not converted."""
         params, where = data.get("params"), (*where, "params")
         if params is not None and not isinstance(params, dict):
             self.lost(where, f"`params` of an {place} is not an object", "delete it")
@@ -100,7 +100,7 @@ class XStateActionReader:
             self.lost((*where, key), message, hint)
 
     def _own(self, verb: str, params: Any) -> ActionData | None:
-        """An action that Lumen wrote; None where somebody changed it into something else."""
+        """Return an action that Lumen wrote; None if it was changed into something else."""
         if verb == "if" and isinstance(params, dict):
             action = params
         else:
@@ -109,7 +109,7 @@ class XStateActionReader:
         return action if self.fits(around) else None
 
     def _built_in(self, kind: str, data: Mapping[str, Any], where: NodePath) -> ActionData:
-        """An action of XState's own; raises _AbsentError if JSON does not hold all of it."""
+        """Return an action of XState's own. Raises _AbsentError if JSON does not contain all of it."""
         match kind:
             case "xstate.raise":
                 body = self._sent(data)
@@ -145,7 +145,7 @@ class XStateActionReader:
         return {"assign": sound}
 
     def _sent(self, data: Mapping[str, Any]) -> dict[str, Any]:
-        """The event of `raise`, `send` and `sendTo` with its data, its delay and its id."""
+        """Return the event of `raise`, `send` and `sendTo` with its data, its delay and its id."""
         event, delay, id = data.get("event"), data.get("delay"), data.get("id")
         fields = event if isinstance(event, dict) else {"type": event}
         name = fields.get("type")
@@ -163,7 +163,9 @@ class XStateActionReader:
         return body
 
     def _recipient(self, kind: str, data: Mapping[str, Any]) -> str:
-        """The actor that receives the event; empty for the machine itself, the default of `send` in version 4."""
+        """Return the actor that receives the event; empty for the machine itself, the default of `send` in version
+        4.
+        """
         to = data.get("to")
         if to is None and kind == "xstate.send":
             return ""
@@ -172,11 +174,11 @@ class XStateActionReader:
         return PARENT if to == f"#_{PARENT}" else self.names.actor(to.removeprefix("#_"))
 
     def do(self, steps: Any) -> list[ActionData] | None:
-        """The `do` that Lumen wrote as an invocation."""
+        """Return the `do` that Lumen wrote as an invocation."""
         return steps if isinstance(steps, list) and self.fits({"do": steps}) else None
 
     def fits(self, state: Mapping[str, Any]) -> bool:
-        """Whether a state with this and no more would be without errors."""
+        """Return whether a state with only this would have no errors."""
         data = {**self.surroundings, "context": self.context, "states": {"a": dict(state)}}
         document, found = plain_document("machine", data)
         if document is None:
@@ -186,7 +188,7 @@ class XStateActionReader:
         return not has_errors([*found, *(d for d in report.diagnostics if d.code != "unknown-state")])
 
     def guard(self, data: Any, where: NodePath) -> str | None:
-        """Our expression, None (and reported) where this is no guard."""
+        """Return a guard as Lumen's expression, None (and report it) if it is not one."""
         kind = data.get("type") if isinstance(data, dict) else data
         params = data.get("params") if isinstance(data, dict) else None
         if not isinstance(kind, str) or not kind:
@@ -200,7 +202,7 @@ class XStateActionReader:
         return f"context.{self._placeholder(kind, data, where)}"
 
     def heard(self, data: Any, where: NodePath) -> TransitionData | None:
-        """The key of a row of `hears`, and its own guard, from the guard that Lumen wrote; None if that is broken."""
+        """Return the key and guard of a row of `hears` from the guard that Lumen wrote; None if that is broken."""
         params = data.get("params") if isinstance(data, dict) else None
         key, source = (params.get("row"), params.get("source")) if isinstance(params, dict) else (None, None)
         if isinstance(key, str) and key:
@@ -227,7 +229,7 @@ class XStateActionReader:
         return key
 
     def delay(self, text: str, where: NodePath) -> str | None:
-        """A key of `after`: milliseconds."""
+        """Return a key of `after` in milliseconds."""
         try:
             length = float(text)
         except ValueError:
@@ -243,7 +245,7 @@ class _AbsentError(Exception):
 
 
 def _text(data: Mapping[str, Any], key: str) -> str:
-    """A text; raises _AbsentError."""
+    """Return a text. Raises _AbsentError if it is missing."""
     value = data.get(key)
     if isinstance(value, bool) or not isinstance(value, str | int | float) or value == "":
         raise _AbsentError(f"`{key}` is not in the file")
@@ -255,7 +257,7 @@ def _logged(text: str) -> ActionData:
 
 
 def shown_name(kind: str, data: Any) -> str:
-    """The name of an action, a guard or an actor with its parameters, which version 4 has beside it."""
+    """Return the name of an action, guard or actor with its parameters, which version 4 has beside it."""
     params = data.get("params") if isinstance(data, dict) else None
     rest = data.items() if isinstance(data, dict) else ()
     beside = {key: value for key, value in rest if key not in ("type", "params")}

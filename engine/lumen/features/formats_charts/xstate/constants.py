@@ -1,4 +1,4 @@
-"""Computed values as other tools of XState see them: texts that are written out are texts, expressions stay."""
+"""Computed values as other XState tools see them: literal texts are texts, expressions stay."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,7 +10,7 @@ from lumen.language.actions import ComputedValue, Expression
 
 
 def constant(value: ComputedValue) -> Any:
-    """A value with the texts in it that are written out; expressions stay what they are."""
+    """Return a value with its literal texts as such; expressions stay unchanged."""
     match value:
         case Expression(source):
             return _text(source)
@@ -22,7 +22,7 @@ def constant(value: ComputedValue) -> Any:
 
 
 def constant_data(data: Any) -> Any:
-    """The same of a value as a behaviour file has it, in which each text is an expression."""
+    """Return the same for a value of a behaviour file, in which each text is an expression."""
     match data:
         case str():
             return _text(data)

@@ -1,4 +1,4 @@
-"""Descriptors of events, ours and XState's: there a name is matched exactly, and the longest is tried first."""
+"""Descriptors of events in Lumen and XState: XState matches names exactly, and tries the longest descriptor first."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -13,18 +13,18 @@ _OWN_EVENTS = {
     "xstate.done.actor.": "done.invoke.", "done.invoke.": "done.invoke.",
     "xstate.error.actor.": "error.invoke.", "error.platform.": "error.invoke.",
 }  # fmt: skip
-"""What XState calls its own events, in version 5 and in 4, and what they are called here."""
+"""The names of XState's own events, in versions 5 and 4, with Lumen's names."""
 
 _DESCRIPTOR = re.compile(r"\*|[^\s.*]+(\.[^\s.*]+)*(\.\*)?")
 
 
 def is_descriptor(text: str) -> bool:
-    """Whether it can be a key of `on`."""
+    """Return whether it can be a key of `on`."""
     return bool(_DESCRIPTOR.fullmatch(text))
 
 
 def own_event(event: str) -> tuple[str, str] | None:
-    """Our family and the id of an event of XState's own, None for any other."""
+    """Return Lumen's family and the id of an event of XState's own, None for any other."""
     for begin, ours in _OWN_EVENTS.items():
         if event.startswith(begin) and (id := event.removeprefix(begin)):
             return ours, id
@@ -32,7 +32,7 @@ def own_event(event: str) -> tuple[str, str] | None:
 
 
 def invoke_id(id: str) -> str:
-    """The id of something invoked as one that an event's name can end with."""
+    """Return the id of an invocation in a form with which an event's name can end."""
     return ".".join(word for word in re.sub(r"[\s*]+", "_", id).split(".") if word) or "_"
 
 
@@ -50,7 +50,7 @@ class EventDescriptors:
             self.wild.update(bare(event) for event in written if event.endswith(".*"))
 
     def arranged(self, state: State) -> dict[str, list[Transition]]:
-        """The candidates by XState's descriptors, the longest first; `!done.do.a` for the state's own events.
+        """Return the candidates by XState's descriptors, the longest first; `!done.do.a` for the state's own events.
 
         A more general candidate that comes before a particular one here is repeated among its own, where XState
         would try it later.
@@ -77,23 +77,23 @@ class EventDescriptors:
 
 
 def bare(descriptor: str) -> str:
-    """`a` for `a.*`."""
+    """Return `a` for `a.*`."""
     return descriptor.removesuffix(".*")
 
 
 def longest_first(descriptors: Sequence[str]) -> list[str]:
-    """As XState tries them, where the order matters at all; of two of one length the first stays the first."""
+    """Return descriptors in XState's order if it matters at all; those of the same length keep theirs."""
     return sorted(descriptors, key=lambda d: (d == "*", -len(d))) if _rivals(descriptors) else list(descriptors)
 
 
 def _rivals(descriptors: Sequence[str]) -> bool:
-    """Whether an event could match two of them: in alphabetical order one that begins another stands right before."""
+    """Return whether an event could match two of them: in alphabetical order, a prefix comes directly before."""
     names = sorted(f"{bare(descriptor)}." for descriptor in descriptors)
     return ("*." in names and len(names) > 1) or any(b.startswith(a) for a, b in pairwise(names))
 
 
 def _covers(transition: Transition, event: str) -> bool:
-    """Whether every event below `event` selects it."""
+    """Return whether the transition matches every event below `event`."""
     if transition.exact:
         return False
     general = bare(transition.event)

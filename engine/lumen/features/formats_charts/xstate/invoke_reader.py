@@ -1,4 +1,4 @@
-"""What a state of XState invokes: what Lumen wrote is read back; of all else the waits for its end are kept."""
+"""Invocations of XState: those that Lumen wrote are read back; of others, the transitions at their end are kept."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -28,7 +28,7 @@ class XStateInvokeReader:
         self.parts, self.transitions = parts, transitions
 
     def of(self, state: XStateNode, own: Mapping[str, Any]) -> ActorEnds:
-        """What one state invokes; `own` is what Lumen has in its `meta`."""
+        """Return the invocations of one state; `own` is Lumen's part of its `meta`."""
         data: dict[str, Any] = {}
         invokes: list[dict[str, Any]] = []
         waits: dict[str, list[TransitionData]] = {}
@@ -54,7 +54,7 @@ class XStateInvokeReader:
         row: Mapping[str, Any],
         waits: dict[str, list[TransitionData]],
     ) -> None:
-        """Keep what follows the end of an actor whose code is not there, as waits for its events."""
+        """Keep the transitions at the end of an actor without code, as waits for its events."""
         given = row.get("id")
         id = self.parts.names.actor(given if isinstance(given, str) and given else f"{number}.{state.foreign_id}")
         for key, family in _ENDS.items():
@@ -73,7 +73,7 @@ class XStateInvokeReader:
             )
 
     def _ends(self, state: XStateNode, where: NodePath, row: Mapping[str, Any]) -> dict[str, Any]:
-        """What follows the end of something that Lumen wrote."""
+        """Return the transitions at the end of an invocation that Lumen wrote."""
         found = {key: self.transitions.under(state, (*where, key), row[key]) for key in _ENDS if key in row}
         return {key: single(rows) for key, rows in found.items() if rows}
 
@@ -82,7 +82,7 @@ class XStateInvokeReader:
         return self.parts.do(given.get("steps")) if row.get("src") == DO_ACTOR and isinstance(given, dict) else None
 
     def _invoked(self, own: Mapping[str, Any], where: NodePath, row: Mapping[str, Any]) -> dict[str, Any] | None:
-        """The behaviour that Lumen wrote as an actor; None where this is another one."""
+        """Return the behaviour that Lumen wrote as an actor; None if it is another actor."""
         inputs, id, behavior = own.get("invoke"), row.get("id"), row.get("src")
         if not isinstance(inputs, dict) or id not in inputs or not isinstance(behavior, str):
             return None
@@ -96,7 +96,7 @@ class XStateInvokeReader:
         return data
 
     def _rows(self, state: XStateNode) -> Iterator[tuple[int, NodePath, Mapping[str, Any]]]:
-        """Each item of `invoke` with its number and its place; version 4 allows a name alone."""
+        """Yield each item of `invoke` with its number and its place; version 4 allows a name alone."""
         data, where = state.source.get("invoke"), (*state.where, "invoke")
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         for number, (place, row) in enumerate(rows):

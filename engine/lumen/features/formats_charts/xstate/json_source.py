@@ -1,4 +1,4 @@
-"""A JSON file whose values know their lines."""
+"""A JSON file whose values have known lines."""
 
 import json
 from dataclasses import dataclass
@@ -12,25 +12,25 @@ from lumen.project.yaml_nodes import DUPLICATE_KEY
 from lumen.project.yaml_reader import parse
 
 MAX_JSON_LEVELS = 95
-"""Objects and lists inside each other."""
+"""The most nested objects and lists."""
 
 
 @dataclass(frozen=True)
 class JsonSource:
-    """The data, and where each part of it stands."""
+    """The data, and the place of each part of it."""
 
     data: Any
     document: Document
     repeated: tuple[tuple[Place, str], ...]
-    """The keys that an object has twice, of which the last one counts."""
+    """Return the repeated keys of an object, of which the last one counts."""
 
     def place(self, path: NodePath) -> Place:
-        """The place of a key (or item), or of the nearest thing around it."""
+        """Return the place of a key (or item), or of the nearest enclosing one."""
         return self.document.place(path, key=True)
 
 
 def parse_json(file: str, content: bytes) -> JsonSource:
-    """The file; raises ForeignFileError for what is no JSON, or too large."""
+    """Return the file. Raises ForeignFileError if it is not JSON, or too large."""
     check_size(file, content)
     try:
         data = foreign_json(content)
@@ -45,7 +45,7 @@ def parse_json(file: str, content: bytes) -> JsonSource:
         raise broken(Place(file), "too-large", "the file is nested too deeply") from None
     if _depth(data) > MAX_JSON_LEVELS:
         raise broken(Place(file), "too-large", f"the file is nested deeper than {MAX_JSON_LEVELS} levels")
-    document, found = parse(file, content.replace(b"\t", b" "))  # JSON is YAML, but for tabs and surrogates
+    document, found = parse(file, content.replace(b"\t", b" "))  # JSON is YAML, except for tabs and surrogates
     repeated = tuple((d.place, d.message) for d in found if d.code == DUPLICATE_KEY)
     if document is None or (document.data != data and not repeated):
         document = Document(file, data)  # places are unknown

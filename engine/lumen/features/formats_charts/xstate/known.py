@@ -85,7 +85,7 @@ KNOWN: FormatTable = {
 
 STATE_KINDS = ("atomic", "compound", "parallel", "final", "history")
 BOOLEANS = frozenset(("reenter", "internal", "parallel"))
-"""Keys whose values are true or false."""
+"""Keys whose values are booleans."""
 
 _VERSION_4 = frozenset(
     ("cond", "in", "schema", "tsTypes", "predictableActionArguments", "preserveActionOrder", "strict", "delimiter",
@@ -97,7 +97,7 @@ _OBJECTS_OF_AUTHORS = frozenset(("context", "meta", "params", "input", "data", "
 
 
 def losses(place: str, names: Iterable[str]) -> Iterator[tuple[str, str, str]]:
-    """Of the keys of such an object each that is not carried over: the key, the message, and a hint."""
+    """Yield each key of such an object that is not converted, with the message and a hint."""
     known, whose = KNOWN[place], f"of {'an' if place[0] in 'aeix' else 'a'} {place}"
     for name, hint in known.losses(names):
         if name in known.lost:
@@ -107,7 +107,7 @@ def losses(place: str, names: Iterable[str]) -> Iterator[tuple[str, str, str]]:
 
 
 def is_version_4(machine: Mapping[str, Any]) -> bool:
-    """Whether a machine has words that only version 4 has, and none that only version 5 has, or that Lumen wrote."""
+    """Return whether a machine has words of version 4 only, and none of version 5 only or written by Lumen."""
     old = False
     waiting: list[tuple[str, Any]] = [("", machine)]
     while waiting:

@@ -1,4 +1,4 @@
-"""Our names for the events and the actors of one XState file."""
+"""Lumen's names for the events and the actors of one XState file."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping
@@ -14,7 +14,7 @@ _SENDERS = ("xstate.raise", "xstate.send", "xstate.sendTo")
 
 
 class XStateNames:
-    """Two names of the file never become one, and each is the same wherever the file has it."""
+    """Maps names so that two names of the file never become one, and each has the same result everywhere."""
 
     def __init__(self, outline: XStateStateTree) -> None:
         self.outline = outline
@@ -22,7 +22,7 @@ class XStateNames:
         self.actors = self._free("actor", dict(_actors((), outline.source.data)))
 
     def event(self, name: str) -> str:
-        """Our name for an event, or for a descriptor, of XState's own or of the author's."""
+        """Return Lumen's name for an event, or for a descriptor, of XState's own or of the author's."""
         if own := own_event(name):
             family, id = own
             if "*" in id:
@@ -31,16 +31,16 @@ class XStateNames:
         return self.events.get(name) or _BLANKS.sub("_", name.strip())
 
     def actor(self, id: str) -> str:
-        """Our id of an actor."""
+        """Return Lumen's id of an actor."""
         return self.actors.get(id) or invoke_id(id)
 
     def _state(self, id: str) -> str:
-        """Our name of the state with that id; an id of no state is only cleaned."""
+        """Return Lumen's name of the state with that id; an id of no state is only cleaned."""
         found = self.outline.resolve(self.outline.root, f"#{id}")
         return (found.name or self.outline.title) if found else invoke_id(id)
 
     def _free(self, kind: str, names: Mapping[str, NodePath]) -> dict[str, str]:
-        """Map each name to one that a behaviour can have; changed names are reported."""
+        """Return a name that a behaviour can have for each name; changed ones are reported."""
         cleaned: Callable[[str], str] = invoke_id if kind == "actor" else lambda name: _BLANKS.sub("_", name.strip())
         found = {name: name for name in names if cleaned(name) == name}
         taken = set(found)
@@ -54,7 +54,7 @@ class XStateNames:
 
 
 def _events(where: NodePath, data: Any) -> Iterator[tuple[str, NodePath]]:
-    """Each name of an event that is waited for or sent, and its place."""
+    """Yield each name of an event that is awaited or sent, and its place."""
     if isinstance(data, list):
         for number, item in enumerate(data):
             yield from _events((*where, number), item)
@@ -83,7 +83,7 @@ def _events(where: NodePath, data: Any) -> Iterator[tuple[str, NodePath]]:
 
 
 def _actors(where: NodePath, state: Any) -> Iterator[tuple[str, NodePath]]:
-    """The id and the place of each actor that a state, or a state in it, invokes."""
+    """Yield the id and the place of each actor that a state, or a state in it, invokes."""
     if not isinstance(state, dict):
         return
     data = state.get("invoke")

@@ -1,4 +1,4 @@
-"""An XState machine configuration as the data of a behaviour file."""
+"""Reads an XState machine configuration as the data of a behaviour file."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -24,9 +24,9 @@ _MACHINE = ("types", "events", "phrases", "answers", "lists", "properties", "ren
 
 
 def read_xstate(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """The data of our file, and everything that is not, or not quite, in it; raises ForeignFileError.
+    """Return the data of a behaviour file, and findings about lost and changed parts. Raises ForeignFileError.
 
-    `title` is the behaviour's name where the machine has no id.
+    `title` is the behaviour's name if the machine has no id.
     """
     source = parse_json(file, content)
     if (
@@ -69,7 +69,7 @@ def _context(data: Mapping[str, Any], findings: ConversionFindings, outline: XSt
 
 
 class _XStateReader:
-    """Reads the states of one file, from the outside to the inside."""
+    """Reads the states of one file, from the outermost to the innermost."""
 
     def __init__(self, outline: XStateStateTree, parts: XStateActionReader, findings: ConversionFindings) -> None:
         self.outline, self.parts, self.findings = outline, parts, findings
@@ -117,7 +117,7 @@ class _XStateReader:
         return data
 
     def _unmeant(self, state: XStateNode) -> None:
-        """Report the keys of a state, and their values, that are not carried over."""
+        """Report the keys of a state, and their values, that are not converted."""
         source, kind = state.source, state.kind
         place = f"{kind} state" if kind in ("parallel", "final", "history") else "state"
         place = place if state.parent else "machine"
@@ -154,7 +154,7 @@ class _XStateReader:
                 )
 
     def _is_own(self, state: XStateNode, key: str, value: Any) -> bool:
-        """Whether a part of `meta.lumen` is one that Lumen writes there."""
+        """Return whether a part of `meta.lumen` is one that Lumen writes there."""
         match key:
             case "onReload":
                 return isinstance(value, str) and self.outline.resolve(state, value) is not None
@@ -182,7 +182,7 @@ class _XStateReader:
         return data if "target" in data else data | self._default(state)
 
     def _default(self, state: XStateNode) -> dict[str, Any]:
-        """Where a history leads that names no target: as its parent begins."""
+        """Return the target of a history without one: as its parent begins."""
         home = state.parent
         assert isinstance(home, XStateNode)  # the machine itself is never read as a history
         if home.kind == "compound":
@@ -195,7 +195,7 @@ class _XStateReader:
         return {"target": self.transitions.named(state, list(home.regular))}
 
     def _initial(self, state: XStateNode) -> str:
-        """The key of the child entered first; where actions are done on the way, of a state that does them."""
+        """Return the key of the child entered first; with actions on the way, that of a state that does them."""
         where = (*state.where, "initial")
         first = state.regular[0]
         data = state.source.get("initial", first.original)
@@ -255,7 +255,7 @@ class _XStateReader:
         return data
 
     def _on(self, state: XStateNode, waits: dict[str, list[TransitionData]]) -> dict[str, Any]:
-        """The candidates of each event, and those of the ends that are waited for, as `on`; and the rows of `hears`."""
+        """Return the candidates of events and of awaited ends as `on`, and the rows of `hears`."""
         rows: dict[str, list[TransitionData]] = {}
         hears: dict[str, list[TransitionData]] = {}
         for event, where, data in self._table(state, "on", "event"):
@@ -289,7 +289,7 @@ class _XStateReader:
         return rows
 
     def _table(self, state: XStateNode, key: str, named: str) -> list[tuple[str, NodePath, Any]]:
-        """The keys of `on` or `after`, their places and transitions; version 4 also has a list of these."""
+        """Return the keys of `on` or `after`, their places and transitions; version 4 also has a list of these."""
         table, where = state.source.get(key), (*state.where, key)
         if isinstance(table, dict):
             return [(name, (*where, name), rows) for name, rows in table.items()]
@@ -314,7 +314,7 @@ class _XStateReader:
 
 
 def _lumen(state: XStateNode) -> Mapping[str, Any]:
-    """What only Lumen has, in `meta`."""
+    """Return Lumen's own part of `meta`."""
     meta = state.source.get("meta")
     own = meta.get("lumen") if isinstance(meta, dict) else None
     return own if isinstance(own, dict) else {}

@@ -1,4 +1,4 @@
-"""The states of an XState machine before anything in them is read, and what its targets mean."""
+"""The states of an XState machine before their content is read, and the meaning of its targets."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -29,7 +29,7 @@ class XStateNode(ForeignState):
 
     @property
     def foreign_id(self) -> str:
-        """What XState calls it: its id, or the keys down to it behind the machine's."""
+        """Return XState's id of the state: its own, or the machine's and the keys down to it."""
         if isinstance(self.source.get("id"), str) and self.source["id"]:
             return str(self.source["id"])
         below = self.parent.foreign_id if isinstance(self.parent, XStateNode) else ""
@@ -40,7 +40,7 @@ class XStateNode(ForeignState):
 
 
 def declared_kind(data: Mapping[str, Any]) -> str:
-    """What XState takes a state for by its own words: `history: true` needs no `type`, and version 4 had `parallel`."""
+    """Return the kind of a state by XState's rules: `history: true` needs no `type`, and version 4 had `parallel`."""
     if data.get("type"):
         return str(data["type"])
     if data.get("parallel") is True:
@@ -53,7 +53,7 @@ class XStateStateTree:
 
     def __init__(self, source: JsonSource, title: str, findings: ConversionFindings) -> None:
         self.source, self.findings = source, findings
-        own = source.data.get("id") or source.data.get("key")  # version 4's word for a machine without an id
+        own = source.data.get("id") or source.data.get("key")  # version 4's word for it
         self.machine_id = own if isinstance(own, str) and own else "(machine)"
         self.title = clean_id(own) if isinstance(own, str) and own else title
         self.ids = set(_ids(source.data))
@@ -129,7 +129,7 @@ class XStateStateTree:
         return states
 
     def resolve(self, state: XStateNode, target: str) -> XStateNode | None:
-        """The state that a target of this one means, None where there is none."""
+        """Return the state that a target of this one refers to, None if it does not exist."""
         if target.startswith("#"):
             return self._by_id(target[1:])
         if target.startswith("."):
@@ -150,7 +150,7 @@ class XStateStateTree:
 
 
 def _descend(state: XStateNode | None, path: str) -> XStateNode | None:
-    """Down the keys, which may hold dots themselves."""
+    """Return the state at the end of the keys, which may contain dots themselves."""
     if state is None:
         return None
     if (found := state.child(path)) is not None:

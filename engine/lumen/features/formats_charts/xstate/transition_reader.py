@@ -1,4 +1,4 @@
-"""Transitions of XState as ours."""
+"""Reads transitions of XState as Lumen's."""
 
 from typing import Any
 
@@ -17,13 +17,13 @@ class XStateTransitionReader:
         self.outline, self.parts, self.version_4 = outline, parts, version_4
 
     def rows(self, state: XStateNode, key: str) -> list[TransitionData]:
-        """What stands under a key of the state."""
+        """Return the transitions under a key of the state."""
         return self.under(state, (*state.where, key), state.source[key], eventless=key == "always")
 
     def under(
         self, state: XStateNode, where: NodePath, data: Any, *, eventless: bool = False, heard: bool = False
     ) -> list[TransitionData]:
-        """A target, an object, or a list of these; where rows of `hears` may be, such a row has its key as `hears`."""
+        """Return transitions from a target, an object, or a list of these; a row of `hears` has its key as `hears`."""
         rows = [((*where, i), row) for i, row in enumerate(data)] if isinstance(data, list) else [(where, data)]
         found = [self._row(state, place, {} if row is None else row, heard) for place, row in rows]
         kept = [row for row in found if row is not None]
@@ -78,10 +78,7 @@ class XStateTransitionReader:
         return row
 
     def _reenters(self, data: dict[str, Any]) -> bool:
-        """Whether the state itself is left and entered again.
-
-        In version 4 it is unless `internal` or a target that begins with a dot says otherwise.
-        """
+        """Return whether the state itself is left and entered again."""
         if isinstance(data.get("reenter"), bool):
             return bool(data["reenter"])
         if isinstance(data.get("internal"), bool):
@@ -90,7 +87,7 @@ class XStateTransitionReader:
         return self.version_4 and not any(isinstance(t, str) and t.startswith(".") for t in targets)
 
     def _state_in(self, data: Any, where: NodePath) -> str | None:
-        """Version 4's `in` as a condition; None, and reported, if it names no state by its id."""
+        """Return version 4's `in` as a condition; None (and report it) if it names no state by its id."""
         found = self.outline.resolve(self.outline.root, data) if isinstance(data, str) and data[:1] == "#" else None
         if found is None:
             self.parts.lost(
@@ -102,7 +99,7 @@ class XStateTransitionReader:
         return f"In('{found.name or self.outline.title}')"
 
     def targets(self, state: XStateNode, data: Any, where: NodePath) -> list[XStateNode] | None:
-        """The states meant, None (and reported) where one does not exist."""
+        """Return the target states, None (and report it) if one does not exist."""
         found = []
         for text in data if isinstance(data, list) else [data]:
             target = self.outline.resolve(state, text) if isinstance(text, str) else None
@@ -117,12 +114,12 @@ class XStateTransitionReader:
         return found
 
     def named(self, state: XStateNode, targets: list[XStateNode]) -> Any:
-        """One target, or the list."""
+        """Return one target, or the list."""
         names = [state.calls(target, self.outline.title) for target in targets]
         return names[0] if len(names) == 1 else names
 
     def _way(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> TransitionData:
-        """`target` and `reenter`; a transition to the state itself that does not re-enter it stays in it."""
+        """Return `target` and `reenter`; a transition to the state itself that does not re-enter it stays in it."""
         if targets == [state] and not reenter and state.kind == "atomic":
             return {}
         if targets == [state] and not reenter and state.kind == "compound":

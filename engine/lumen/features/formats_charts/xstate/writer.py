@@ -1,4 +1,4 @@
-"""A machine as an XState v5 configuration: JSON for `createMachine`."""
+"""Writes a machine as an XState v5 configuration: JSON for `createMachine`."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -26,7 +26,7 @@ _HINT = "write an implementation with that name for XState"
 
 
 def write_xstate(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
-    """The configuration, and what in it is missing or needs code.
+    """Return the configuration, and findings about what is missing in it or needs code.
 
     An action of ours is `{"type": "lumen.say", "params": …}`, a guard `{"type": "lumen.expression", "params":
     {"source": …}}`, a row of `hears` the guard `lumen.hears`, and `do` an invocation of `lumen.do`: their code is for
@@ -67,7 +67,7 @@ class _XStateWriter:
         return data
 
     def _begin(self, state: State, data: dict[str, Any]) -> dict[str, Any]:
-        """`initial`; where that is no single child, a state that leads there at once."""
+        """Set `initial`; if it is not a single child, return a state that leads there at once, by its key."""
         if state.kind is not StateKind.COMPOUND:
             return {}
         if len(state.initial) == 1 and self.machine.states[state.initial[0]].parent == state.path:
@@ -129,14 +129,14 @@ class _XStateWriter:
         return data
 
     def _rows(self, state: State) -> dict[str, list[Any]]:
-        """The transitions of `on`, and of the state's own events, by XState's descriptors."""
+        """Return the transitions of `on`, and of the state's own events, by XState's descriptors."""
         table = self.descriptors.arranged(state)
         return {
             event: rows for event, found in table.items() if (rows := [self._row(state, t) for t in self._kept(found)])
         }
 
     def _kept(self, found: list[Transition]) -> Iterator[Transition]:
-        """Those that can be written: of a row of `hears` that asks for phrases of an entry, only what it finds."""
+        """Yield the transitions that can be written; report rows of `hears` with phrases of a list's entry."""
         for transition in found:
             if transition.hears and not key_of(transition.hears) and as_guard(transition) is None:
                 message = f"`{transition.hears.title}` is left out: phrases from a list entry can't be converted"
@@ -160,7 +160,7 @@ class _XStateWriter:
         return data
 
     def _invoke(self, invoke: Invoke, rows: dict[str, list[Any]]) -> dict[str, Any]:
-        """An actor called as the behaviour; what its input has to be computed from stands in `meta`."""
+        """Return an actor named like the behaviour; values of its input that must be computed are in `meta`."""
         hint = f"give `setup` the actor `{invoke.behavior}` from `lumen export xstate {invoke.behavior}`"
         self.report.changed(f"`invoke` of `{invoke.behavior}` becomes an actor", invoke.where, hint)
         data: dict[str, Any] = {"id": invoke.id, "src": invoke.behavior}
@@ -195,7 +195,7 @@ class _XStateWriter:
         return row
 
     def _heard(self, transition: Transition, row: Hears) -> dict[str, Any]:
-        """Return the guard of a row of `hears`: one that `setup` has to implement, or an expression."""
+        """Return the guard of a row of `hears`: one that `setup` must implement, or an expression."""
         if key := key_of(row):
             self.report.changed(f"`{row.title}` becomes a guard `{HEARS_GUARD}`", transition.where, LOST_ELSEWHERE)
             source = {"source": as_written(transition.guard.source)} if transition.guard else {}
@@ -210,7 +210,7 @@ class _XStateWriter:
         return {"type": EXPRESSION_GUARD, "params": {"source": guard.source}}
 
     def _leaves_itself(self, state: State, transition: Transition) -> bool:
-        """Whether XState would stay in the state, and we leave it."""
+        """Return whether XState would stay in a state that Lumen leaves."""
         prefix = f"{state.path}." if state.path else ""
         within = all(path == state.path or path.startswith(prefix) for path in transition.targets)
         return within and (

@@ -1,4 +1,4 @@
-"""A controller file in the making: variables, terms and rules of another tool, under names that our rules can use."""
+"""A controller file in progress: another tool's variables, terms and rules, with names that Lumen's rules can use."""
 
 import re
 from collections.abc import Callable, Collection, Mapping
@@ -30,17 +30,16 @@ _UNFIT = re.compile(r"[^\w\-]+")
 _ENDLESS = ("triangle", "trapezoid", "binary", "rectangle")
 
 MAX_TERM_PARAMETERS = 1_000
-"""Parameters of a term: more points than that are no shape that a person drew."""
+"""The most parameters of a term: a shape drawn by a person has fewer points."""
 
 NewNames = dict[str, str]
 PlaceOfWord = Callable[[RuleWord], Place]
-"""Where a word of a rule's text stands in the file."""
+"""Returns the place in the file of a word of a rule's text."""
 
 
 class ControllerDraft:
-    """Collects a controller's data; `names` maps the file's names to ours, `terms` those of a variable of ours.
-
-    Variables of one name stay several: a proposition means the first that has its term, a condition an input first.
+    """Collects a controller's data; `names` maps the file's names to Lumen's, `terms` those of a variable of
+    Lumen's.
     """
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
@@ -55,7 +54,7 @@ class ControllerDraft:
         self._named: dict[int, str] = {}
 
     def variable(self, side: str, name: str, place: Place) -> dict[str, Any]:
-        """A new input or output; its settings go into the dict returned."""
+        """Add an input or output; its settings belong into the returned dict."""
         known = {*self.sides["inputs"], *self.sides["outputs"]}
         ours = self.fresh(name, known, place)
         self.names.setdefault(name, ours)
@@ -68,11 +67,11 @@ class ControllerDraft:
         return spec
 
     def own_terms(self, spec: dict[str, Any]) -> NewNames:
-        """The names of a variable's terms in the file to ours."""
+        """Return the map from a variable's terms in the file to Lumen's."""
         return self.terms[self._named[id(spec)]]
 
     def fresh(self, name: str, taken: Collection[str], place: Place) -> str:
-        """A name like that one which our rules can use and which is not taken."""
+        """Return a similar name that Lumen's rules can use and that is not taken."""
         stem = _UNFIT.sub("_", normalize("NFC", name)).strip("-") or "unnamed"
         stem = f"{stem}_" if stem.lower() in KEYWORDS else stem
         ours = unused_name(stem, taken.__contains__, len(taken))
@@ -82,13 +81,13 @@ class ControllerDraft:
         return ours
 
     def term(self, variable: str, spec: dict[str, Any], name: str, kind: str, values: Any, place: Place) -> None:
-        """A term of a variable: `values` are its parameters in our order, or its formula."""
+        """Add a term of a variable: `values` are its parameters in Lumen's order, or its formula."""
         if problem := self._problem(kind, values):
             self.findings.lost(place, f"the term `{name}` of `{variable}` is left out: {problem}")
             return
         terms = spec.setdefault("terms", {})
         ours = self.fresh(name, terms, place)
-        self.own_terms(spec)[name] = ours  # FuzzyLite's rules mean the last one of a name
+        self.own_terms(spec)[name] = ours  # FuzzyLite's rules use the last term of a name
         height = None
         if kind not in ("function", "constant", "linear", "discrete") and len(values) == len(TERM_PARAMETERS[kind]) + 1:
             *values, height = values
@@ -115,7 +114,7 @@ class ControllerDraft:
         )
 
     def rule(self, text: str, place: Place, spot: PlaceOfWord) -> str:
-        """The rule in our words; empty where it is left out."""
+        """Return the rule in Lumen's form; empty if it is left out."""
         try:
             said = parse_rule(text)
         except RuleSyntaxError as error:
@@ -129,7 +128,7 @@ class ControllerDraft:
         return rule_text(self._asked(said.antecedent), concluded, said.weight)
 
     def _asked(self, node: Antecedent) -> Antecedent:
-        """The condition with our names."""
+        """Return the condition with Lumen's names."""
         match node:
             case Proposition():
                 return self._ours(node, concluded=False)
@@ -146,13 +145,13 @@ class ControllerDraft:
         return replace(node, variable=variable, term=self.terms[variable].get(node.term, node.term))
 
     def _meant(self, name: str, term: str, *, concluded: bool) -> str:
-        """Our name of the variable that a proposition is about; empty for none."""
+        """Return Lumen's name of a proposition's variable; empty if it is unknown."""
         found = [] if concluded else self.called["inputs"].get(name, [])
         found = [*found, *self.called["outputs"].get(name, [])]
         return next((ours for ours in found if term in self.terms[ours]), found[0] if found else "")
 
     def _unknown(self, mention: Mention) -> RuleWord | None:
-        """The word of a proposition that names nothing here."""
+        """Return the word of a proposition that names nothing known."""
         variable, term = mention.variable, mention.term
         name = self._meant(variable.text, term.text if term else "", concluded=mention.concluded)
         if not name:
@@ -160,7 +159,7 @@ class ControllerDraft:
         return term if term and term.text not in self.terms[name] else None
 
     def result(self) -> dict[str, Any]:
-        """The data of the file: one block of rules stands at its top, several have names."""
+        """Return the data of the file: a single block of rules is at its top level, several have names."""
         outputs = self.sides["outputs"]
         if not any(spec.get("terms") for spec in outputs.values()):
             raise self._empty("no output is left", "add an output with terms")
@@ -186,7 +185,7 @@ class ControllerDraft:
         return data
 
     def _empty(self, what: str, hint: str) -> ForeignFileError:
-        """Why no controller can be made: at the first thing that had to be left out."""
+        """Return why no controller can be made, at the first part that had to be left out."""
         first = next((d for d in self.findings.diagnostics if d.code == LOST), None)
         if first is None:
             return broken(Place(self.file), "not-a-controller", f"nothing is written: {what}", hint)
@@ -194,18 +193,18 @@ class ControllerDraft:
 
 
 def _refused(name: str, shape: Mapping[str, Any], count: int) -> str:
-    """What our loader has against a term; nothing against a formula, whose variables may be read later."""
+    """Return what Lumen's loader finds wrong with a term; nothing for a formula, whose variables may be read later."""
     if "function" in shape:
         return ""
     document, _ = plain_document("term", {name: dict(shape)})
-    assert document is not None  # it has MAX_TERM_PARAMETERS at most
+    assert document is not None  # it has at most MAX_TERM_PARAMETERS
     report = DocumentReport(document)
     build_terms({name: shape}, report, (), count)
     return report.diagnostics[0].message if report.diagnostics else ""
 
 
 def ranged(low: float, high: float) -> list[int | float]:
-    """A range as it stands in YAML."""
+    """Return a range as written in YAML."""
     return [low if low == -inf else plain(low), high if high == inf else plain(high)]
 
 
@@ -219,5 +218,5 @@ def _shape(kind: str, values: Any) -> Any:
 
 
 def operators(said: Mapping[str, Any], usual: Mapping[str, Any]) -> dict[str, Any]:
-    """Those operators that are not the usual ones."""
+    """Return the operators that differ from the defaults."""
     return {key: value for key, value in said.items() if value is not None and value != usual.get(key)}

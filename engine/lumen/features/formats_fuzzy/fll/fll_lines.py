@@ -1,4 +1,4 @@
-"""The lines of a file in FuzzyLite Language: `key: value`, `#` begins a comment, and a head begins each part."""
+"""The lines of a file in FuzzyLite Language: `key: value`; `#` begins a comment, and a head begins each part."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -8,14 +8,14 @@ from lumen.language.text_lines import lines_of
 from lumen.project.formats.conversion_findings import ConversionFindings, broken
 
 MAX_FLL_LINES = 20_000
-"""In a file."""
+"""The most lines of a file."""
 
 PART_KEYS = ("Engine", "InputVariable", "OutputVariable", "RuleBlock")
 """The keys that begin a part."""
 
 
 class FllLine(NamedTuple):
-    """`key: value`, and where each of them stands; `offset` is the value's first column from 0."""
+    """A line `key: value` with its places; `offset` is the value's first column from 0."""
 
     key: str
     value: str
@@ -32,7 +32,7 @@ class FllPart(NamedTuple):
 
 
 class FllLineReader:
-    """Reads one file by its lines, and reports what can't be carried over."""
+    """Reads one file by its lines, and reports what can't be converted."""
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
         self.file, self.findings = file, findings
@@ -69,7 +69,7 @@ class FllLineReader:
                 self.lost(line, "this line can't be read: write `key: value`")
 
     def place(self, line: FllLine, offset: int | None = None, length: int | None = None) -> Place:
-        """Of the line's value, or of a part of it."""
+        """Return the place of the line's value, or of a part of it."""
         begin = line.offset + 1 + (offset or 0) if line.value else line.column + 1
         width = length or max(len(line.value) - (offset or 0), 1) if line.value else max(len(line.key), 1)
         return Place(self.file, line.row, begin, line.row, begin + width)

@@ -15,23 +15,23 @@ SHAPES: Mapping[str, str] = {_camel(kind): kind for kind in TERM_PARAMETERS}
 NORMS: Mapping[str, str] = {_camel(norm): norm for norm in (*T_NORMS, *S_NORMS)}
 METHODS: Mapping[str, str] = {_camel(method): method for method in DEFUZZIFIERS}
 ACTIVATED: Mapping[str, str] = {_camel(method): method for method in ACTIVATIONS}
-"""FuzzyLite's names to ours."""
+"""Lumen's names by FuzzyLite's."""
 
 
 def foreign(words: Mapping[str, str], ours: str) -> str:
-    """FuzzyLite's name for one of ours."""
+    """Return FuzzyLite's name for one of Lumen's."""
     return next(name for name, word in words.items() if word == ours)
 
 
 def written(value: float) -> str:
-    """A number as FuzzyLite reads it, no digit lost."""
+    """Return a number as FuzzyLite reads it, with all digits."""
     if value in (inf, -inf):
         return "inf" if value > 0 else "-inf"
     return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(float(value))
 
 
 def plain(value: float) -> int | float:
-    """A number as it stands in YAML: whole ones without a point, and 0 for what rounding left of it."""
+    """Return a number as written in YAML: integers without a point, and 0 for a rounding error."""
     if abs(value) < LEAST_NUMBER:
         return 0
     return int(value) if abs(value) < 1e15 and value == int(value) else value

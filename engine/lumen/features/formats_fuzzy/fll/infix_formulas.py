@@ -20,18 +20,18 @@ _TOKEN = re.compile(
 )
 _COMPARISONS = {"lt": "<", "le": "<=", "eq": "==", "neq": "!=", "ge": ">=", "gt": ">"}
 MAX_FORMULA_LEVELS = 40
-"""Formulas inside each other, in brackets, arguments or behind a sign."""
+"""The most nested formulas, in brackets, arguments or behind a sign."""
 
 
 class Trouble(NamedTuple):
-    """Why a formula can't be read, and at which character."""
+    """The reason why a formula can't be read, and the index of the character."""
 
     message: str
     offset: int
 
 
 def read_formula(text: str, names: Mapping[str, str]) -> str | Trouble:
-    """FuzzyLite's formula as ours; `names` maps its variables to their names here."""
+    """Return FuzzyLite's formula in Lumen's form; `names` maps its variables to their names here."""
     try:
         return unparse(_FormulaParser(text, names).whole())
     except ExpressionError as error:
@@ -98,11 +98,11 @@ class _FormulaParser(PrattParser):
         return FunctionCall(function, arguments)
 
     def joined(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
-        """`left and right`."""
+        """Return `left and right`."""
         return Logic("&&" if sign.text == "and" else "||", (left, self.expression(power)))
 
     def raised(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
-        """`left ^ right`, several of them from the right."""
+        """Return `left ^ right`; several are grouped from the right."""
         return FunctionCall("pow", (left, self.expression(power - 1)))
 
     operands: ClassVar = {"number": number, "name": name}
@@ -122,7 +122,7 @@ class _FormulaParser(PrattParser):
 
 
 def write_formula(text: str, names: Mapping[str, str]) -> tuple[str, bool]:
-    """Our formula as FuzzyLite's, and whether a choice in it had to be written as a sum."""
+    """Return Lumen's formula in FuzzyLite's form, and whether a choice in it had to be written as a sum."""
     tree = parse_expression(text)
     writer = _FormulaWriter(names)
     return writer.text(tree), writer.chose

@@ -36,7 +36,7 @@ _USUAL = {"conjunction": "minimum", "disjunction": "maximum", "implication": "mi
 
 
 def read_fll(file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """The data of a controller file, and what could not be carried over. Raises ForeignFileError for no engine."""
+    """Return the data of a controller file, and findings. Raises ForeignFileError if it is not an engine."""
     text, findings = decoded(file, content), ConversionFindings()
     return _FllReader(file, findings).engine(text), findings.diagnostics
 
@@ -135,7 +135,7 @@ class _FllReader(FllLineReader):
             if _WHOLE.fullmatch(word) and 10 <= int(word) <= 100_000 and method not in WEIGHTED_DEFUZZIFIERS:
                 spec.update({} if int(word) == 1000 else {"resolution": int(word)})
             elif word == "Tsukamoto" and method in WEIGHTED_DEFUZZIFIERS:
-                continue  # our terms imply it
+                continue  # Lumen's terms imply it
             elif word not in ("Automatic", "TakagiSugeno") or method not in WEIGHTED_DEFUZZIFIERS:
                 self.lost(line, f"a defuzzifier can't have `{word}`")
         return method
@@ -224,7 +224,7 @@ _PLAIN_SETTINGS = {"rules": 1, "threshold": 0, "comparison": ">="}
 
 
 def _number(word: str) -> float:
-    """The number, NaN where it is none."""
+    """Return the number, NaN if it is invalid."""
     if word in ("inf", "+inf", "-inf"):
         return -inf if word[0] == "-" else inf
     try:

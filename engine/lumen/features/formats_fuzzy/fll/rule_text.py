@@ -1,4 +1,4 @@
-"""The text of a rule, from its parts."""
+"""Writes the text of a rule from its parts."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import assert_never
@@ -16,7 +16,7 @@ def rule_text(
     names: Mapping[str, str] = _NOBODY,
     terms: Mapping[str, Mapping[str, str]] | None = None,
 ) -> str:
-    """`if … then … with …`; `names` and `terms` map variables and their terms to their names there."""
+    """Return `if … then … with …`; `names` and `terms` map variables and their terms to their names there."""
 
     def said(node: Proposition) -> str:
         term = (terms or {}).get(node.variable, _NOBODY).get(node.term, node.term)
@@ -42,7 +42,7 @@ def rule_text(
 
 
 def negations(node: Antecedent) -> Iterator[Negation]:
-    """The `not ( … )` in an antecedent."""
+    """Yield the `not ( … )` in an antecedent."""
     match node:
         case Negation(operand):
             yield node

@@ -23,14 +23,14 @@ _UNFIT = re.compile(r"[^A-Za-z0-9_]+")
 
 
 def write_fll(controller: ControllerDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
-    """The engine's text, and what of the controller FuzzyLite can't represent."""
+    """Return the engine's text, and what FuzzyLite can't represent."""
     writer = _FllWriter(controller, ExportReport(place))
     text = "\n".join(writer.lines()) + "\n"
     return text, writer.report.diagnostics
 
 
 class _FllWriter:
-    """Writes one controller, under names that FuzzyLite can read."""
+    """Writes one controller, with names that FuzzyLite can read."""
 
     def __init__(self, controller: ControllerDefinition, report: ExportReport) -> None:
         self.controller, self.report = controller, report
@@ -136,7 +136,7 @@ def _activation(activation: Activation) -> str:
 
 
 def _fresh(names: Mapping[str, object]) -> dict[str, str]:
-    """For each name one that FuzzyLite reads as it is, no two alike."""
+    """Return for each name a different one that FuzzyLite can read."""
     found: dict[str, str] = {}
     for name in names:
         stem = _UNFIT.sub("_", name) or "_"

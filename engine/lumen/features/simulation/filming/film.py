@@ -36,7 +36,7 @@ FilmSize = tuple[int, int]
 FILM_SIZE: FilmSize = (1920, 1080)
 
 TITLE_SHOWN, TITLE_FADES = 3.0, 0.6
-"""How long the title is visible, and how long it takes to fade in or out [s]."""
+"""The time for which the title is visible, and the time of its fading in or out [s]."""
 
 MAX_WAITING_FRAMES = 8
 """The number of frames that may wait to be written; each takes as much memory as its pixels."""

@@ -32,7 +32,7 @@ class FilmMoment(StrEnum):
 
 
 class Subjects(NamedTuple):
-    """What can be filmed."""
+    """The subjects that can be filmed."""
 
     head: HallPoint
     """The robot's head."""

@@ -16,7 +16,7 @@ STUCK_AFTER = 60.0
 """A command that takes so much longer than its motion is stuck [s]."""
 
 REST_BEFORE, REST_AFTER = 0.3, 0.5
-"""How long the robot comes to rest before and after the motion [s]."""
+"""The time that the robot rests before and after the motion [s]."""
 
 RETRIED_AFTER = 1.5
 """A passage that takes so much longer than its motion was tried again [s]."""
@@ -28,7 +28,7 @@ of the fall.
 
 DONE, FELL = "done", "fell"
 MAX_FOOT_SLIDE = 0.01
-"""How far a foot may slide while it bears load [m]."""
+"""The slide of a foot under load that is accepted [m]."""
 
 BEARING_FORCE = 5.0
 """The force from which a foot bears load [N]."""

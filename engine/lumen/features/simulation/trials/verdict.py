@@ -12,16 +12,16 @@ from lumen.lint.on_request import COMES_LATE, FALLS, FEET_SLIDE, NOT_PLAYED, OVE
 from lumen.ports import Live
 
 MAX_CONTACT_TIME = 0.04
-"""How long two links may press on each other [s]."""
+"""The contact between two links that is accepted [s]."""
 
 MAX_FULL_TORQUE_TIME = 0.3
-"""How long a motor may give its full torque [s]."""
+"""The time at full torque that is accepted of a motor [s]."""
 
 MAX_JOINT_LAG = 0.35
-"""How far a joint may be behind the motion [rad]."""
+"""The distance of a joint behind the motion that is accepted [rad]."""
 
 MAX_LIVING_TILT = 5.0
-"""How far the torso may lean while the robot only makes lifelike movements [degrees]: the shipped styles reach 0.5."""
+"""The lean of the torso that is accepted in lifelike movements [degrees]: the shipped styles reach 0.5."""
 
 MAX_FAILED_SHARE = 0.1
 """The share of attempts at a passage that may fail, since the robot retries it."""
