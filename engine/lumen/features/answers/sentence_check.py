@@ -1,7 +1,7 @@
 """Decides which sentences of a language model may be said: short ones, in the right language, without facts of their
 own.
 
-A sentence that can't be checked is refused: then the robot says that it does not know.
+A sentence that can't be checked is refused: then the robot gives its answer for unknown questions.
 """
 
 import re

@@ -75,9 +75,7 @@ class Addressing:
         return [(b, e) for b, e in zip(edges[::2], edges[1::2], strict=True) if b < e]
 
     def state(self, now: float) -> tuple[str, float]:
-        """Return the reason why the ears are open, or `nobody`; and how long that lasts [s] without further
-        messages.
-        """
+        """Return the reason why the ears are open, or why they are closed; and the time until which that lasts [s]."""
         if self.always:
             return ALWAYS, float("inf")
         with self._lock:

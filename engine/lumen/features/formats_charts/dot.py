@@ -15,8 +15,8 @@ digraph {
 def dot(machine: MachineDefinition) -> str:
     """Return the graph's text, ending with a newline; `dot -Tsvg` draws it.
 
-    A state with states within is a cluster; an arrow to or from it ends at its frame. A behaviour that a state invokes
-    is a dashed cluster inside it: once, and wherever it is invoked again a box with its name.
+    A state with states inside is a cluster; an arrow to or from it ends at its frame. An invoked behaviour is a dashed
+    cluster inside its state the first time; further invocations are boxes with its name.
     """
     return "\n".join([_HEAD, *_DotDrawing(machine).lines(), "}"]) + "\n"
 

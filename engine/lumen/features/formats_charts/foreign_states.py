@@ -8,7 +8,7 @@ from typing import Any
 from lumen.project.formats.unused_names import unused_name
 
 MAX_RENAMED = 1000
-"""Ids of one file that may become the same text; the search for a free number takes longer with more."""
+"""The most ids of one file that may become the same text; with more, the search for a free number takes long."""
 
 MAX_STATE_LEVELS = 40
 """The most nested states; a YAML file has two levels for each."""
@@ -19,7 +19,7 @@ _UNFIT_ID = re.compile(r"[\s#*]+")
 
 @dataclass(slots=True, eq=False)
 class ForeignState:
-    """A state: what the foreign file has there, its key and path in ours, and its id, if it has one."""
+    """A state: its part of the foreign file, its key and path in Lumen's, and its id, if it has one."""
 
     source: Any
     parent: "ForeignState | None"

@@ -1,4 +1,9 @@
-"""Reads Fuzzy Control Language (IEC 61131-7), also jFuzzyLogic's and FuzzyLite's, as the data of a controller file."""
+"""Reads Fuzzy Control Language (IEC 61131-7), also jFuzzyLogic's and FuzzyLite's, as the data of a controller file.
+
+`FUNCTION_BLOCK` contains `VAR_INPUT`, `VAR_OUTPUT`, a `FUZZIFY` for each input, a `DEFUZZIFY` for each output, and
+`RULEBLOCK`s. A declaration may name several variables and their range. A term is a row of points, a single value, or
+(not in the norm) a shape with its parameters.
+"""
 
 import re
 from collections.abc import Iterator, Mapping

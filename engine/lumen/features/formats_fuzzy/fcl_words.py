@@ -1,6 +1,6 @@
-"""The words of Fuzzy Control Language as the norm, jFuzzyLogic and FuzzyLite have them, and what each means here.
+"""The words of Fuzzy Control Language in the norm, jFuzzyLogic and FuzzyLite, with their meanings in Lumen.
 
-Of `AND` and `OR` one alone means its partner as well (IEC 61131-7, De Morgan; jFuzzyLogic pairs HAMACHER and EINSTEIN).
+`AND` or `OR` alone also determines the other (IEC 61131-7, De Morgan; jFuzzyLogic pairs HAMACHER and EINSTEIN).
 """
 
 import re
@@ -76,8 +76,8 @@ def _sigmoid(slope: float, inflection: float) -> str:
 def function(text: str, names: Mapping[str, str]) -> str | Trouble:
     """Return jFuzzyLogic's `FUNCTION` as Lumen's formula; `names` are the inputs'.
 
-    Where its order of operations is another than everybody else's (`a % b * c`, `2 ^ 3 ^ 2`, `-2 ^ 2`), and where a
-    formula asks for `x`, which has no meaning there, it is refused instead of guessed at.
+    Formulas whose order of operations is unusual in FCL (`a % b * c`, `2 ^ 3 ^ 2`, `-2 ^ 2`) are refused instead of
+    guessed, and so are those with `x`, which has no meaning there.
     """
     doubtful = text.count("^") > 1 or ("%" in text and re.search(r"[*/^]|%.*%", text))
     if doubtful or ("^" in text and re.search(r"[-+][\d.]", text)):
@@ -90,9 +90,9 @@ def function(text: str, names: Mapping[str, str]) -> str | Trouble:
 
 
 def reach(kind: str, parameters: list[float]) -> list[float]:
-    """Return where a shape begins and ends in jFuzzyLogic (`estimateUniverse`); nothing for shapes it lacks.
+    """Return a shape's beginning and end in jFuzzyLogic (`estimateUniverse`); nothing for shapes it lacks.
 
-    A gaussian reaches 4 sigma from its mean, a bell to where it has fallen to 0.001, a sigmoid 9 / slope from its
+    A gaussian reaches 4 sigma from its mean, a bell to a membership of 0.001, a sigmoid 9 / slope from its
     inflection.
     """
     match kind, parameters:

@@ -101,6 +101,8 @@ class FisLine(NamedTuple):
 
 
 class FisSection(NamedTuple):
+    """A section with its number, its lines and its place."""
+
     kind: str
     number: int
     lines: list[FisLine]
@@ -341,7 +343,10 @@ class _FisReader:
         return found
 
     def derived(self, variable: FisVariable, term: str, power: float, line: FisLine, *, negated: bool) -> str:
-        """Add a term for a set's complement or a power of its membership, which Lumen's rules lack; return its name."""
+        """Add a term for a set's complement or a power of its membership, which Lumen's rules lack; return its name.
+
+        In a conclusion, a hedge in Lumen's rules changes the degree of the rule; in Octave it changes the set.
+        """
         kind, values = variable.shapes[term]
         formula = set_formula(kind, values)
         what = f"`{variable.name} is {'not ' if negated else ''}{term}`"

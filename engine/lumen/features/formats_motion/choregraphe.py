@@ -91,8 +91,9 @@ class Flags(NamedTuple):
 
 
 def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """Return the curves of the timeline of that name, or of the only one if no name is given. Raises
-    ForeignFileError.
+    """Return the curves of the timeline of that name, or of the only one if no name is given. Raises ForeignFileError.
+
+    `hands` of the file are the robot's hands besides NAO's: their keys are openings.
     """
     root = parse_xml(file.name, file.content, most=MAX_CHOREGRAPHE_ELEMENTS)
     if local(root) not in ROOTS:

@@ -1,4 +1,4 @@
-"""Keyframes in Python for NAOqi, as Choregraphe exports them or people write them: read, never run.
+"""Keyframes in Python for NAOqi, as exported by Choregraphe or written by hand: read, never run.
 
 NAOqi's ALMotion: `angleInterpolationBezier(names, times, keys)`, each key `[angle, [type, dt, da], [type, dt, da]]`,
 and `angleInterpolation(names, angles, times, isAbsolute)`; times in [s], angles in [rad]. Statements are followed in
@@ -455,7 +455,11 @@ def _joints(name: Any) -> tuple[Any, ...]:
 
 
 def _rows(times: Any, keys: Any, joints: int) -> list[tuple[list[Any], list[Any]]] | None:
-    """Return times and keys of each joint, in every form that ALMotion accepts; None if they do not match."""
+    """Return times and keys of each joint, in every form that ALMotion accepts; None if they do not match.
+
+    The forms are: one time for all, one time or angle for each joint, or a list for each of them; for a single joint,
+    its own list.
+    """
     if times == [] or keys == []:
         return None
     if joints == 1 and isinstance(times, list) and not isinstance(times[0], list):

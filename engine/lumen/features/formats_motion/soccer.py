@@ -1,8 +1,8 @@
 """The `.motion` files of teams in RoboCup's 3D simulation league, which call themselves V1.1.
 
-`#WEBOTS_MOTION,V1.1`, behind it or in the second line the joints' names joined by `%`, then a pose a line:
-`play%ANGLE%…%DURATION`, in [rad], with what the way to the pose takes [s]. Nobody has specified it: this is what the
-files hold.
+`#WEBOTS_MOTION,V1.1`, then in the same or the second line the joints' names joined by `%`, then a pose per line:
+`play%ANGLE%…%DURATION`, in [rad], with the time to reach the pose [s]. There is no specification: this
+describes existing files.
 """
 
 from lumen.features.formats_motion.cells import Cell, cells_of

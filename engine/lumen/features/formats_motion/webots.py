@@ -1,7 +1,7 @@
-"""Webots' `.motion` files: a line of joint names, then a pose a line.
+"""Webots' `.motion` files: a line of joint names, then a pose per line.
 
-Webots' reference manual, "Motion": `#WEBOTS_MOTION,V1.0,JOINT,…`, then `MM:SS:mmm,NAME,ANGLE,…` in [rad], where `*`
-leaves a joint alone. Teams of RoboCup's 3D league write V1.1 (`soccer.py`), which Webots does not know.
+Webots' reference manual, "Motion": `#WEBOTS_MOTION,V1.0,JOINT,…`, then `MM:SS:mmm,NAME,ANGLE,…` in [rad], with `*` for
+a joint that does not move. Teams of RoboCup's 3D league write V1.1 (`soccer.py`), which Webots does not support.
 """
 
 import re

@@ -12,7 +12,7 @@ class PhysicalHall:
         """Do nothing: real visitors place themselves."""
 
     def face(self) -> tuple[float, float] | None:
-        """Return None: only a visual module knows where a face is."""
+        """Return None: only a visual module sees faces."""
         return None
 
     def touch(self, sensor: str, pressed: bool) -> None:

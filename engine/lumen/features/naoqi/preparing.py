@@ -47,7 +47,7 @@ def prepare(session: NaoqiSession, body: Body, *, again: bool) -> None:
 
 
 def halt(session: NaoqiSession, joints: Sequence[str]) -> None:
-    """End what the robot does and keep its balance: a walk after its step, motions where they are, and speech."""
+    """End what the robot does and keep its balance: a walk after its step, motions at once, and speech."""
     session.post("ALMotion", "stopMove").wait(2.0)
     session.post("ALMotion", "killTasksUsingResources", list(joints)).wait(1.0)
     if session.has("ALTextToSpeech"):

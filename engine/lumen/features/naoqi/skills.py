@@ -58,7 +58,7 @@ _log = logging.getLogger(__name__)
 
 
 class NaoqiSkills:
-    """Begins activities; `fallen` is whether the robot lies where it fell."""
+    """Begins activities; `fallen` is whether the robot has fallen and not got up."""
 
     def __init__(
         self, session: NaoqiSession, body: Body, area: WalkingArea, notice: EventSink, clock: Callable[[], float]

@@ -44,7 +44,7 @@ class WalkMonitor:
             self._post("ALMotion", "stopMove")
 
     def _astray(self, now: float) -> str:
-        """Return why it must not continue from where it is, empty if it may."""
+        """Return why it must not continue from its present place, empty if it may."""
         if self._where is None:
             if now >= self._look:
                 self._where, self._look = self._post("ALMotion", "getRobotPosition", True), now + POSITION_CHECK_PERIOD

@@ -12,7 +12,7 @@ class Imperfections:
     quantisation: bool = True
     """Encoders give whole steps."""
     gyro_bias: bool = True
-    """The gyrometer measures a turn while there is none."""
+    """The gyrometer measures a turn of a robot that does not turn."""
     latency: bool = True
     """A command acts one control period later."""
     backlash: bool = True

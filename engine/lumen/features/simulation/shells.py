@@ -65,9 +65,9 @@ class ShellPanel:
 
     loft: Loft
     span: tuple[float, float]
-    """The shares of the loft's length where it begins and ends."""
+    """The shares of the loft's length at which it begins and ends."""
     arc: tuple[float, float]
-    """The angles where it begins and ends [deg]."""
+    """The angles at which it begins and ends [deg]."""
     rise: float = 1.0
     """Its height above the skin [mm]."""
     sink: float = 1.5

@@ -55,7 +55,7 @@ class Social(Module):
         self.well()
 
     def _forget(self, message: Message) -> None:
-        """Delete the posts about a person who is to be forgotten."""
+        """Delete the posts about a person to forget."""
         match message.body:
             case {"name": str(name)} if self._file:
                 forget_lines(self._file, PersonName(name))

@@ -59,7 +59,7 @@ class Visit:
         return bool(name)
 
     def forget(self, name: str) -> None:
-        """Note that the present visitor is to be forgotten if they have, or will have, that name."""
+        """Forget the present visitor if they have, or get, that name."""
         self._unwanted.append(PersonName(name))
         self._muted = self._muted or self.is_with(name)
 

@@ -58,7 +58,7 @@ def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now:
 
 
 def abort(state: CentreState, why: str) -> CentreState:
-    """Return the state with all robots sent back: to what was wanted of them before, or else to what they ran."""
+    """Return the state with all robots sent back to the bundle wanted before, or else to the one that they ran."""
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
         return state

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class StateBox:
-    """A state; `rows` say what leads on from it, `marked` is whether the picture is about it.
+    """A state as a box; `rows` describe its transitions, `marked` is whether the picture is about it.
 
-    `first` is whether the state around it begins with it. Of a `parallel` one the boxes within stand side by side.
+    `first` is whether the enclosing state begins with it. The boxes in a `parallel` one are side by side.
     """
 
     id: str

@@ -1,6 +1,6 @@
-"""Nodes in layers, after Sugiyama, Tagawa and Toda (1981): ranks, an order in each that crosses little, then places.
+"""Nodes in layers, after Sugiyama, Tagawa and Toda (1981): ranks, then an order with few crossings, then places.
 
-Pure, and the same each time: of what is equally good the first given comes first.
+The result is deterministic: of equally good alternatives, the first given comes first.
 """
 
 import itertools
@@ -46,7 +46,7 @@ class Layering(NamedTuple):
 def layered(sizes: Mapping[N, Extent], edges: Sequence[Edge[N]], widest: float) -> Layering:
     """Return nodes laid out in layers from top to bottom, each at most `widest` [px] wide if possible.
 
-    An edge that leads up again is laid out as if it led down.
+    An edge that leads upwards is laid out as if it led downwards.
     """
     down = _without_cycles(list(sizes), edges)
     ranks = _narrow(_ranks(list(sizes), down), sizes, widest)

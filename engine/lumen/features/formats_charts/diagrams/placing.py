@@ -40,6 +40,8 @@ class PlacedArrow(NamedTuple):
 
 
 class PlacedDiagram(NamedTuple):
+    """A diagram with the places of its boxes and arrows, and its size [px]."""
+
     boxes: tuple[PlacedBox, ...]
     arrows: tuple[PlacedArrow, ...]
     size: Extent

@@ -1,7 +1,7 @@
-"""The common part of ECMAScript and of our expressions, both ways: what conditions and values in statecharts use.
+"""Translates conditions and values of statecharts between ECMAScript and Lumen's expressions.
 
-Both are read into the tree of `lumen.expressions`, which holds the rest of ECMAScript as signs (`===`, `typeof`) and as
-calls of methods (`.trim`, the object being the first argument).
+Both are read into the tree of `lumen.expressions`, with the rest of ECMAScript as signs (`===`,
+`typeof`) and as calls of methods (`.trim`, with the object as the first argument).
 """
 
 from lumen.features.formats_charts.ecmascript.reader import ScriptNames, ScriptTranslator, read_condition, read_value

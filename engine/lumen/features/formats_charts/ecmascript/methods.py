@@ -17,7 +17,7 @@ from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
 from lumen.features.formats_charts.ecmascript.translation import Translation
 
 SIGN_FUNCTIONS = {"contained": "in", "same": "=="}
-"""Calls that stand for a sign where ECMAScript's own is another one for texts and lists, or for lists and numbers."""
+"""Calls that are translated to a sign, for which ECMAScript has several, depending on the kind of value."""
 
 LUMEN_FUNCTIONS = frozenset(
     (

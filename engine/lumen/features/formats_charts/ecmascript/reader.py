@@ -35,11 +35,11 @@ _FALSY = ListLiteral((Literal(None), Literal(False), Literal(0), Literal("")))
 
 @dataclass(frozen=True)
 class ScriptNames:
-    """What the names in a document stand for.
+    """The meaning of the names in a document.
 
-    `context` maps the data model's names to context keys, `kinds` those keys to the kinds they keep (absent: any);
-    `states` maps the ids for `In()` to ours, `events` the names of events that differ here; `title` is the value of
-    `_name`.
+    `context` maps the data model's names to context keys, `kinds` those keys to their constant kinds (absent: any);
+    `states` maps the ids for `In()` to Lumen's, `events` the names of events that differ in Lumen; `title` is the
+    value of `_name`.
     """
 
     context: Mapping[str, str] = field(default_factory=dict)
@@ -81,6 +81,7 @@ class ScriptTranslator:
         self.present: frozenset[tuple[str, ...]] = frozenset()
 
     def kind(self, node: ExpressionNode) -> str:
+        """Return the kind of one of Lumen's trees, or UNKNOWN_KIND."""
         return kind(node, self.names.kinds)
 
     def condition(self, tree: ExpressionNode) -> ExpressionNode:

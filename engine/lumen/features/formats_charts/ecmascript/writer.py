@@ -39,7 +39,9 @@ class WrittenScript(NamedTuple):
 
 
 class Vocabulary(NamedTuple):
-    """What our names are there: the `kinds` that context keys keep, their names, and the ids of states by path."""
+    """Lumen's names in the document: the constant `kinds` of context keys, their names, and the ids of states by
+    path.
+    """
 
     kinds: Mapping[str, str] = {}
     keys: Mapping[str, str] = {}

@@ -64,6 +64,7 @@ class ScxmlActionReader:
         return [action for element in elements for action in self.actions(element)]
 
     def actions(self, element: XmlElement) -> Iterator[ActionData]:
+        """Yield the actions of an element; report it if it has no counterpart in Lumen."""
         try:
             yield from self._actions(element)
         except LeftOutError as error:

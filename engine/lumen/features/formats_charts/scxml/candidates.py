@@ -23,7 +23,7 @@ def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[Transit
     """Return `on` for these candidates, tried in this order; a single candidate is written without a list.
 
     If the same descriptor comes before and after one that an event may match as well, all of these become
-    candidates of the most general one, which ask for the event's name. One whose guard becomes too long is left out.
+    candidates of the most general one, with guards for the event's name. One whose guard becomes too long is left out.
     """
     heads = _heads({descriptor for descriptor, _ in rows})
     order, mixed = _DescriptorOrder(), set[str]()

@@ -311,7 +311,10 @@ class _ScxmlReader:
 
 
 class _ActiveTogether:
-    """A set of states that finds whether another one can be active together with one of them."""
+    """A set of states that finds whether another one can be active together with one of them.
+
+    Two states can if one is in the other, or if they are in different regions of a parallel state.
+    """
 
     def __init__(self) -> None:
         self._states: set[ForeignState] = set()

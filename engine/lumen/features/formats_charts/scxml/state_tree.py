@@ -14,7 +14,7 @@ def regular(node: ForeignState) -> list[ForeignState]:
 
 
 class ScxmlStateTree:
-    """The tree of states under `root` (whose element, `top`, becomes our file), and all of them by id.
+    """The tree of states under `root` (whose element, `top`, becomes the file), and all of them by id.
 
     `title` is the behaviour's name.
     """

@@ -30,6 +30,7 @@ class ScxmlTransitionReader:
         self.outline, self.contents, self.findings = outline, contents, findings
 
     def of(self, node: ForeignState, afters: dict[str, str]) -> dict[str, Any]:
+        """Return the transitions of a state, by `on`, `always`, `after` and the like."""
         always: list[TransitionData] = []
         after: dict[str, list[TransitionData]] = {}
         rows: list[tuple[str, TransitionData]] = []
@@ -151,6 +152,7 @@ class ScxmlTransitionReader:
         return found
 
     def named(self, source: ForeignState, targets: list[ForeignState], *, inside: bool = False) -> Any:
+        """Return one target's name from this state, or the list of several."""
         names = [source.calls(target, self.outline.title, inside=inside) for target in targets]
         return names[0] if len(names) == 1 else names
 

@@ -27,8 +27,8 @@ _SCHEMA_LOCATION = "{http://www.w3.org/2001/XMLSchema-instance}schemaLocation"
 class UnreadParts:
     """Prepares one document for the reader.
 
-    Parts that are in no table are removed from the tree, and values that only differ in case are corrected. Elements of
-    editors are reported in one line for each name.
+    Parts that are in no table are removed from the tree, and values that differ only in case are corrected. Elements of
+    editors are reported in one line per name.
     """
 
     def __init__(self, scxml: XmlElement, findings: ConversionFindings) -> None:

@@ -25,8 +25,8 @@ _TAGS = {StateKind.PARALLEL: "parallel", StateKind.FINAL: "final", StateKind.HIS
 def write_scxml(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
     """Return the document, and findings about what is missing in it or has a meaning only for Lumen.
 
-    What SCXML lacks (robot verbs, `do`, phrases, answers) is in a namespace of its own: coming back to
-    Lumen nothing of it is lost, and other tools pass over it.
+    Robot verbs, `do`, phrases and answers, which SCXML lacks, are in a separate namespace: Lumen reads them back
+    without loss, and other tools ignore them.
     """
     report = ExportReport(place)
     document = _ScxmlWriter(machine, report).tag()

@@ -19,6 +19,7 @@ class XmlTag:
     text: str = ""
 
     def lines(self, depth: int = 0) -> Iterator[str]:
+        """Yield the lines of the element, indented by its depth."""
         indent = "  " * depth
         pairs = ((key, escape(_sound(value), _QUOTES)) for key, value in self.attributes.items() if value)
         start = " ".join([self.name, *(f'{key}="{value}"' for key, value in pairs)])

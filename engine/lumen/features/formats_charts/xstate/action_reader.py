@@ -43,9 +43,11 @@ class XStateActionReader:
         self._guards: dict[str, str] = {}
 
     def lost(self, where: NodePath, message: str, hint: str = "") -> None:
+        """Report something that could not be converted."""
         self.findings.lost(self.source.place(where), message, hint)
 
     def changed(self, where: NodePath, message: str, hint: str = "") -> None:
+        """Report something that was converted with a difference."""
         self.findings.changed(self.source.place(where), message, hint)
 
     def actions(self, data: Any, where: NodePath) -> list[ActionData]:

@@ -15,7 +15,9 @@ _ENDS = {"onDone": "done.invoke", "onError": "error.invoke"}
 
 
 class ActorEnds(NamedTuple):
-    """`do`, `invoke` and what follows their ends; and what `on` gets in place of those that can't be carried over."""
+    """`do`, `invoke` and the transitions at their ends; and the waits in `on` that replace those that can't be
+    converted.
+    """
 
     data: dict[str, Any]
     waits: dict[str, list[TransitionData]]

@@ -22,6 +22,7 @@ class XStateNode(ForeignState):
 
     @property
     def kind(self) -> str:
+        """The kind of the state, by its type and its children."""
         kind = declared_kind(self.source)
         if kind in ("final", "history") or (kind == "parallel" and self.regular):
             return kind
@@ -36,6 +37,7 @@ class XStateNode(ForeignState):
         return f"{below}.{self.original}" if below else "(machine)"
 
     def child(self, key: str) -> "XStateNode | None":
+        """Return the child of that key, None if there is none."""
         return self.named.get(key)
 
 

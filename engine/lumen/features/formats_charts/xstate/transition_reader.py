@@ -78,7 +78,10 @@ class XStateTransitionReader:
         return row
 
     def _reenters(self, data: dict[str, Any]) -> bool:
-        """Return whether the state itself is left and entered again."""
+        """Return whether the state itself is left and entered again.
+
+        In version 4 it is, unless `internal` or a target that begins with a dot prevents it.
+        """
         if isinstance(data.get("reenter"), bool):
             return bool(data["reenter"])
         if isinstance(data.get("internal"), bool):

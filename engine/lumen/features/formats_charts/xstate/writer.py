@@ -28,10 +28,9 @@ _HINT = "write an implementation with that name for XState"
 def write_xstate(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, list[Diagnostic]]:
     """Return the configuration, and findings about what is missing in it or needs code.
 
-    An action of ours is `{"type": "lumen.say", "params": …}`, a guard `{"type": "lumen.expression", "params":
-    {"source": …}}`, a row of `hears` the guard `lumen.hears`, and `do` an invocation of `lumen.do`: their code is for
-    `setup`. What XState has no place for
-    stands in `meta`.
+    An action of Lumen is `{"type": "lumen.say", "params": …}`, a guard `{"type": "lumen.expression", "params":
+    {"source": …}}`, a row of `hears` the guard `lumen.hears`, and `do` an invocation of `lumen.do`: their code belongs
+    into `setup`. Whatever XState lacks is in `meta`.
     """
     report = ExportReport(place, _HINT)
     data = _XStateWriter(machine, report).data()

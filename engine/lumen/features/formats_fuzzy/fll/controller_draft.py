@@ -38,8 +38,10 @@ PlaceOfWord = Callable[[RuleWord], Place]
 
 
 class ControllerDraft:
-    """Collects a controller's data; `names` maps the file's names to Lumen's, `terms` those of a variable of
-    Lumen's.
+    """Collects a controller's data; `names` maps the file's names to Lumen's, `terms` those of a variable.
+
+    Variables of the same name are kept apart: a proposition means the first that has its term, a condition an input
+    first.
     """
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:

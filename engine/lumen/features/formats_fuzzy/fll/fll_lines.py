@@ -38,6 +38,7 @@ class FllLineReader:
         self.file, self.findings = file, findings
 
     def parts(self, text: str) -> Iterator[FllPart]:
+        """Yield the parts of a text; report lines before the first."""
         part: FllPart | None = None
         for line in self.lines(text):
             if line.key in PART_KEYS:
@@ -52,6 +53,7 @@ class FllLineReader:
             yield part
 
     def lines(self, text: str) -> Iterator[FllLine]:
+        """Yield the lines of a text; report invalid ones. Raises ForeignFileError for too many."""
         rows = lines_of(text)
         if len(rows) > MAX_FLL_LINES:
             raise broken(Place(self.file), "too-large", f"the file has more than {MAX_FLL_LINES:,} lines", "split it")
@@ -75,4 +77,5 @@ class FllLineReader:
         return Place(self.file, line.row, begin, line.row, begin + width)
 
     def lost(self, line: FllLine, message: str, hint: str = "") -> None:
+        """Report a line that could not be converted."""
         self.findings.lost(self.place(line), message, hint)

@@ -1,6 +1,6 @@
-"""Formulas: FuzzyLite's infix notation and ours, which are the same sums in other signs.
+"""Translates formulas between FuzzyLite's infix notation and Lumen's, which differ in their signs.
 
-There `^` and `**` are powers, `~`, `.-` a minus, `and` and `or` logic, `lt(a, b)` and its like comparisons.
+In FuzzyLite `^` and `**` are powers, `~` and `.-` a minus, `and` and `or` logic, `lt(a, b)` and others comparisons.
 """
 
 import re

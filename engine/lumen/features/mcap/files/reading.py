@@ -1,4 +1,4 @@
-"""Reads a recording; an incomplete one is read up to where it was cut off."""
+"""Reads a recording; an incomplete one is read up to its cut."""
 
 import struct
 from collections.abc import Iterator
@@ -32,7 +32,7 @@ def whole(path: Path) -> bool:
 
 
 def read_recording(path: Path) -> Iterator[Recorded]:
-    """Yield messages, attachments and metadata in their order, to the end or to where it was cut off.
+    """Yield messages, attachments and metadata in their order, to the end or to the cut.
 
     Raises RecordingError if it is not a recording.
     """

@@ -102,7 +102,9 @@ def _to(posture: str) -> Before:
 
 
 def _end(motions: Mapping[str, MotionDefinition], action: object) -> Before | None:
-    """Return the commands that lead to where this action leaves the robot; None if it moves neither arms nor legs."""
+    """Return the commands that lead to the robot's posture after this action; None if it moves neither arms nor
+    legs.
+    """
     match action:
         case Posture(name):
             return _to(name)

@@ -157,7 +157,7 @@ class _Watch:
             _most(self.outcome.behind, joint, self._now, angle)
 
     def _slide(self, soles: Mapping[str, Sole]) -> None:
-        """Record how far each foot is from where it began to bear load."""
+        """Record the distance of each foot from its place at the beginning of its load."""
         for side, sole in soles.items():
             if sole.load < BEARING_FORCE:
                 self._stands.pop(side, None)
