@@ -8,7 +8,8 @@ from typing import Any
 ALWAYS, FACE, TOUCH, SPEAKS, NOBODY = "always", "face", "touch", "speaks", "nobody"
 """The reasons to listen or not to listen, as on the route `listening`."""
 AFTER_FACE, AFTER_TOUCH = 3.0, 10.0
-"""The default times that the ears stay open [s]: people look away while they think, and step back after a touch."""
+"""The default times that the ears stay open [s]: people look away while they think, and need time to
+walk up."""
 LEAD = 1.0
 """The time before the face or the touch in which the ears count as open [s]: people nearby begin to speak before
 they look.

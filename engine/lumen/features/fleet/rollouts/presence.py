@@ -33,6 +33,7 @@ class RobotPresence:
     state: str = PROVED
     """The robot's state with the bundle `about`."""
     about: str = ""
+    """The bundle that it was ordered to run, else the running one."""
     trouble: str = ""
     """The reason why it does not get farther."""
     wants: str = ""
