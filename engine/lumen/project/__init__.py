@@ -1,4 +1,4 @@
-"""A project from its folder: text to values that keep their file and line.
+"""Read a project from its folder: values built from text, each with its file and line.
 
 Each name is imported when it is first used. `__init__.pyi` has the same names for type checkers.
 """

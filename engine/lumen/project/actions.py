@@ -1,4 +1,4 @@
-"""Actions of a behaviour: what stands in `entry`, `do`, `exit` and `actions`, one verb each."""
+"""The actions of a behaviour, in `entry`, `do`, `exit` and `actions`: one verb each."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, assert_never
@@ -37,7 +37,7 @@ ONLY_IN_DO = Code("only-in-do", "statecharts", ERROR, "a verb that waits is used
 
 
 class Actions:
-    """Reads the actions of one document; `units` are the file's, `verbs` the project's own."""
+    """Reads the actions of one document; `units` are the file's, `verbs` those that the project declares."""
 
     def __init__(
         self,
@@ -51,7 +51,10 @@ class Actions:
         self.length = LENGTHS.get(units.get("length", "m"), 1.0)
 
     def block(self, data: Any, where: NodePath, *, do: bool = False) -> tuple[PlacedAction, ...]:
-        """A single action or a list of them; `do` allows `wait`, `parallel` and `ask`. Broken ones are left out."""
+        """Return the actions of a single action or a list, without those that can't be read.
+
+        `wait`, `parallel` and `ask` are allowed only with `do`.
+        """
         if isinstance(data, Mapping):
             action = self.action(data, where, do=do)
             return (PlacedAction(action, where),) if action else ()
@@ -59,7 +62,7 @@ class Actions:
         return tuple(PlacedAction(a, place) for place, item in rows if (a := self.action(item, place, do=do)))
 
     def action(self, data: Mapping[str, Any], where: NodePath, *, do: bool = False) -> Action | None:
-        """One action, None (and reported) where it can't be read."""
+        """Return one action; if it can't be read, report why and return None."""
         if "if" in data:
             return self._if(data, where, do=do)
         if len(data) != 1:
@@ -74,13 +77,13 @@ class Actions:
         return self._verb(verb, body, (*where, verb))
 
     def duration(self, text: Any, where: NodePath, *, key: bool = False) -> float | None:
-        """[s], None (and reported) where the text is no duration."""
+        """Return the duration [s] in a text such as `20s`; if it is no duration, report that and return None."""
         if (length := seconds(text)) is None:
             self.report(BAD_DURATION, where, f"`{text}` is not a duration", hint=duration_hint(text), key=key)
         return length
 
     def delay(self, text: Any, where: NodePath, *, key: bool = False) -> float | Template | None:
-        """[s], or what computes it; None (and reported) where the text is neither."""
+        """Return a delay [s], or the template that computes it; if the text is neither, report that and return None."""
         if isinstance(text, str) and "{{" in text:
             return self.expressions.template(text, where)
         return self.duration(text, where, key=key)
@@ -94,7 +97,7 @@ class Actions:
         return self._do(verb, added, data, where) if added else None
 
     def _do(self, verb: str, row: VerbRow, data: Any, where: NodePath) -> Do | None:
-        """The command of an added verb, None (and reported) if a duration or a template can't be read."""
+        """Return the command of an added verb; if a duration or a template is faulty, report that and return None."""
         sound = True
 
         def read(text: str, below: NodePath) -> str:
@@ -114,14 +117,14 @@ class Actions:
         return Do(verb, arguments, row=self.verbs.rows.get(verb)) if sound else None
 
     def _command(self, row: Verb[Any], data: Any, where: NodePath) -> VerbCommand | None:
-        """The command of this row, None (and reported) where a number or a duration can't be read."""
+        """Return the command of this row; if a value in it can't be read, report that and return None."""
         values = {}
         for field, below, value in row.arguments(data):
             values[field.name] = self._value(field.quantity, value, (*where, *below))
         return None if None in values.values() else row.command(**values)
 
     def _value(self, quantity: Quantity, value: Any, where: NodePath) -> Any:
-        """The value in the command's units, None (and reported) where it is none."""
+        """Return the value in the command's units; if it can't be read, report that and return None."""
         if isinstance(value, int | float) and not finite(value, self.report, where):
             return None
         match quantity:
@@ -223,4 +226,4 @@ COMPUTED_READERS: Mapping[str, Callable[[Actions, Any, NodePath], Action | None]
     "parallel": Actions._parallel,
     "ask": Actions._ask,
 }
-"""What reads the verbs that a step evaluates, by their names; `if` has keys beside it, and is read before."""
+"""The readers of the verbs that a step evaluates, by verb. `if` is not among them: it has other keys beside it."""

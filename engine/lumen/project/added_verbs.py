@@ -1,4 +1,4 @@
-"""The verbs that features and the files of a project add: which rows can be used, and how long the verbs take."""
+"""The verbs that features and the files of a project add: which rows are usable, and how long each verb takes."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -26,7 +26,7 @@ def usable_verbs() -> Mapping[str, VerbRow]:
 class OwnVerbs:
     """The verbs that the files of one project declare, by name.
 
-    `hash` is that of the files. Of two with the same hash, what depends on the verbs is made once.
+    `hash` is the hash of those files. Two values with the same hash are equal, so what is derived from them is cached.
     """
 
     rows: Mapping[str, VerbRow] = field(default_factory=dict, compare=False)
@@ -34,12 +34,12 @@ class OwnVerbs:
 
     @property
     def all(self) -> Mapping[str, VerbRow]:
-        """These and the verbs of features; of two with the same name the feature's."""
+        """The project's own verbs and those of features; a feature's verb replaces one of the same name."""
         return {**self.rows, **usable_verbs()}
 
 
 NO_VERBS = OwnVerbs()
-"""Those of a project that declares none, and of files without a project."""
+"""The verbs of a project that declares none, and of files without a project."""
 
 
 def faulty_verbs() -> Iterator[tuple[Feature, str]]:
@@ -70,7 +70,7 @@ def takes_fault(row: VerbRow) -> str:
 
 
 def time_taken(command: Do) -> float:
-    """Return how long a verb of a feature takes with its arguments [s].
+    """Return how long an added verb takes with these arguments [s].
 
     Raises BadCommandError if no feature here has the verb, or if `takes` of its row gives no duration.
     """
@@ -87,7 +87,7 @@ def time_taken(command: Do) -> float:
 
 
 def _duration(row: VerbRow, names: Iterable[str]) -> Callable[[Scope], str] | None:
-    """Return what computes `takes` from arguments of these names; None if it contains no expression."""
+    """Return the function that computes `takes` from arguments of these names; None if it has no expression."""
     parts = split_template(row.takes)
     variables = {name: f"context.{name}" for name in names}
     if all(isinstance(part, str) for part in parts):

@@ -1,4 +1,4 @@
-"""A behaviour file, `behaviors/NAME.yaml`, from its plain data to a `Machine`."""
+"""Build a `Machine` from the plain data of a behaviour file, `behaviors/NAME.yaml`."""
 
 import hashlib
 import json
@@ -30,7 +30,7 @@ from lumen.project.transitions import TransitionReader
 
 
 def buttons(data: Any, where: NodePath) -> tuple[Button, ...]:
-    """Those that can be read, in the order of the file."""
+    """Return the buttons that have a label and an event, in the order of the file."""
     rows = ((row, (*where, number)) for number, row in enumerate(data or ()))
     return tuple(
         read_fields(Button, row, label=_label(row["label"]), key=str(row.get("key", "")), where=place)
@@ -40,7 +40,7 @@ def buttons(data: Any, where: NodePath) -> tuple[Button, ...]:
 
 
 def _label(texts: Any) -> dict[str, str]:
-    """By language; what is the same in all is under the empty one."""
+    """Return the label by language code; a text that serves all languages has the empty code."""
     table = {"": texts} if isinstance(texts, str) else texts
     return {"" if language == "any" else language: str(text) for language, text in table.items()}
 
@@ -49,7 +49,7 @@ NOT_WITHIN = Code("not-within", "statecharts", ERROR, "the state named in `initi
 
 
 CONTEXT_PREFIX = "context"
-"""How `renamed` calls keys of the context: `context.name: context.visitor`."""
+"""The prefix by which `renamed` names keys of the context: `context.name: context.visitor`."""
 
 
 def build_machine(
@@ -66,13 +66,14 @@ def build_machine(
     verbs: OwnVerbs = NO_VERBS,
     functions: KnownFunctions = MappingProxyType({}),
 ) -> MachineDefinition | None:
-    """The machine that the data of `behaviors/NAME.yaml` describes, None where it has no states.
+    """Return the machine that the data of `behaviors/NAME.yaml` describes; None if it has no states.
 
-    `data` has the shape of behavior.schema.json; what is wrong beyond that is reported and left out. `words` are the
-    words files that it may name, `known` the names of all, those that can't be read among them; `shared` what robots
-    have in common, which the behaviours `performed` by one can read. `languages` are those of the project; `common` of
-    the words files is `shipped` if it comes with Lumen. `verbs` are those that the project declares, `functions` its
-    functions.
+    `data` has the shape of behavior.schema.json; any other fault is reported, and the faulty part left out.
+
+    `words` are the words files that the behaviour may name, and `known` the names of all words files, also of
+    unreadable ones. `shared` are the keys that the robots have in common: the behaviours in `performed`, which robots
+    perform, can read them. `languages` are the project's; `shipped` is true if the words file `common` comes with
+    Lumen. `verbs` and `functions` are those that the project declares.
     """
     if not isinstance(data, Mapping) or not data.get("states"):
         return None
@@ -83,13 +84,13 @@ def build_machine(
 
 
 def fingerprint(data: Any) -> str:
-    """The hash of plain data; order counts, since candidates are tried in the order written."""
+    """Return the hash of plain data; the order of keys counts, because candidates are tried in the order written."""
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 class _WordsAround(NamedTuple):
-    """The words files that a behaviour may name, and the functions that it may call, as `build_machine` gets them."""
+    """The words files that a behaviour may name and the functions that it may call, as given to `build_machine`."""
 
     files: WordFiles
     known: Collection[str]
@@ -99,7 +100,7 @@ class _WordsAround(NamedTuple):
 
 
 class _Builder:
-    """Reads one file: first the tree of its states, then what stands in each."""
+    """Reads one file: first the tree of its states, then the content of each state."""
 
     def __init__(
         self,
@@ -123,7 +124,7 @@ class _Builder:
         self.beginnings: dict[str, tuple[str, ...]] = {}
 
     def fields(self) -> dict[str, Any]:
-        """Everything that a machine holds."""
+        """Return the arguments for `MachineDefinition`, by field name."""
         data = self.data
         check_shapes(self.outline, self.report)
         check_ids(self.outline, self.report)
@@ -151,7 +152,7 @@ class _Builder:
         }
 
     def borrowed(self) -> Iterator[Any]:
-        """What other files say that it uses, as data."""
+        """Iterate over the data that this machine uses from other files, for its hash."""
         supplied = self.words.supplied
         yield from (
             self.files[name].data
@@ -166,7 +167,7 @@ class _Builder:
                 yield [name, [*function.parameters], unparse(function.body)]
 
     def states(self, entry: OutlinedState) -> Iterator[State]:
-        """The state, and what its `for` adds to it."""
+        """Yield the state; if it has `for`, yield it unrolled."""
         state = self.state(entry)
         loop = self.rounds.read(entry, self.expressions.whole)
         if loop is None:
@@ -199,7 +200,7 @@ class _Builder:
         )
 
     def initial(self, entry: OutlinedState) -> tuple[str, ...]:
-        """The paths entered by default: what the file says, else the first child."""
+        """Return the paths that are entered by default: those that the file names, else the first child."""
         if entry.path not in self.beginnings:
             self.beginnings[entry.path] = (
                 self.remembered(entry) if entry.kind is StateKind.HISTORY else self.begin(entry)
@@ -218,9 +219,9 @@ class _Builder:
         return _children(entry)[:1]
 
     def remembered(self, entry: OutlinedState) -> tuple[str, ...]:
-        """Where a history state leads before there is a history: its target, else as its parent begins."""
+        """Return the paths that a history state enters without a history: its target, else its parent's default."""
         parent = entry.parent
-        assert parent is not None  # the schema lets no behaviour be a history state
+        assert parent is not None  # the schema does not allow the root to be a history state
         if "target" in entry.data:
             where = (*entry.where, "target")
             found = self.within(parent, entry, entry.data["target"], where)
@@ -236,7 +237,7 @@ class _Builder:
     def within(
         self, home: OutlinedState, source: OutlinedState, body: Any, where: NodePath, written: Any = None
     ) -> list[OutlinedState]:
-        """The states named, all of them below `home`; none (and reported) where one is wrong."""
+        """Return the named states, all of them below `home`; if one is not, report it and return none."""
         found = self.transitions.targets(source, body, where, written) or []
         for state in found:
             if state is home or not state.lies_in(home):
@@ -252,7 +253,7 @@ class _Builder:
         return found.path if found else ""
 
     def renamed(self, was: str) -> str:
-        """What is called otherwise now, by its path: what is gone by now may have been renamed again."""
+        """Return the present name of an entry under `renamed`, following later renames; report it if it has none."""
         table: Mapping[str, str] = self.data["renamed"]
         seen, now = {was}, table[was]
         while not (found := self.known(now)) and now in table and now not in seen:
@@ -263,13 +264,13 @@ class _Builder:
         return found
 
     def known(self, name: str) -> str:
-        """The path of a state by its path or id, or `context.KEY` of a key; empty where there is neither."""
+        """Return the path of a state given by path or id, or `context.KEY` of a known key; empty for neither."""
         entry = self.outline.entries.get(name) or self.outline.aliases.get(name)
         key = name.removeprefix(f"{CONTEXT_PREFIX}.")
         return entry.path if entry else name if key != name and key in (self.data.get("context") or {}) else ""
 
     def unknown(self, name: str, where: NodePath) -> None:
-        """Report a name under `renamed` that nothing has."""
+        """Report a name under `renamed` that no state and no context key has."""
         head, _, key = name.partition(".")
         if head == CONTEXT_PREFIX:
             known = [f"{CONTEXT_PREFIX}.{other}" for other in self.data.get("context") or {}]

@@ -1,4 +1,4 @@
-"""What the variables of a fuzzy controller are bound to: fields of messages, the context, joints, and signals."""
+"""The bindings of a fuzzy controller's variables: message fields, context keys, joints and signals."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -15,7 +15,7 @@ UNBOUND_INPUT = Code("unbound-input", "controllers", ERROR, "an input of a bound
 
 
 class Bindings:
-    """Reads `bind:` of one file, whose unit of angles is `angle` [rad]; without it nothing has to be bound."""
+    """Reads `bind:` of one file, whose unit of angles is `angle` [rad]. Without `bind:`, no variable must be bound."""
 
     def __init__(
         self, data: Mapping[str, Any], report: DocumentReport, outputs: Mapping[str, Variable], angle: float
@@ -26,7 +26,7 @@ class Bindings:
         self.targets: Mapping[str, str | Mapping[str, Any]] = bind.get("outputs") or {}
 
     def inputs(self) -> Iterator[InputBinding]:
-        """Each input that comes from a message, with its route and field."""
+        """Yield each input that is read from a message, with its route and field; report inputs without a source."""
         message, hint = "has no source for its value", "route.field"
         self.all_bound("inputs", self.sources, UNBOUND_INPUT, message, hint)
         for name, source in self.sources.items():
@@ -35,7 +35,10 @@ class Bindings:
                 yield InputBinding(name, route, tuple(path), ("bind", "inputs", name))
 
     def context_inputs(self) -> Iterator[ContextInput]:
-        """Each input that comes from the context; that moves no joint, for who moves joints knows no context."""
+        """Yield each input that is read from the context; report it if the controller also moves a joint.
+
+        Joints are moved by a process that has no access to the context of a behaviour.
+        """
         joint = next((name for name, spec in self.targets.items() if isinstance(spec, Mapping) and "joint" in spec), "")
         for name, source in self.sources.items():
             if name not in self.data["inputs"] or not isinstance(source, Mapping):
@@ -54,7 +57,7 @@ class Bindings:
             yield ContextInput(name, source["context"], path)
 
     def outputs(self) -> Iterator[OutputBinding]:
-        """Each output that moves a joint."""
+        """Yield each output that moves a joint; report outputs that are bound to nothing."""
         message, hint = "does nothing", "{joint: head.yaw, gain: 1.5}"
         self.all_bound("outputs", self.targets, UNBOUND_OUTPUT, message, hint)
         for name, spec in self.targets.items():
@@ -62,7 +65,7 @@ class Bindings:
                 yield from self.output(self.usable[name], spec)
 
     def signals(self) -> Iterator[SignalBinding]:
-        """Each output that does something else."""
+        """Yield each output that is bound to something other than a joint; report faulty ones."""
         for name, spec in self.targets.items():
             path: NodePath = ("bind", "outputs", name)
             if fault := signal_fault(spec):
@@ -85,7 +88,7 @@ class Bindings:
         yield OutputBinding(variable.name, spec["joint"], float(spec.get("gain", 1.0)), low, high, unit, path)
 
     def known(self, side: str, name: str) -> bool:
-        """Whether a bound variable exists, saying so where it does not."""
+        """Return True if a bound variable exists; report it if it does not."""
         if name in self.data[side]:
             return True
         hint = did_you_mean(name, self.data[side], f"the {side} are")
@@ -95,7 +98,7 @@ class Bindings:
         return False
 
     def all_bound(self, side: str, bound: Mapping[str, Any], code: Code, lack: str, example: str) -> None:
-        """Report variables that are bound to nothing, in a file that binds."""
+        """Report variables that are not bound, if the file has `bind:`."""
         for name in self.data[side] if "bind" in self.data else ():
             if name not in bound and name not in self.report.lost:
                 message, hint = f"`{name}` is not bound: it {lack}", f"write `{name}: {example}` under `bind`, `{side}`"

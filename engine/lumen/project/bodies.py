@@ -1,4 +1,4 @@
-"""The description of a robot's body, `models/NAME.yaml`, from its plain data to a `Body`."""
+"""Build a `Body` from the plain data of a description of a robot's body, `models/NAME.yaml`."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
@@ -39,28 +39,28 @@ GAIT_LENGTHS = frozenset(
         "sole_aside",
     )
 )
-"""The parameters of a pace that are counted in the file's units; all others are times [s]."""
+"""The parameters of a pace that are lengths in the file's unit. Those in neither set are times [s]."""
 
 NO_MJCF = "none"
-"""What `mjcf` says of a body that is never simulated."""
+"""The value of `mjcf` for a body that is never simulated."""
 
 COMMON_POSTURE = "Stand"
-"""The one that every robot knows: where it begins."""
+"""The posture that every robot must have, and in which it begins."""
 
 BIPED_POSTURE = "Crouch"
-"""Where a robot on two legs may go limp without a fall."""
+"""The posture in which a two-legged robot may turn its motors off without falling."""
 
 BODY_PARTS = ("head", "arms", "legs", "body")
-"""Every body has these parts; one that it lacks has no joints."""
+"""The parts of every body; a part that a body lacks has no joints."""
 
 POSTURE_TOLERANCE = 2e-3
-"""How far a posture may lie outside a limit [rad]: published postures are rounded."""
+"""The maximum distance of a posture beyond a joint's limit [rad]; published postures are rounded."""
 
 
 def build_body(data: Any, report: DocumentReport, *, name: str) -> Body | None:
-    """The body that the data of `models/NAME.yaml` describes, None where it has no joints.
+    """Return the body that the data of `models/NAME.yaml` describes; None if it has no joints.
 
-    One that is like another waits for that: `build_likes`.
+    A body with `like` but no joints of its own is built afterwards, by `build_likes`.
     """
     if not isinstance(data, Mapping) or not data.get("joints"):
         return None
@@ -70,9 +70,9 @@ def build_body(data: Any, report: DocumentReport, *, name: str) -> Body | None:
 def build_likes(
     bodies: Mapping[str, Body], sources: Mapping[str, tuple[Any, DocumentReport]], names: Collection[str]
 ) -> dict[str, Body]:
-    """All these bodies, and those that are like one of them; `sources` are the data and report of each file.
+    """Return all these bodies and those that are `like` one of them; `sources` are the data and report of each file.
 
-    `names` are all models that there are; one that could not be read is among them and is not missed.
+    `names` are the names of all models, also of unreadable ones, so that a reference to one of those is not reported.
     """
     found = dict(bodies)
     for name, (data, report) in sources.items():
@@ -92,7 +92,7 @@ def build_likes(
 
 
 class _Builder:
-    """Reads one file; joints first, since everything else names them."""
+    """Reads one file; the joints come first because everything else refers to them."""
 
     def __init__(self, data: Mapping[str, Any], report: DocumentReport) -> None:
         self.data, self.report = data, report
@@ -126,7 +126,7 @@ class _Builder:
         )
 
     def like(self, other: Body, name: str) -> Body:
-        """That body, with what stands in this file."""
+        """Return the other body with the changes that this file makes."""
         data = self.data
         return replace(
             other,
@@ -138,7 +138,7 @@ class _Builder:
         )
 
     def gait(self) -> dict[str, dict[str, float]]:
-        """What was found of each pace, in SI units."""
+        """Return the parameters of each pace, in SI units."""
         units = {name: self.angle if name in GAIT_ANGLES else self.length for name in GAIT_LENGTHS | GAIT_ANGLES}
         paces = (self.data.get("gait") or {}).items()
         return {pace: {n: v * units.get(n, 1.0) for n, v in found.items()} for pace, found in paces}
@@ -147,7 +147,7 @@ class _Builder:
         return LinkInertia(spec["mass"], tuple(c * self.length for c in spec["centre"]), tuple(spec["inertia"]))
 
     def unit(self, name: str) -> float:
-        """Return one of the file's units of this joint in SI; the opening of a hand stays as it is."""
+        """Return the unit of this joint in the file, in SI; 1.0 for the opening of a hand, which has no unit."""
         joint = self.data["joints"][name]
         return 1.0 if joint.get("opening") else self.length if joint.get("sliding") else self.angle
 
@@ -166,7 +166,7 @@ class _Builder:
         return Joint(name, low * unit, high * unit, spec.get("speed", inf) * unit, spec.get("effort", inf))
 
     def known(self, name: str, path: NodePath) -> bool:
-        """Whether that joint exists, saying so where it does not."""
+        """Return True if a joint exists and could be read; report it if it does not exist."""
         if name in self.joints:
             return True
         if name not in self.data["joints"]:
@@ -221,7 +221,7 @@ class _Builder:
         return CoupledLimit(joint, on, scaled)
 
     def postures(self, roles: Roles) -> dict[str, dict[str, float]]:
-        """The postures, those among them that such a body has to know."""
+        """Return the joint angles of each posture, and report required postures that are missing."""
         found = {name: self.posture(name, angles) for name, angles in (self.data.get("postures") or {}).items()}
         for name in (COMMON_POSTURE, BIPED_POSTURE) if roles.base.row.legs else (COMMON_POSTURE,):
             if "postures" in self.data and name not in found and name not in self.report.lost:
@@ -242,7 +242,7 @@ class _Builder:
         return {n: self.angle_of(n, spec[n], (*path, n)) for n in self.joints if n in spec}
 
     def angle_of(self, name: str, value: float, path: NodePath) -> float:
-        """The angle [rad] inside the joint's limits; reported where the file's lies outside."""
+        """Return the angle [rad], clipped to the joint's limits; report it if it exceeds them noticeably."""
         joint, unit = self.joints[name], self.unit(name)
         angle = value * unit
         if not (isfinite(angle) and joint.minimum - POSTURE_TOLERANCE <= angle <= joint.maximum + POSTURE_TOLERANCE):

@@ -1,4 +1,4 @@
-"""Texts with brackets in them that need quotes, as patterns of phrases do: "[please] dance", "call me {name}"."""
+"""Texts that need quotes because they contain brackets, such as phrase patterns: "[please] dance", "call me {name}"."""
 
 import json
 import re
@@ -9,11 +9,11 @@ from lumen.project.slips import KEY, Slip, short
 from lumen.talk.patterns import TYPES
 
 _BRACKETED_TEXT = re.compile(r"^(?!\{\w+: )(?=.*[\[{])(?:[\[{][^\[\]{}]*[\]}]|[^\[{(\w])*[\w(]")
-"""A text with brackets and something outside of them, and no map with something behind it."""
+"""A text with brackets and other text outside them, but not a map followed by something."""
 
 
 def bracketed(text: str, index: int) -> Iterator[Slip]:
-    """Texts with brackets in them, which YAML takes for lists and maps, in lines of a file that is not YAML."""
+    """Yield the texts with brackets that YAML reads as lists or maps, in a line of a file that is not valid YAML."""
     key = re.match(rf" *(?:- +)*(?:{KEY}: +)?", text)
     begin, end = key.end() if key else 0, marks_of(text).stop
     stop = next((at for at in range(begin, end) if text[at] in "]}" and _depth(text[begin : at + 1]) < 0), end)
@@ -34,7 +34,7 @@ def bracketed(text: str, index: int) -> Iterator[Slip]:
 
 
 def slot_signs(text: str) -> str:
-    """A text whose slots have no blank in them, and their type first."""
+    """Return a text with its slots in normal form: no blank in them, the name before the type."""
 
     def slot(found: re.Match[str]) -> str:
         one, other = found.groups()
@@ -44,12 +44,12 @@ def slot_signs(text: str) -> str:
 
 
 def _depth(text: str) -> int:
-    """The number of brackets that are left open; negative if more are closed."""
+    """Return the number of brackets that are left open; negative if more are closed than opened."""
     return sum(text.count(sign) for sign in "[{") - sum(text.count(sign) for sign in "]}")
 
 
 def _bracketed(text: str, start: int, end: int, *, flow: bool) -> Iterator[tuple[int, int]]:
-    """The spans of texts that need quotes; within brackets (`flow`) a comma ends each."""
+    """Yield the spans of texts that need quotes. If `flow`, the text is inside brackets, and a comma ends each item."""
     while start < end and text[start] == " ":
         start += 1
     if start >= end or text[start] in "\"'":
@@ -67,7 +67,7 @@ def _bracketed(text: str, start: int, end: int, *, flow: bool) -> Iterator[tuple
 
 
 def _items(text: str, start: int, end: int) -> Iterator[tuple[int, int]]:
-    """The spans of the items between commas; a comma within brackets or quotes separates nothing."""
+    """Yield the spans of the items between commas, ignoring commas within brackets or quotes."""
     low, at = start, start
     while at < end:
         if text[at] in "\"'" and not text[low:at].strip():
@@ -85,7 +85,7 @@ _BRACKETS = {"[": "]", "{": "}", "(": ")"}
 
 
 def _closing_bracket(text: str, start: int, end: int) -> int:
-    """The place of the bracket that closes the one there; -1 without any."""
+    """Return the index of the bracket that closes the first one at or after `start`; -1 if none does."""
     waiting: list[str] = []
     for at in range(start, end):
         if text[at] in _BRACKETS:

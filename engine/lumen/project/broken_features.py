@@ -17,7 +17,7 @@ BROKEN_FEATURE = Code("broken-feature", "features", WARNING, "an installed featu
 
 def broken_features() -> list[Diagnostic]:
     """Return a finding for each installed distribution whose feature, or a row of it, is ignored."""
-    from lumen.project.added_verbs import faulty_verbs  # and with it all of the expressions
+    from lumen.project.added_verbs import faulty_verbs  # imports all of the expressions
     from lumen.project.feature_schemas import faulty_options
 
     rows = ((distribution_of(feature), fault) for feature, fault in (*faulty_verbs(), *faulty_options()))
@@ -191,7 +191,7 @@ def _sentence(distribution: Distribution, message: str) -> str:
 
 def need_made(feature: Feature, where: str, value: Any, kind: type, what: str) -> None:
     """Raise LumenError if what an import string made lacks a method of a protocol."""
-    from lumen.upkeep.arguments import need_methods  # kept findings need no interpreters
+    from lumen.upkeep.arguments import need_methods  # findings served from the cache need no interpreters
 
     try:
         need_methods(value, kind, what)

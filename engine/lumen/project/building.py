@@ -1,4 +1,4 @@
-"""A whole project: all its files built into a `ProjectDraft`, and that into a `Project` where nothing is wrong."""
+"""Build a whole project: all its files into a `ProjectDraft`, and a draft without errors into a `Project`."""
 
 import hashlib
 from collections.abc import Iterator, Mapping
@@ -70,16 +70,16 @@ from lumen.project.words import build_words
 
 
 def belongs_to(data: Any, body: Body) -> bool:
-    """Whether a passage is one of this body: it knows both postures, and one of the joints that are named."""
+    """Return True if a passage suits this body: it has both postures, and any of the joints that the passage names."""
     if not isinstance(data, Mapping) or not {"start", "end"} <= data.keys():
-        return True  # what is wrong with it is told
+        return True  # its faults are reported elsewhere
     named = set(_joints(data))
     known = data["start"] in body.postures and data["end"] in body.postures
     return known and not (named and named.isdisjoint(body.joints))
 
 
 def _joints(data: Any) -> Iterator[str]:
-    """Every joint that a motion's file names."""
+    """Yield the name of every joint in the data of a motion file."""
     for item in values_in(data):
         if isinstance(item, Mapping) and isinstance(item.get("joints"), Mapping):
             yield from item["joints"]
@@ -94,7 +94,10 @@ T = TypeVar("T")
 
 
 def draft(files: Mapping[str, bytes]) -> ProjectDraft:
-    """Everything that can be built from these files; it depends on nothing else and never raises for what they say."""
+    """Return all that can be built from these files, with the findings.
+
+    The result depends on nothing else. No content of a file raises an error.
+    """
     files = with_common_words(files)
     found = ProjectDraft(files)
     _folders(found)
@@ -145,7 +148,7 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
 
 
 def _beside(found: ProjectDraft) -> None:
-    """Build the files beside lumen.yaml that features have rows for."""
+    """Build the files in the project's root folder that features have rows for."""
     for feature, (name, where) in rows("files"):
         if (content := found.files.get(name)) is not None:
             file = _read(found, name, content, PurePosixPath(name).stem, resolved(feature, where))
@@ -154,25 +157,25 @@ def _beside(found: ProjectDraft) -> None:
 
 
 def motion_parts(files: Mapping[str, bytes]) -> ProjectDraft:
-    """What of a project a motion needs: its robot and the other motions, whatever is wrong with anything else."""
+    """Return the part of a project that a motion needs: its robot and the other motions. Other files are not read."""
     wanted = ("models/", "motions/")
     return draft({file: content for file, content in files.items() if file.startswith(wanted) or file == MAIN_FILE})
 
 
 def knowledge_parts(files: Mapping[str, bytes]) -> ProjectDraft:
-    """What of a project its passages are, whatever is wrong with anything else."""
+    """Return the passages of a project. Other files are not read."""
     return draft({file: content for file, content in files.items() if file.startswith(f"{KNOWLEDGE_FOLDER}/")})
 
 
 def sayings_parts(files: Mapping[str, bytes]) -> ProjectDraft:
-    """The sayings of a project, whatever is wrong with anything else."""
+    """Return the sayings of a project. Other files are not read."""
     return draft({file: content for file, content in files.items() if file.startswith(f"{SAYINGS_FOLDER}/")})
 
 
 def main_settings(root: Path, robot: str = "") -> Settings | None:
-    """What lumen.yaml says, however many errors it has, and without any other file; None where it can't be read.
+    """Return the settings in lumen.yaml, whatever errors it has, without reading other files; None if it is unreadable.
 
-    `robot` is one of several, the first where it is empty.
+    `robot` is the name of one of several robots; empty for the first.
     """
     found, content = ProjectDraft({}), read_main_file(root)
     main = _main(found, content, robot)
@@ -180,7 +183,7 @@ def main_settings(root: Path, robot: str = "") -> Settings | None:
 
 
 def assemble(found: ProjectDraft, root: str) -> Project:
-    """The project, from a draft without errors."""
+    """Return the project that a draft without errors describes."""
     settings, body = found.settings, found.body
     assert settings is not None
     assert body is not None
@@ -222,13 +225,13 @@ def assemble(found: ProjectDraft, root: str) -> Project:
 
 
 def _main(found: ProjectDraft, content: bytes, robot: str) -> BuiltFile[Settings] | None:
-    """lumen.yaml, as that robot reads it."""
+    """Return lumen.yaml as read for that robot."""
     build = partial(build_settings, robot=robot)
     return _read(found, MAIN_FILE, content, MAIN_KIND, lambda data, report, name: build(data, report), robot)
 
 
 def _wanted(settings: Settings, models: Mapping[str, BuiltFile[Body]]) -> Iterator[str]:
-    """The robot's body, and what the project's own bodies are made from."""
+    """Yield the name of the robot's model, and those that the project's own models are based on."""
     yield settings.model
     for file in models.values():
         if isinstance(file.data, Mapping):
@@ -236,7 +239,7 @@ def _wanted(settings: Settings, models: Mapping[str, BuiltFile[Body]]) -> Iterat
 
 
 def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
-    """The behaviours, each with the words files that it names; also read the verbs that they can use."""
+    """Return the behaviours, each with the words files that it names. Also build the verbs and words of the draft."""
     found.verbs = _verbs(found)
     words = _each(found, WORDS_FOLDER, build_words)
     found.words = _built(words)
@@ -265,13 +268,13 @@ def _behaviors(found: ProjectDraft) -> dict[str, BuiltFile[MachineDefinition]]:
 
 
 def _verbs(found: ProjectDraft) -> OwnVerbs:
-    """The verbs that files of the project declare, in the folders that features read."""
+    """Return the verbs that files of the project declare, in the folders that features read."""
     languages = found.settings.languages if found.settings else ()
     verbs: dict[str, VerbRow] = {}
     contents = hashlib.sha256(repr(languages).encode())
     for folder, build in table("verb_files").items():
         if not any(file.startswith(f"{folder}/") for file in found.files):
-            continue  # most projects have none, and need not wait for what reads them
+            continue  # most projects have none, and then the reader need not be imported
         built = _built(_each(found, folder, partial(resolve(build), languages=languages), around=languages))
         verbs |= {name: built.get(name, UNUSABLE) for name in sorted(found.names[folder]) if not is_built_in(name)}
         for name in sorted(found.names[folder]):
@@ -294,9 +297,9 @@ def _each(
     around: object = None,
     verbs: OwnVerbs = NO_VERBS,
 ) -> dict[str, BuiltFile[T]]:
-    """What the documents of a folder hold, by name: of the project's own files, if not others are given.
+    """Return the documents of a folder by name: the project's own files, unless other `files` are given.
 
-    `around` is what else `build` depends on, `verbs` are those of the project that the documents can contain.
+    `around` is any further input of `build`; `verbs` are the project's verbs that the documents can contain.
     """
     names, read = set(), dict[str, BuiltFile[T]]()
     files = found.files if files is None else files
@@ -324,12 +327,12 @@ def _each(
 
 
 def _built(files: Mapping[str, BuiltFile[T]]) -> dict[str, T]:
-    """What was built of these files; one that holds too little for that is left out."""
+    """Return the values built from these files, without files that held too little to build one."""
     return {name: file.built for name, file in files.items() if file.built is not None}
 
 
 def _folders(found: ProjectDraft) -> None:
-    """Report folders of which nothing may be read; what is missing for that is not told."""
+    """Report folders that can't be read, which also count as `missing`, and folders with a mistaken name."""
     for name, content in found.files.items():
         if isinstance(content, Unreadable) and (name in ALL_FOLDERS or name in MISTAKEN_FOLDERS or endings_in(name)):
             hint = "replace it with a folder inside the project: Lumen reads nothing outside the project"
@@ -354,7 +357,7 @@ def _read(
     around: object = None,
     verbs: OwnVerbs = NO_VERBS,
 ) -> BuiltFile[T] | None:
-    """What one document holds, None where it can't be read at all."""
+    """Return the content of one document; None if it can't be read at all."""
     if isinstance(content, Unreadable):
         hint = "make it a readable file, or delete it"
         found.say(UNREADABLE_FILE, file, f"this can't be read: {content.decode('utf-8', 'replace')}", hint)
@@ -367,7 +370,7 @@ def _read(
 
 
 def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
-    """The motions of a folder, which can be read only where the robot's body is known."""
+    """Return the motions of a folder; none if the robot's body is not known."""
     read = partial(_each, found, build=lambda data, report, name: None, files={**found.files, **found.lent})
     files: dict[str, BuiltFile[None]] = read(folder)
     only = next(iter(found.bodies)) if found.settings is None and len(found.bodies) == 1 else ""
@@ -389,7 +392,7 @@ def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
 
 
 def _strangers(found: ProjectDraft) -> None:
-    """Report folders in motions/ that are called like no robot's body: nobody plays what is in them."""
+    """Report subfolders of motions/ that are named after no robot model: their motions are never played."""
     known = {*found.names[MODELS], *shipped_models()}
     inside = {PurePosixPath(file).parent for file in found.files}
     folders = {str(path): path.name for path in inside if str(path.parent) == MOTIONS}
@@ -401,7 +404,7 @@ def _strangers(found: ProjectDraft) -> None:
 
 
 def _accompany(found: ProjectDraft) -> None:
-    """The styles of life and the gestures of speech, which can be built only where the robot's body is known."""
+    """Build the styles of life and the gestures of speech; without a body, only check the shape of the files."""
     if body := found.body:
         found.life = _built(_each(found, LIFE_FOLDER, partial(build_life, body=body), around=body))
         found.gestures = _built(_each(found, GESTURES_FOLDER, partial(build_gestures, body=body), around=body))

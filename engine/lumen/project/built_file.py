@@ -1,4 +1,4 @@
-"""One file of a project, from its bytes to what is built of it: done once while it stays as it is."""
+"""Build one file of a project from its bytes; the result is cached until the file changes."""
 
 from collections.abc import Callable
 from pathlib import PurePosixPath
@@ -18,13 +18,13 @@ B = TypeVar("B", covariant=True)
 
 
 class Build(Protocol[B]):
-    """Makes something of a document's checked data; what is wrong with it is reported."""
+    """Builds a value from a document's checked data and reports what is wrong with the data."""
 
     def __call__(self, data: Any, report: DocumentReport, *, name: str) -> B | None: ...
 
 
 class BuiltFile(NamedTuple, Generic[T]):
-    """A document's checked data, its report, and what was built of it, None where it holds too little for that."""
+    """A document's checked data, its report and the value built from it; None if the data holds too little for one."""
 
     data: Any
     report: DocumentReport
@@ -34,10 +34,10 @@ class BuiltFile(NamedTuple, Generic[T]):
 def read_file(
     file: str, content: bytes, kind: str, build: Build[T], around: object = None, verbs: OwnVerbs = NO_VERBS
 ) -> tuple[BuiltFile[T] | None, list[Diagnostic]]:
-    """What a file holds, None where it can't be read at all, and what is wrong with its text.
+    """Return the content of a file, None if it can't be read at all, and the findings about its text.
 
-    Its report is the caller's own, to which more may be said; all else is shared with whoever reads the same.
-    `around` is what else the building depends on, `verbs` are those that the project declares.
+    The report is a copy that the caller may add to; everything else is shared between callers that read the same file.
+    `around` is any further input of `build`; `verbs` are those that the project declares.
     """
     read, found = memoize(("file", file), (content, around, verbs), lambda: _read(file, content, kind, build, verbs))
     return read and read._replace(report=read.report.copy()), found
@@ -55,7 +55,7 @@ def _read(
 
 
 def unless_too_deep(report: DocumentReport, build: Callable[[], T | None]) -> T | None:
-    """What `build` makes; a file may nest more deeply than Python can follow."""
+    """Return the result of `build`; if the file is nested too deeply for Python, report that and return None."""
     try:
         return build()
     except RecursionError:

@@ -1,7 +1,7 @@
-"""Another body than lumen.yaml's, chosen for one run: `--model NAME`.
+"""Replace the robot model that lumen.yaml names, for one run: `--model NAME`.
 
-The choice stands in the environment, so that all processes of the run make it, and among the files that are read, under
-a name that no file has: what is built still depends on the files alone, and so does their hash.
+An environment variable holds the choice, so that all processes of the run share it. It is also one of the project's
+files, under a name that no real file has: so the result still depends on the files alone, and so does their hash.
 """
 
 import os
@@ -12,16 +12,16 @@ MODEL_VARIABLE = "LUMEN_MODEL"
 
 
 def choice() -> Mapping[str, bytes]:
-    """The choice as one of the files, none where there is none."""
+    """Return the choice as a file by its name; empty if no model was chosen."""
     name = os.environ.get(MODEL_VARIABLE, "")
     return {CHOSEN_MODEL: name.encode("utf-8", "surrogateescape")} if name else {}
 
 
 def choose(name: str) -> None:
-    """Read all projects with this body from now on, in this process and those that it starts."""
+    """Read all projects with this model, in this process and in those that it starts later."""
     os.environ[MODEL_VARIABLE] = name
 
 
 def chosen(files: Mapping[str, bytes], model: str) -> str:
-    """The body that these files are read with, where lumen.yaml names `model`."""
+    """Return the model to use with these files: the chosen one, else `model`, which lumen.yaml names."""
     return files.get(CHOSEN_MODEL, b"").decode("utf-8", "replace") or model

@@ -1,7 +1,7 @@
-"""One robot of several, chosen for one exhibition.
+"""Choose one robot of several for one exhibition.
 
-The choice stands among the files that are read, under a name that no file has: what is built still depends on the files
-alone. It is no part of their hash: the robots of a house have the same files.
+The choice is one of the project's files, under a name that no real file has: so the result still depends on the files
+alone. It is left out of their hash, because all robots of a house have the same files.
 """
 
 from collections.abc import Mapping
@@ -10,10 +10,10 @@ CHOSEN_ROBOT = ".robot"
 
 
 def as_robot(files: Mapping[str, bytes], robot: str) -> dict[str, bytes]:
-    """The files as that robot reads them; as they are where the name is empty."""
+    """Return the files with the choice of that robot added; unchanged if the name is empty."""
     return {**files, CHOSEN_ROBOT: robot.encode()} if robot else dict(files)
 
 
 def chosen_robot(files: Mapping[str, bytes]) -> str:
-    """The robot that these files are read as; empty for the first."""
+    """Return the name of the robot that these files are read for; empty for the first."""
     return files.get(CHOSEN_ROBOT, b"").decode("utf-8", "replace").strip()

@@ -1,7 +1,7 @@
-"""The words that come with Lumen: `words: [common]`, and the word lists by which every `hears` is read.
+"""The words that come with Lumen: `words: [common]`, and the word lists that every `hears` uses.
 
-They are one more file of a project that uses them and holds no `behaviors/words/common.yaml` of its own, so they are
-hashed, kept in bundles and replayed like any other.
+They are added as one more file to a project that uses them and has no `behaviors/words/common.yaml` of its own. So they
+are hashed, kept in bundles and replayed like any other file.
 """
 
 import re
@@ -21,19 +21,19 @@ _USED = re.compile(
 
 @cache
 def common_words() -> bytes:
-    """The words file that comes with Lumen."""
+    """Return the content of the words file that comes with Lumen."""
     return (PACKAGE / "words/common.yaml").read_bytes()
 
 
 def with_common_words(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
-    """The files of a project with the words that come with Lumen, if a behaviour uses them."""
+    """Return the files of a project; if a behaviour uses the words that come with Lumen, their file is added."""
     if COMMON_FILE in files or not any(_USED.search(content) for file, content in files.items() if _is_behavior(file)):
         return files
     return dict(sorted({**files, COMMON_FILE: common_words()}.items()))
 
 
 def own_files(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
-    """The files of a project that people can edit: those without the words that come with Lumen."""
+    """Return the files of a project that people can edit: those without the words that come with Lumen."""
     return (
         {file: content for file, content in files.items() if file != COMMON_FILE}
         if is_shipped(files, COMMON)
@@ -42,7 +42,7 @@ def own_files(files: Mapping[str, bytes]) -> Mapping[str, bytes]:
 
 
 def is_shipped(files: Mapping[str, bytes], name: str) -> bool:
-    """Whether the words file of that name is not the project's own."""
+    """Return True if the words file of that name comes with Lumen and is not the project's own."""
     return name == COMMON and files.get(COMMON_FILE) == common_words()
 
 

@@ -1,4 +1,4 @@
-"""Errors of a JSON Schema validator in a student's words."""
+"""Rewrite the errors of a JSON Schema validator in a student's words."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -18,31 +18,34 @@ WRONG_VALUE = Code("wrong-value", "shape", ERROR, "a value is not one of those a
 
 
 MAX_UNKNOWN_KEYS = 50
-"""Unknown keys of a node for which it is looked what was meant; if there are more, it is something else."""
+"""Unknown keys of a node for which a suggestion is searched; the rest are reported without a hint."""
 
 
 @dataclass(frozen=True, slots=True)
 class Complaint:
-    """One finding: it concerns the node `about`, is shown at `path` (or its key), and costs the node `doomed`.
-
-    `missing` is the key that is not there, `suggestion` the one that an unknown key was probably meant to be.
-    """
+    """One finding about the data of a document."""
 
     code: Code
     path: NodePath
+    """The node at which it is shown, or whose key it is shown at."""
     message: str
     hint: str
     about: NodePath
+    """The node that the finding concerns."""
     doomed: NodePath | None
+    """The node that must be left out because of it, if any."""
     key: bool = False
+    """Show it at the key of the node instead of the value."""
     missing: str = ""
+    """The key that is absent."""
     suggestion: str = ""
+    """The key that was probably meant by an unknown one."""
 
 
 def complaints(error: Error, root: Any = None) -> Iterator[Complaint]:
-    """What one error of the validator says, as at most a few findings; alternatives are reduced to the likeliest.
+    """Yield the few findings that describe one error of the validator; of alternatives, only the likeliest.
 
-    `root` is the whole schema: it tells where a key belongs that stands in the wrong place.
+    `root` is the whole schema, which shows the right place of a misplaced key.
     """
     keyword, path = error.validator, tuple(error.absolute_path)
     if meant := _misspelt_entry(error, path, root):
@@ -81,12 +84,12 @@ def _misspelt_entry(error: Error, path: NodePath, root: Any) -> str:
 
 
 def _spared(path: NodePath) -> NodePath | None:
-    """The node to take out, but never the root."""
+    """Return the path of the node to leave out; None for the root, which is never left out."""
     return path or None
 
 
 def _missing(error: Error, path: NodePath, schema: Any) -> Complaint:
-    """A key that is not there, told in the words of that schema, which describes it."""
+    """Return the finding about an absent key, described in the words of `schema`."""
     absent = [key for key in error.validator_value if key not in error.instance]
     missing = next((key for key in absent if error.message.startswith(repr(key))), absent[0])
     shown = like((missing,), _property(schema, missing)).replace("write it as in", "add it, as in")
@@ -142,7 +145,7 @@ def _unknown_keys(error: Error, path: NodePath, root: Any) -> Iterator[Complaint
 
 
 def _torn(instance: Mapping[str, Any], key: str) -> str:
-    """The text of which that key is the rest behind a comma, if it is: `{say: Oh, step back}`."""
+    """Return the whole text if the key is its rest after a comma, as in `{say: Oh, step back}`; else an empty text."""
     keys = list(instance)
     before = instance[keys[keys.index(key) - 1]] if keys.index(key) else None
     whole = isinstance(before, str) and instance[key] is None and " " in f"{before}{key}"
@@ -158,11 +161,11 @@ _ALSO = {
     "after": "wait", "go": "walk", "drive": "walk", "place": "to", "destination": "to",
     "time": "at", "angles": "joints", "pin": "key", "topic": "key", "exchange": "key",
 }  # fmt: skip
-"""What other tools, or other words of ours, call our keys: the first of them that can stand there is meant."""
+"""The names that other tools, or other words of Lumen, use for our keys. The first that is allowed is suggested."""
 
 
 def _owner(key: str, root: Any) -> str:
-    """What may have that key, by the schema's definitions; empty where nothing has."""
+    """Return the definition of the schema that has this key, with an article; empty if none has."""
     definitions = root.get("$defs", {}) if isinstance(root, Mapping) else {}
     owner = next((name for name, schema in definitions.items() if key in schema.get("properties", ())), "")
     return f"an {owner}" if owner[:1] in tuple("aeiou") else f"a {owner}" if owner else ""
@@ -173,7 +176,7 @@ _LANGUAGES = {
     "indonesian": "id", "indonesisch": "id", "indonesia": "id", "french": "fr", "spanish": "es", "italian": "it",
     "dutch": "nl", "polish": "pl", "turkish": "tr", "chinese": "zh", "japanese": "ja", "korean": "ko",
 }  # fmt: skip
-"""Languages by their names, as people write them in place of the letters of ISO 639."""
+"""Language codes of ISO 639 by the names that people write in their place."""
 
 
 def _bad_key(error: Error, path: NodePath) -> Complaint:
@@ -196,11 +199,11 @@ def _is_one(error: Error) -> bool:
 
 
 def _verbs(error: Error, path: NodePath) -> Complaint:
-    """An action, or a step of a story, that does nothing or two things."""
+    """Return the finding about an action, or a step of a story, with no verb or with two."""
     keys = list(error.instance)
     if len(keys) > 1:
         within, hint = "one item", f"begin a new item: `- {keys[1]}: …`"
-        if "minProperties" not in error.schema:  # a key that wants none beside it
+        if "minProperties" not in error.schema:  # a key that allows no other beside it
             within, hint = node(path), "keep one of the two"
         message = f"`{keys[0]}` and `{keys[1]}` are both in {within}, but only one of them is allowed"
         return Complaint(ONE_VERB, (*path, keys[1]), message, hint, path, _spared(path), True)
@@ -219,7 +222,7 @@ def _property(schema: Any, key: str) -> Any:
 
 
 def _likeliest(context: Iterable[Error]) -> list[Error]:
-    """The errors of the alternative that was probably meant: the one whose type fits and that goes wrong latest."""
+    """Return the errors of the alternative that was probably meant: of the right type, with the deepest fault."""
     branches: dict[Any, list[Error]] = {}
     for error in context:
         branches.setdefault(error.relative_schema_path[0], []).append(error)

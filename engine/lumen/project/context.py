@@ -1,4 +1,4 @@
-"""What a behaviour remembers: first values and JSON Schemas of context keys and events, checked to be sound."""
+"""Check what a behaviour remembers: first values and JSON Schemas of its context keys and events."""
 
 from lumen.language.machines import MachineDefinition
 from lumen.project.complaints import WRONG_VALUE
@@ -9,7 +9,7 @@ from lumen.statechart.type_checks import fits, refusal, type_checks
 
 
 def check_memory(machine: MachineDefinition, report: DocumentReport) -> list[tuple[str, str]]:
-    """Report what is wrong under `context:`, `types:` and `events:`; the part and key of each unsound schema."""
+    """Report faults under `context:`, `types:` and `events:`; return the part and key of each unsound schema."""
     unsound = [
         (part, key)
         for part, schemas in (("types", machine.types), ("events", machine.events))

@@ -1,4 +1,4 @@
-"""A fuzzy controller, `fuzzy/NAME.yaml`, from its plain data to a `ControllerDefinition`."""
+"""Build a `ControllerDefinition` from the plain data of a fuzzy controller, `fuzzy/NAME.yaml`."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,7 +15,7 @@ from lumen.project.variables import build_variables
 
 
 def build_controller(data: Any, report: DocumentReport, *, name: str) -> ControllerDefinition | None:
-    """The controller that the data of `fuzzy/NAME.yaml` describes, None where it has no inputs or no outputs."""
+    """Return the controller that the data of `fuzzy/NAME.yaml` describes; None if it has no inputs or no outputs."""
     if not isinstance(data, Mapping) or not data.get("inputs") or not data.get("outputs"):
         return None
     without_extremes(data, report, _endless)
@@ -40,12 +40,12 @@ def build_controller(data: Any, report: DocumentReport, *, name: str) -> Control
 
 
 def _endless(path: NodePath) -> bool:
-    """Whether a number there may be infinite: ranges and terms have their own rules."""
+    """Return True if a number at this path may be infinite: ranges and terms have rules of their own."""
     return "terms" in path or "range" in path
 
 
 def _tracking(data: Mapping[str, Any], report: DocumentReport, angle: float) -> TrackingSettings:
-    """The file's times in [s] and angles in [rad], and the defaults of those that it leaves out."""
+    """Return the settings under `track`, with times in [s] and angles in [rad]; keys that are absent have defaults."""
     said: dict[str, Any] = {key: data[key] for key in ("speed", "looks", "zoom") if key in data}
     times = {key: seconds(data.get(key)) for key in ("hold", "search", "period", "stale", "every")}
     for key in ("period", "stale"):

@@ -1,44 +1,44 @@
-"""Which bundles were begun with and have not lasted: a crash loop is noticed by the start that comes after it."""
+"""Count how often each bundle was started and did not last, so that the next start notices a crash loop."""
 
 from lumen.project.home import Home
 
 CRASH_COUNTS_FILE = "trials.json"
 CRASH_COUNTS_VERSION = 1
 MAX_CRASHES = 2
-"""How often a bundle may end the exhibition within its probation before a start does something else."""
+"""The number of crashes of a bundle during its probation after which a start uses another bundle."""
 MAX_KNOWN_BUNDLES = 20
-"""How many bundles are remembered, the latest."""
+"""The number of bundles whose counts are kept: the latest."""
 
 
 class CrashCounter:
-    """Counts in a home how often each bundle became active and ended the exhibition before it had stood its probation.
+    """Counts for each bundle how often it became active and crashed before its probation was over; kept in a home.
 
-    A count is written before the bundle is active, for who crashes writes nothing.
+    The count is written before the bundle becomes active, because a crashing process can no longer write.
     """
 
     def __init__(self, home: Home) -> None:
         self._home = home
 
     def begin(self, hash: str) -> None:
-        """From now on this bundle is on trial."""
+        """Count one more trial of this bundle, which begins now."""
         counts = self._counts()
         counts[hash] = counts.pop(hash, 0) + 1
         self._write(counts)
 
     def acquit(self, hash: str) -> None:
-        """This bundle has lasted."""
+        """Forget the trials of this bundle: it has lasted."""
         counts = self._counts()
         if counts.pop(hash, 0):
             self._write(counts)
 
     def annul(self, hash: str) -> None:
-        """The last trial of this bundle ended for nothing that it could help."""
+        """Take back the last trial of this bundle, which ended for a reason outside the bundle."""
         counts = self._counts()
         if left := counts.pop(hash, 0):
             self._write({**counts, hash: left - 1} if left > 1 else counts)
 
     def count(self, hash: str) -> int:
-        """How often it did not last."""
+        """Return how often this bundle did not last."""
         return self._counts().get(hash, 0)
 
     def _counts(self) -> dict[str, int]:

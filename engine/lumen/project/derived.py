@@ -1,4 +1,4 @@
-"""What a loader made, as an instance of a class that can do more."""
+"""Convert a loaded value to an instance of a derived class with more methods."""
 
 from dataclasses import fields
 from typing import Any, TypeVar
@@ -7,5 +7,5 @@ D = TypeVar("D")
 
 
 def derived(into: type[D], value: Any) -> D:
-    """The same value in a class derived from its own, whose fields are the same."""
+    """Return the same value as an instance of `into`, a class derived from its own with the same fields."""
     return into(**{field.name: getattr(value, field.name) for field in fields(value)})

@@ -1,6 +1,6 @@
-"""A document: the plain data of a file beside the place of every node in it.
+"""A document: the plain data of a file and the place of every node in it.
 
-By them every later message can point at the author's text by the path of the node.
+With these, any later message can point at the author's text by the path of a node.
 """
 
 from collections.abc import Mapping
@@ -13,14 +13,14 @@ TOO_LARGE = Code("too-large", "text", ERROR, "a file is too large, or nested too
 
 
 MAX_NODE_DEPTH = 100
-"""Levels of nodes within one another that a document may have."""
+"""The maximum depth of nodes within one another in a document."""
 
 MAX_NODES = 200_000
-"""Nodes that a document may have, those of an alias counted wherever it stands."""
+"""The maximum number of nodes in a document; those of an alias count at each place of use."""
 
 
 class NodeSpan(NamedTuple):
-    """Where a node stands: its key (None in a list and at the root) and its value."""
+    """The place of a node's key (None in a list and at the root) and the place of its value."""
 
     key: Place | None
     value: Place
@@ -28,16 +28,15 @@ class NodeSpan(NamedTuple):
 
 @dataclass(frozen=True)
 class Document:
-    """One file: its path relative to the project, its text, the plain data in it, and where each node stands.
-
-    `dropped` are the words under keys that stand a second time, and that are not read.
-    """
+    """One file: its path relative to the project, its text, its plain data, and the place of each node."""
 
     file: str
     data: Any
     spans: Mapping[NodePath, NodeSpan] = field(default_factory=dict, repr=False, compare=False)
+    """The place of each node, by its path."""
     text: str = field(default="", repr=False, compare=False)
     dropped: frozenset[str] = field(default=frozenset(), repr=False, compare=False)
+    """The words under duplicate keys, which are not read."""
 
     def value(self, path: NodePath) -> Any:
         """Return the plain data at a path. Raises KeyError, IndexError or TypeError if the path leads to nothing."""
@@ -54,9 +53,9 @@ class Document:
             return None
 
     def place(self, path: NodePath, *, key: bool = False) -> Place:
-        """The place of the node at `path`, or of its key; of the nearest node above it where there is none.
+        """Return the place of the node at `path`, or of its key; if it is absent, that of the nearest node above.
 
-        Where the node itself is missing, that is the key of its parent: what to look at when something is absent.
+        For a missing node, that is the key of its parent, which is the line to look at if something is absent.
         """
         if path in self.spans:
             span = self.spans[path]

@@ -1,4 +1,4 @@
-"""What has become of a project's files so far."""
+"""The state of a project while its files are built."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -30,26 +30,17 @@ from lumen.project.settings import Settings
 
 @dataclass
 class ProjectDraft:
-    """What could be built from a project's files, and what is wrong with them.
-
-    `names` has for each folder the names of all files in it, whether they could be built or not; `reports` the report
-    of each document by its file; `missing` the folders that were reported as missing; `unsound` the JSON Schemas in
-    behaviours that were reported as broken: behaviour, `types` or `events`, name. `lent` are files that come with Lumen
-    and stand where the project has none; `own_motions` those that lie in motions/MODEL/, for this robot alone.
-    `functions` are those of the project that are sound, `known_functions` all of them as expressions see them.
-    `words` may hold those that come with Lumen, which have no report: nobody can edit them.
-    `verbs` are those that files of the project declare.
-    `settings` is None where lumen.yaml could not be read at all. `root` is the project's folder, for what is needed of
-    files that are not read; `looks` is told of each of them. `today` is the day on which somebody looks, None where
-    that does not matter.
-    """
+    """All that could be built from a project's files, and the findings about them."""
 
     files: Mapping[str, bytes]
     lent: Mapping[str, bytes] = field(default_factory=dict)
+    """Files that come with Lumen, used because the project has none of that name."""
     settings: Settings | None = None
+    """The content of lumen.yaml; None if it can't be read at all."""
     bodies: dict[str, Body] = field(default_factory=dict)
     behaviors: dict[str, MachineDefinition] = field(default_factory=dict)
     words: dict[str, Words] = field(default_factory=dict)
+    """The words files, which may include those that come with Lumen; these have no report."""
     knowledge: dict[str, Passage] = field(default_factory=dict)
     questions: dict[str, QuestionSet] = field(default_factory=dict)
     controllers: dict[str, ControllerDefinition] = field(default_factory=dict)
@@ -57,31 +48,43 @@ class ProjectDraft:
     life: dict[str, LifeStyle] = field(default_factory=dict)
     gestures: dict[str, GestureLibrary] = field(default_factory=dict)
     verbs: OwnVerbs = NO_VERBS
+    """The verbs that files of the project declare."""
     stories: dict[str, Story] = field(default_factory=dict)
     sayings: dict[str, SayingSet] = field(default_factory=dict)
     functions: dict[str, FunctionDefinition] = field(default_factory=dict)
+    """The project's sound functions."""
     known_functions: KnownFunctions = field(default_factory=dict)
+    """All functions of the project, as expressions see them."""
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     names: dict[str, frozenset[str]] = field(default_factory=dict)
+    """For each folder the names of all files in it, also of those that could not be built."""
     reports: dict[str, DocumentReport] = field(default_factory=dict)
+    """The report of each document, by its file."""
     loose: list[Diagnostic] = field(default_factory=list)
+    """Findings that belong to no document."""
     missing: set[str] = field(default_factory=set)
+    """The folders that were reported as missing."""
     unsound: set[tuple[str, str, str]] = field(default_factory=set)
+    """The JSON Schemas in behaviours that were reported as broken: behaviour, `types` or `events`, name."""
     root: Path | None = None
+    """The project's folder, for checks of files that are not read here."""
     own_motions: frozenset[str] = frozenset()
+    """The names of the motions in motions/MODEL/, which are for this robot alone."""
     beside: dict[str, Any] = field(default_factory=dict)
-    """The settings in files beside lumen.yaml, by the file's name."""
+    """The settings in files of the root folder other than lumen.yaml, by the file's name."""
     today: date | None = None
+    """The day of the check; None if that does not matter."""
     looks: Looks = field(default_factory=Looks)
+    """A record of the files outside the draft that a check looked at."""
 
     @property
     def main(self) -> DocumentReport | None:
-        """The report of lumen.yaml."""
+        """The report of lumen.yaml; None if the file is absent."""
         return self.reports.get(MAIN_FILE)
 
     @property
     def body(self) -> Body | None:
-        """The body of the project's robot."""
+        """The body of the project's robot; None if it could not be built."""
         return self.bodies.get(self.settings.model) if self.settings else None
 
     @property
@@ -91,18 +94,18 @@ class ProjectDraft:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """Everything found so far, each cause once, by file and line."""
+        """All findings so far, each cause once, sorted by file and line."""
         found = [d for r in self.reports.values() for d in r.diagnostics if not r.follows(d.code, d.message)]
         return gathered([*found, *self.loose])
 
     @property
     def whole_behaviors(self) -> bool:
-        """Whether everything was built that the behaviours say."""
+        """True if everything in the behaviours was built."""
         names = self.names.get("behaviors", frozenset())
         return all(name in self.behaviors and self.report("behaviors", name).whole for name in names)
 
     def report(self, folder: str, name: str) -> DocumentReport:
-        """The report of `FOLDER/NAME.yaml`; of a motion, of the file that holds it for this robot."""
+        """Return the report of `FOLDER/NAME.yaml`; for a motion, that of the file which holds it for this robot."""
         if folder == "motions" and name in self.own_motions and self.settings:
             folder = f"motions/{self.settings.model}"
         elif folder == KNOWLEDGE_FOLDER:
@@ -110,12 +113,12 @@ class ProjectDraft:
         return self.reports[f"{folder}/{name}.yaml"]
 
     def say(self, code: Code, file: str, message: str, hint: str) -> None:
-        """Report something of a file as a whole."""
+        """Report a finding about a file as a whole."""
         self.loose.append(code.at(Place(file), message, hint))
 
 
 def body_of(found: ProjectDraft) -> Body:
-    """The robot of a project whose other files may have errors; raises ProjectError where none can be built."""
+    """Return the robot's body, even if other files have errors. Raises ProjectError if no body can be built."""
     body = found.body or next(iter(found.bodies.values()), None)
     if body is None:
         raise ProjectError(found.diagnostics)

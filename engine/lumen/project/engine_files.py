@@ -1,4 +1,4 @@
-"""Which software this is: by the state of its files on this machine, or by the content of its code on any machine."""
+"""Identify the software: by the state of its files on this machine, or by its code's content on any machine."""
 
 import hashlib
 import os
@@ -14,7 +14,7 @@ from lumen.project.packaged import PACKAGE, schema_folder, shipped_root
 
 @cache
 def engine() -> str:
-    """Return a hash of the state of the engine's files and of what comes with it; a file written again changes it.
+    """Return a hash of the state of the files of the engine and its data. Rewriting a file changes the hash.
 
     A distribution with features counts as a part of the engine.
     """
@@ -22,7 +22,7 @@ def engine() -> str:
 
 
 def files_hash(*folders: Path) -> str:
-    """Return a hash of which files are in these folders, and when and how long they were written; reads no file.
+    """Return a hash of the names, sizes and times of the files in these folders, without reading a file.
 
     The files of distributions with features are part of it.
     """
@@ -41,7 +41,7 @@ def code_hash(*names: str) -> str:
     """Return a hash of the code of these packages or modules of Lumen, the same on each machine.
 
     Names, versions and files of distributions with features are part of it. Raises ModuleNotFoundError if there is no
-    package or module of that name: a moved package must not be left out silently.
+    package or module of that name, so that a moved package is not left out silently.
     """
     digest = hashlib.sha256()
     for file in sorted({file for name in names for file in _sources(name)}):
@@ -71,16 +71,16 @@ def _sources(name: str) -> Iterator[Path]:
 
 
 def surroundings(root: Path) -> str:
-    """What all that is worked out of a project depends on beside its files: where it lies, the engine and Python."""
+    """Return a text of what results about a project depend on besides its files: its path, the engine and Python."""
     about = (str(root), os.path.abspath(root), engine(), sys.version, sys.path, os.environ.get("PYTHONTZPATH"))
     return repr(about)
 
 
 def listed(folder: Path) -> Iterator[tuple[str, str, int]]:
-    """The files below a folder: path from there, what is the same in a copy of it elsewhere, and when it was put there.
+    """Yield each file below a folder: its path from there, a text that a copy has too, and when its entry changed [ns].
 
-    What is the same is its size, when it was written, and where it leads if it is a link. The last is in [ns]; a folder
-    that can't be listed has no files. A file has the path `.` from itself.
+    The text holds the file's size, when it was written, and the target if it is a link. A folder that can't be listed
+    has no files. If `folder` is a file, its path is `.`.
     """
     if folder.is_file():
         status = folder.stat()

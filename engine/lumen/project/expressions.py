@@ -1,4 +1,4 @@
-"""Expressions and templates in a file: their syntax checked, each fault at its character."""
+"""Check the syntax of expressions and templates in a file; each fault is reported at its character."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -38,13 +38,13 @@ from lumen.talk.hearing import HEARD
 FUNCTION_SIZE = Code("function-size", "expressions", ERROR, "an expression is too large with its functions put in")
 
 Expand = Callable[[str, KnownFunctions], str]
-"""`expanded` or `expanded_template`."""
+"""The type of `expanded` and `expanded_template`."""
 
 
 class Expressions:
     """Reads the expressions of one document, `data`, whose states have these names.
 
-    What is told here needs no knowledge of types: syntax, functions, and the names that the file itself declares.
+    It checks what needs no types: syntax, functions, and the names that the file itself declares.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class Expressions:
         self.keys = frozenset((*(data.get("context") or ()), *rounds.known))
         self.functions = words.functions
         self.used: set[str] = set()
-        """The functions of the project whose names occur in the expressions: at least those that are called."""
+        """The project's functions whose names occur in the expressions, so at least those that are called."""
         names: dict[str, Any] = {
             "functions": self.functions,
             "context": {key: {} for key in self.keys},
@@ -65,11 +65,11 @@ class Expressions:
         self.findings = RememberedFindings(("expressions", report.document.file), names)
 
     def expression(self, source: str, where: NodePath) -> Expression | None:
-        """The expression, None (and reported) where it can't be read."""
+        """Return the expression; if it can't be read, report why and return None."""
         return self._read(source, where, localized=True)
 
     def whole(self, source: str, where: NodePath) -> Expression | None:
-        """As `expression`; what it reads of lists is there in all languages."""
+        """Return the expression like `expression`, but with lists in all languages instead of the current one."""
         return self._read(source, where, localized=False)
 
     def _read(self, source: str, where: NodePath, *, localized: bool) -> Expression | None:
@@ -80,7 +80,7 @@ class Expressions:
         return None if meant is None else Expression(meant, where, source if meant != source else "")
 
     def template(self, text: str, where: NodePath) -> Template | None:
-        """The text with its `{{ expressions }}`, None (and reported) where one can't be read."""
+        """Return the text with its `{{ expressions }}`; if one can't be read, report why and return None."""
         variables = self.rounds.variables(where)
         if not self._sound(check_template, text, where, variables):
             return None
@@ -88,9 +88,9 @@ class Expressions:
         return None if meant is None else Template(meant, where, text if meant != text else "")
 
     def value(self, data: Any, where: NodePath) -> ComputedValue:
-        """Every text an expression, lists and maps read through; None in place of what can't be read.
+        """Return data with each text read as an expression, also in lists and maps; unreadable ones become None.
 
-        A number is finite: it goes into messages and snapshots, and JSON has no other.
+        Numbers must be finite: values go into messages and snapshots, and JSON has no infinity or NaN.
         """
         match data:
             case str():
@@ -106,7 +106,7 @@ class Expressions:
         return None
 
     def key(self, key: str, where: NodePath) -> bool:
-        """Whether the context declares this key; reported where not."""
+        """Return True if the context declares this key; report it if not."""
         if key in self.keys:
             return True
         hint = did_you_mean(key, self.keys, "`context` has")
@@ -116,7 +116,7 @@ class Expressions:
         return False
 
     def _sound(self, check: Check, source: str, where: NodePath, variables: Iterable[str]) -> bool:
-        """Whether nothing was found but fields that may be missing: those depend on who calls."""
+        """Return True if no fault was found, and report faults. Absent fields are ignored: they depend on callers."""
         names = tuple(variables)
         findings = self.findings.of(check, source, names, lambda: {"variables": {name: {} for name in names}})
         found = [finding for finding in findings if finding.code != UNGUARDED_FIELD]
@@ -127,12 +127,12 @@ class Expressions:
         return not found and self._calls_what_it_may(source, where) and self._draws_where_it_may(source, where)
 
     def _expanded(self, expand: Expand, meant: str, written: str, where: NodePath) -> str | None:
-        """The source or text with the project's functions put in, None if that can't be done."""
+        """Return the source or text with the project's functions put in; None if that can't be done."""
         self.used |= {name for name in self.functions if name in meant}
         return expanded_here(expand, meant, self.functions, self.report, where, written)
 
     def _explained(self, finding: ExpressionFinding) -> ExpressionFinding:
-        """With a word on where a name is known that is known elsewhere."""
+        """Return the finding; for a name that is defined elsewhere in the file, with the place in its hint."""
         name = finding.message.split("`")[1] if finding.code == UNKNOWN_NAME else ""
         if name == HEARD:
             return finding._replace(
@@ -143,7 +143,7 @@ class Expressions:
         return finding._replace(hint=hint) if home else finding
 
     def _calls_what_it_may(self, source: str, where: NodePath) -> bool:
-        """Whether `caught` is not called, which is the engine's own; reported otherwise."""
+        """Return True if `caught`, which is reserved for the engine, is not called; report it if it is."""
         if not re.search(rf"\b{CAUGHT}\s*\(", source):
             return True
         self.report(
@@ -152,7 +152,7 @@ class Expressions:
         return False
 
     def _draws_where_it_may(self, source: str, where: NodePath) -> bool:
-        """Whether nothing is drawn outside of `assign`; reported where something is."""
+        """Return True if no random value is drawn outside `assign`; report it if one is."""
         if "assign" in where or not any(name in source for name in drawing_functions()):
             return True
         drawing = next((name for name in sorted(drawing_functions()) if re.search(rf"\b{name}\s*\(", source)), "")
@@ -186,16 +186,16 @@ def expanded_here(
 
 
 def cause_of(file: str, finding: ExpressionFinding) -> str:
-    """What a name that is unknown, or may be missing, has in common with the same one elsewhere in the file."""
+    """Return the cause that findings about the same unknown or unguarded name in a file share; else empty."""
     if finding.code == UNKNOWN_CONTEXT_KEY:
         return f"{file} context {finding.message.split('`')[1]}"
     return f"{file} {finding.message}" if finding.code.startswith("unknown-") or finding.code == UNGUARDED_FIELD else ""
 
 
 def place_within(document: Document, path: NodePath, source: str, offset: int, length: int) -> Place:
-    """The place of some characters of the text at `path`, however it is written; else of the whole text.
+    """Return the place of some characters of the text at `path`; that of the whole text if they can't be located.
 
-    A text that computes how long an `after` waits is the last of its path: it is a key.
+    A template that computes the delay of an `after` is a key, so it is the last step of its path.
     """
     place = document.place(path, key=path[-2:] == ("after", source))
     line = lines_of(document.text)[place.line - 1]

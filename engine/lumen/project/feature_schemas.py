@@ -30,7 +30,7 @@ def _is_kind(name: str) -> dict[str, Any]:
 def add_features(schema: dict[str, Any]) -> None:
     """Add what the schema of lumen.yaml lacks: settings of modules, senses and schemes of buses.
 
-    An option of a module whose own schema can't be used accepts everything; `faulty_options` has these.
+    An option of a module whose own schema can't be used accepts everything; `faulty_options` lists these.
     """
     properties = schema["properties"]
     known = properties["modules"]["properties"]

@@ -1,4 +1,4 @@
-"""Objects of dataclasses, from data of a file whose shape the schema has checked."""
+"""Make objects of dataclasses from data of a file whose shape the schema has checked."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import MISSING, fields, is_dataclass
@@ -13,13 +13,12 @@ T = TypeVar("T")
 def read_fields(kind: type[T], data: Mapping[str, Any], **given: Any) -> T:
     """Return an object of a dataclass, whose fields are read from the keys of their names.
 
-    `given` are fields that the caller has read, since their keys have other names, or units. A field without a key, or
+    `given` are fields that the caller has read because their keys have other names or units. A field without a key, or
     with an empty one, gets its default. The annotation of a field decides how its value is read:
-
-    - An `int` is made of any number, as of a port `8080.0`, and a member of an enumeration of its value.
-    - A tuple is made of a list, or of one text; a mapping of a map.
-    - A dataclass is read from a map; anything else is its first field.
-    - A dataclass that may be None is None if the schema refused a key without a default.
+    - An `int` is converted from any number, such as a port `8080.0`; a member of an enumeration from its value.
+    - A tuple is read from a list, or from one text; a mapping from a map.
+    - A dataclass is read from a map; any other value becomes its first field.
+    - A dataclass that may be None is None if a key without a default is absent.
     """
     readers: Mapping[str, Callable[[Any], Any]] = _readers(kind)  # type: ignore[arg-type]  # a class is hashable
     said = {key: value for key, value in data.items() if key in readers and key not in given and value is not None}

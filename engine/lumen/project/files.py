@@ -1,4 +1,4 @@
-"""All files of a project, read once; what is built from them can't change under the builder's hands."""
+"""Read all files of a project once, so that they can't change while it is built."""
 
 import hashlib
 import os
@@ -15,13 +15,13 @@ from lumen.project.project_folders import FLEET_FILE, KINDS, MAIN_FILE, MOTIONS,
 from lumen.upkeep.regular_files import MEGABYTE
 
 MAX_FILE_BYTES = 4_000_000
-"""Of one file; a behaviour of ten thousand states is smaller."""
+"""The maximum size of one file [bytes]; a behaviour of ten thousand states is smaller."""
 
 MAX_PROJECT_BYTES = 32_000_000
-"""Of all files together."""
+"""The maximum size of all files together [bytes]."""
 
 MAX_FOLDER_FILES = 5_000
-"""Files of one folder; of more, those that come first by the alphabet are read."""
+"""The maximum number of files in a folder; of more, the first in alphabetical order are read."""
 
 LEADS_OUT = b"it is a link that leads out of the project"
 
@@ -37,19 +37,19 @@ MISTAKEN_FOLDERS: Mapping[str, str] = {
     "controllers": "fuzzy",
     "function": "functions",
 }
-"""Folders beside lumen.yaml of which nothing is built, and the ones that were probably meant: lint says so."""
+"""Folders in a project's root that are not read, and the folders that were probably meant, which lint suggests."""
 
 
 class Unreadable(bytes):
-    """Stands in place of the content of a file that can't be read; its text is the reason, in words."""
+    """A placeholder for the content of a file that can't be read; its bytes are the reason, in words."""
 
 
 def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) -> dict[str, bytes]:
-    """The content of every file that counts, by its path from the project's root, sorted; nothing here raises.
+    """Return the content of every file of a project, by its path from the project's root, sorted. Never raises.
 
-    Links within the project are followed. Of what lies outside nothing is read, not even which files a folder holds:
-    that folder itself is `Unreadable`. They are read as that `robot` of several does, where one is named.
-    What is in `kept` and was not touched is not read again.
+    Links within the project are followed. Nothing outside the project is read, not even the list of a folder: a folder
+    that lies outside is `Unreadable`. If `robot` is given, the files are read for that robot. A file in `kept` that has
+    not changed is not read again.
     """
     read = _Reader(root, kept)
     found = {name: content for name in (MAIN_FILE, FLEET_FILE) if (content := read.file(name)) is not None}
@@ -76,29 +76,29 @@ def read_files(root: Path, robot: str = "", kept: KeptContents | None = None) ->
 
 
 def composed(file: str) -> str:
-    """The composed form of a file's name: a Mac may have saved its accents as separate characters."""
+    """Return a file name in composed form; macOS may have saved its accents as separate characters."""
     return normalize("NFC", file) if file == normalize("NFD", file) else file
 
 
 def on_disk(root: Path, file: str) -> Path:
-    """The path of a file in a project, with its accents as they were saved."""
+    """Return the path of a file in a project, with accents in the form in which they were saved."""
     path, decomposed = root / file, root / normalize("NFD", file)
     return decomposed if not path.exists() and decomposed.exists() else path
 
 
 def read_main_file(root: Path) -> bytes:
-    """lumen.yaml alone, empty where there is none."""
+    """Return the content of lumen.yaml; empty if the file is absent."""
     return _Reader(root).file(MAIN_FILE) or b""
 
 
 def belongs(path: str) -> bool:
-    """Whether a file of that path from the project's root counts."""
+    """Return True if a file of that path from the project's root is part of a project."""
     folder, _, name = path.rpartition("/")
     return path in (MAIN_FILE, FLEET_FILE) or (not name.startswith(".") and name.endswith(endings_in(folder)))
 
 
 def fingerprint(files: Mapping[str, bytes]) -> str:
-    """The hash of all paths and contents; fleet.yaml is no part of what runs, and who reads them is none of theirs."""
+    """Return the hash of all paths and contents, without fleet.yaml and the chosen robot."""
     digest = hashlib.sha256()
     for path, content in sorted(files.items()):
         if path in (FLEET_FILE, CHOSEN_ROBOT):
@@ -108,7 +108,7 @@ def fingerprint(files: Mapping[str, bytes]) -> str:
 
 
 def _robots_own(root: Path) -> list[str]:
-    """The folders in motions/: each holds the motions of one robot, but `life` and `gestures`."""
+    """Return the folders in motions/, each of which holds the motions of one robot, except `life` and `gestures`."""
     try:
         listed = sorted(os.listdir(root / MOTIONS))
     except OSError:
@@ -118,13 +118,13 @@ def _robots_own(root: Path) -> list[str]:
 
 
 def _within(folder: str) -> Iterator[str]:
-    """A folder of the project, after those that it lies in."""
+    """Yield the folders that a folder of the project lies in, from the outermost, then the folder itself."""
     yield from (str(each) for each in reversed(PurePosixPath(folder).parents) if each.name)
     yield folder
 
 
 def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
-    """The files of a folder, without dotfiles, which belong to editors; none if it is missing. Raises OSError."""
+    """Return the names of the files of a folder, sorted, without dotfiles; none if it is missing. Raises OSError."""
     try:
         listed = os.listdir(folder)
     except FileNotFoundError:
@@ -135,7 +135,7 @@ def _names(folder: Path, endings: tuple[str, ...]) -> list[str]:
 
 
 def _reason(error: OSError) -> bytes:
-    """The reason why a file or a folder can't be read, in words."""
+    """Return the reason why a file or a folder can't be read, in words."""
     if isinstance(error, NotADirectoryError):
         return b"it is a file, and should be a folder"
     if isinstance(error, FileNotFoundError):
@@ -144,19 +144,19 @@ def _reason(error: OSError) -> bytes:
 
 
 class _Reader:
-    """Reads files of a project, and counts what they hold together."""
+    """Reads files of a project and adds up their sizes."""
 
     def __init__(self, root: Path, kept: KeptContents | None = None) -> None:
         self._kept = kept or KeptContents()
         self._root, self._real, self._left = root, os.path.realpath(root), MAX_PROJECT_BYTES
 
     def leads_out(self, name: str) -> bool:
-        """Whether a file or folder of the project is one that lies somewhere else."""
+        """Return True if a file or folder of the project is a link to a place outside it."""
         real = os.path.realpath(self._root / name)
         return real != self._real and not real.startswith(self._real.rstrip(os.sep) + os.sep)
 
     def file(self, name: str) -> bytes | None:
-        """The content, None where there is no such file."""
+        """Return the content, `Unreadable` with the reason if it can't be read, or None if there is no such file."""
         path = self._root / name
         try:
             entry = os.lstat(path)

@@ -1,4 +1,4 @@
-"""The formula of a `function` term: whether it can be read, and each of its words checked."""
+"""Check the formula of a `function` term: its syntax and each name, function and number in it."""
 
 from collections.abc import Sequence
 
@@ -32,7 +32,7 @@ _PLAIN = (Identifier, Unary, Logic, Conditional)
 
 
 def check_formula(text: str, names: Sequence[str], report: DocumentReport, path: NodePath) -> bool:
-    """Whether the text at `path` is a formula of x and the variables called `names`; what is wrong is reported."""
+    """Return True if the text at `path` is a formula of x and the variables called `names`; report what is wrong."""
     try:
         tree = parse_expression(text)
     except ExpressionError as error:

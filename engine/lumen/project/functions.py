@@ -1,4 +1,4 @@
-"""The functions of a project, `functions/NAME.yaml`: each file read by itself, then all of them put together."""
+"""The functions of a project, `functions/NAME.yaml`: each file is read by itself, then all are put together."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -102,11 +102,11 @@ class _Joining:
         return self.done, self.known
 
     def called(self, file: FunctionFile) -> list[FunctionCall]:
-        """The calls of other functions of the project."""
+        """Return the calls of other functions of the project in a file's expression."""
         return called(file.tree, self.known) if file.tree else []
 
     def circular(self) -> set[str]:
-        """The functions that call themselves, maybe through others; each circle is reported once."""
+        """Return the functions that call themselves, directly or through others; each circle is reported once."""
         found = set[str]()
         for name in sorted(self.files):
             way = self.way_back(name)
@@ -116,7 +116,7 @@ class _Joining:
         return found
 
     def way_back(self, name: str) -> list[FunctionCall]:
-        """The calls that lead from a function back to itself, on a shortest way; empty if none do."""
+        """Return the calls that lead from a function back to itself, along a shortest path; empty if none do."""
         ways: list[list[FunctionCall]] = [[call] for call in self.calls[name]]
         seen = set[str]()
         while ways:
@@ -147,7 +147,7 @@ class _Joining:
         return place_within(self.reports[name].document, _EXPRESSION, source, call.named, len(call.function))
 
     def define(self, file: FunctionFile, report: DocumentReport) -> None:
-        """Check the expression of a function whose calls are all known, and add it to those that are known."""
+        """Check the expression of a function whose callees are already defined, then define the function."""
         if file.tree is None:
             return
         around = Declarations(
@@ -183,7 +183,7 @@ class _Joining:
 
 
 def _check_name(name: str, report: DocumentReport) -> None:
-    """Report a name of a file by which no expression can call the function."""
+    """Report a file name that no expression can use to call the function."""
     message, hint = "", "rename the file"
     if not _NAME.fullmatch(name):
         message = f"an expression can't call a function named `{name}`"
@@ -205,7 +205,7 @@ def _check_argument(name: str, report: DocumentReport) -> None:
 def _examples(
     data: Mapping[str, Any], parameters: Mapping[str, tuple[str, ...]], report: DocumentReport
 ) -> Iterator[FunctionExample]:
-    """The examples whose arguments fit; the others are reported."""
+    """Yield the examples whose arguments fit; report the others."""
     for i, row in enumerate(data.get("examples") or ()):
         where: NodePath = ("examples", i)
         given = row.get("args") or {}
@@ -243,7 +243,7 @@ def _finite(value: Any) -> bool:
 
 
 def _schema(kinds: tuple[str, ...]) -> Mapping[str, Any]:
-    """The JSON Schema of an argument."""
+    """Return the JSON Schema of an argument."""
     if "any" in kinds:
         return {}
     return {"type": [name for name, kind in JSON_TYPES.items() if kind in kinds and name != "integer"]}

@@ -1,4 +1,4 @@
-"""A library of gestures, `motions/gestures/NAME.yaml`, from its plain data to a `GestureLibrary`."""
+"""Build a `GestureLibrary` from the plain data of `motions/gestures/NAME.yaml`."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,13 +12,13 @@ from lumen.project.poses import PoseReader
 from lumen.project.units import BAD_DURATION, joint_units, seconds
 
 POSTURE = "Stand"
-"""The posture from which a gesture begins, and to which it leads back."""
+"""The posture in which a gesture begins and ends."""
 
 GESTURE_LEGS = Code("gesture-legs", "motions", ERROR, "a gesture moves a leg")
 
 
 def build_gestures(data: Any, report: DocumentReport, *, name: str, body: Body) -> GestureLibrary | None:
-    """The library that the data describes, None where that is no map."""
+    """Return the library that the data describes; None if the data is not a map or its units are broken."""
     if not isinstance(data, Mapping) or report.broken(("units",)):
         return None
     poses = PoseReader(report, body, joint_units(data))
@@ -29,7 +29,7 @@ def build_gestures(data: Any, report: DocumentReport, *, name: str, body: Body) 
 
 
 class _GestureReader:
-    """Reads one gesture after the other: preparation, stroke, hold and retraction, each after the one before."""
+    """Reads single gestures: preparation, stroke, hold and retraction, one after the other."""
 
     def __init__(self, report: DocumentReport, body: Body, poses: PoseReader) -> None:
         self._report, self._body, self._poses = report, body, poses

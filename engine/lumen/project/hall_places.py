@@ -1,4 +1,4 @@
-"""`places:` of lumen.yaml, from its data to the places of the hall."""
+"""Read `places:` of lumen.yaml as the places of the hall."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -17,7 +17,7 @@ RowWay = Literal["", "not", "asked", "else"]
 
 _OTHER_SIGNS = re.compile(r"[,;/&+]")
 _BETWEEN = re.compile(r"[\s|,;/&+]+")
-"""What people write between names."""
+"""The separators that people write between names."""
 _JOINING = frozenset(("and", "or", "dan", "atau", "und", "oder"))
 
 
@@ -30,7 +30,7 @@ class HearsKeys:
         self.names = {*tables["phrases"], *tables["answers"]} - {*WORD_LISTS, *TABLES}
 
     def read(self, key: str, where: NodePath) -> tuple[RowWay, tuple[str, ...]]:
-        """The way and the names of a key; no way and no names (and reported) if it can't be read."""
+        """Return the way and the names of a key; if it can't be read, report that and return neither."""
         if key == "else":
             return "else", ()
         words = key.split()
@@ -50,7 +50,7 @@ class HearsKeys:
         return (way, tuple(filter(None, found))) if all(found) else ("", ())
 
     def name(self, name: str, where: NodePath) -> str:
-        """A name as the row holds it; empty (and reported) if nothing has it."""
+        """Return a name in its full form; if nothing has that name, report it and return an empty text."""
         if name in self.names or (name and not self.expressions.words.whole and "." not in name):
             return name
         entry, _, field = name.partition(".")
@@ -76,7 +76,7 @@ class HearsKeys:
         return ""
 
     def place(self, name: str, where: NodePath) -> Place:
-        """Where a name stands in a key."""
+        """Return the place of a name in a key."""
         place = self.report.document.place(where, key=True)
         line = lines_of(self.report.document.text)[place.line - 1] if place.line == place.end_line else ""
         found = re.search(rf"(?<!\w){re.escape(name)}(?!\w)", line[place.column - 1 : place.end_column - 1])

@@ -1,4 +1,4 @@
-"""Where a running exhibition keeps what it needs to be found, and to go on: `.lumen/` of its project."""
+"""The folder `.lumen/` of a project, in which a running exhibition keeps its address and its state for a restart."""
 
 import hashlib
 import json
@@ -17,15 +17,15 @@ from lumen.upkeep.state_folder import state_folder
 STATE_FOLDER = ".lumen"
 ADDRESS_FILE = "door.json"
 ROBOTS_FOLDER = "robots"
-"""Where the robots of `robots:` have a home each."""
+"""The folder with one home for each robot of `robots:`."""
 MAX_RECORD_BYTES = 64_000_000
-"""Of one file of a home; where a behaviour stands takes some thousands."""
+"""The maximum size of one file of a home [bytes]; the position of a behaviour needs some thousands."""
 
 
 class Home:
-    """The folder of one running exhibition; `hold` takes it, and the system gives it back however the process ends.
+    """The folder of one running exhibition, locked with `hold`; the system unlocks it however the process ends.
 
-    Nothing here raises for what a disk does while the exhibition runs: `write` returns why it could not.
+    While the exhibition runs, no fault of the disk raises an error: `write` returns the reason instead.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -33,9 +33,9 @@ class Home:
         self._lock: int | None = None
 
     def hold(self) -> bool:
-        """Make the folder, and take it; false where another process has it.
+        """Create the folder and lock it; return False if another process holds the lock.
 
-        Raises UsageError where it can't be made.
+        Raises UsageError if the folder can't be made.
         """
         try:
             private_folder(self.folder)
@@ -49,7 +49,7 @@ class Home:
         return True
 
     def held(self) -> bool:
-        """Whether some process has it now."""
+        """Return True if any process holds the lock now."""
         try:
             lock = os.open(self.folder / "lock", os.O_RDWR | NO_LINK)
         except OSError:
@@ -76,14 +76,14 @@ class Home:
         return self.write(name, json.dumps(data).encode())
 
     def read(self, name: str) -> bytes | None:
-        """What is in a file, None where there is none that can be read."""
+        """Return the content of a file; None if it can't be read."""
         try:
             return read_regular(self.folder / name, MAX_RECORD_BYTES, follow=False)
         except OSError:
             return None
 
     def read_json(self, name: str) -> Any:
-        """The data in a file, None where there is none that can be read."""
+        """Return the data in a file of JSON; None if it can't be read."""
         try:
             return json.loads(self.read(name) or b"null")
         except (ValueError, RecursionError):
@@ -95,7 +95,7 @@ class Home:
 
 
 def home_of(root: Path, robot: str = "") -> Path:
-    """The folder for an exhibition of the project in `root`, of this `robot` where it has `robots:`.
+    """Return the folder for an exhibition of the project in `root`, for this `robot` if the project has `robots:`.
 
     It is inside the project. It is in the user's state folder instead, under a name made from the project's path, if
     the project can't be written, comes with an installed Lumen, or is a link that may lead elsewhere tomorrow or holds
@@ -106,7 +106,7 @@ def home_of(root: Path, robot: str = "") -> Path:
 
 
 def homes_of(root: Path) -> list[Home]:
-    """Those that exhibitions of the project may have: its own, and one for each of its robots."""
+    """Return the homes that exhibitions of the project may have: its own, and one for each of its robots."""
     whole = home_of(root)
     return [Home(whole), *(Home(one) for one in sorted((whole / ROBOTS_FOLDER).glob("*/")))]
 
@@ -121,7 +121,7 @@ def _whole_home(root: Path) -> Path:
 
 
 def _linked(folder: Path) -> bool:
-    """Whether a folder is a link, or there is one in it: who writes into it would write somewhere else."""
+    """Return True if a folder is a link or contains one, so that writing into it might write somewhere else."""
     below = ([here, *files, *folders] for here, folders, files in os.walk(folder))
     return folder.is_symlink() or any(
         os.path.islink(os.path.join(here, name)) for here, *names in below for name in names
@@ -129,13 +129,13 @@ def _linked(folder: Path) -> bool:
 
 
 def homes() -> list[Home]:
-    """All homes that are not inside their projects."""
+    """Return all homes that are not inside their projects."""
     folder = state_folder()
     return [Home(one) for one in sorted(folder.iterdir())] if folder.is_dir() else []
 
 
 def _locked(file: int) -> bool:
-    """Whether this process has the file for itself now; a process that ends, however, has it no more."""
+    """Return True if this process now has an exclusive lock on the file; the lock ends with the process."""
     try:
         if sys.platform == "win32":
             import msvcrt

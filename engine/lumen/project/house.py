@@ -1,4 +1,4 @@
-"""`robot:` or `robots:` of lumen.yaml, from their data to who performs."""
+"""Read `robot:` or `robots:` of lumen.yaml as the robots that perform."""
 
 import re
 from collections.abc import Mapping
@@ -19,7 +19,7 @@ HOW = "write `robot: {name: NAO, model: nao}` for one robot, or `robots:` with a
 
 
 def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, RobotSpec]:
-    """The robots by name, in the order written; the one of `robot:` where there is no `robots:`."""
+    """Return the robots by name, in the order written; the one of `robot:` if there is no `robots:`."""
     several = data.get("robots")
     if "robot" in data and several:
         report(ROBOTS_TWICE, ("robots",), "`robot` and `robots` are both set", f"delete one of them: {HOW}", key=True)
@@ -36,7 +36,7 @@ def build_robots(data: Mapping[str, Any], report: DocumentReport) -> dict[str, R
 
 
 def build_house(data: Mapping[str, Any]) -> str:
-    """The house's name: what lumen.yaml says, else the project's as a word of a routing key."""
+    """Return the house's name: the one in lumen.yaml, else the project's, converted to a word of a routing key."""
     return data.get("house", "") or re.sub(r"[^a-z0-9]+", "-", data.get("name", "").lower()).strip("-") or "house"
 
 
@@ -46,7 +46,7 @@ def robot_names(data: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def told_robots(data: Mapping[str, Any]) -> bool:
-    """Whether the robots are those of `robots:`: then each is told apart by its name, also on the disk."""
+    """Return True if lumen.yaml has `robots:`; then robots are distinguished by name, also on the disk."""
     return bool(data.get("robots"))
 
 

@@ -1,4 +1,4 @@
-"""Lines that stand too far in or out, and items of lists without their hyphen: what the lines around them tell."""
+"""Find lines with a wrong indentation and list items without a hyphen, by comparison with the lines around them."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -8,7 +8,7 @@ from typing import NamedTuple
 from lumen.project.slips import Slip
 
 LINES_BACK = 60
-"""Lines before the one at which a reader stopped where a block may stand at the wrong depth."""
+"""The number of lines before a syntax error that are searched for a block at the wrong depth."""
 
 AMONG_KEYS, DELETE_HYPHEN = "a list item is among the keys of a map", "delete the `- `"
 
@@ -24,12 +24,12 @@ def indent(line: str) -> int:
 
 
 def is_content(line: str) -> bool:
-    """Whether a line holds more than a comment."""
+    """Return True if a line holds more than a comment."""
     return bool(line.strip()) and not line.lstrip().startswith("#")
 
 
 def holder(lines: Sequence[str], row: int, depth: int) -> str:
-    """The key that would hold the line of that index at that depth; "" at the top level.
+    """Return the key that would hold the line of that index at that depth; "" at the top level.
 
     "- N" is the list item that begins in line N.
     """
@@ -80,7 +80,7 @@ def _move_hint(lines: Sequence[str], rows: Sequence[int], shift: int) -> str:
 
 
 def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
-    """An item among keys, or a key among items, in the line of that index: the line before it tells which."""
+    """Yield slips about a list item among keys, or a key among list items, in the line of that index."""
     here = lines[index]
     above = next((line for line in reversed(lines[:index]) if is_content(line) and indent(line) <= indent(here)), "")
     below = next((line for line in lines[index + 1 :] if is_content(line) and indent(line) <= indent(here)), "")
@@ -89,7 +89,7 @@ def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
         return
     among = [line for line in (above, below) if _ITEM.match(line) and indent(line) in (column, column - 2)]
     if among and indent(among[0]) < column and here[column] not in "{[":
-        among = []  # it goes on with the item above
+        among = []  # it continues the item above
     if among and not _ITEM.match(here):
         before = next((line for line in reversed(lines[:index]) if is_content(line)), "")
         if _usual(lines, index) or (_KEYED.match(before) and indent(before) == column + 2):
@@ -100,7 +100,7 @@ def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
         message = f"{what} is among the items of a list, but has no hyphen"
         yield Slip(index + 1, column + 1, len(here) - column, message, hint, meant)
         at = next(i for i in range(index - 1, -1, -1) if lines[i] == above) if above in among else index
-        if at < index and _KEYED.match(here):  # rather all are keys, and the first has a hyphen
+        if at < index and _KEYED.match(here):  # more likely all are keys, and the hyphen of the first is wrong
             meant = {at: above[:column] + above[column + 2 :]}
             yield Slip(at + 1, column + 1, 1, AMONG_KEYS, DELETE_HYPHEN, meant)
     if _ITEM.match(here) and indent(above) == column and _KEYED.match(above):
@@ -108,22 +108,22 @@ def items(lines: Sequence[str], index: int) -> Iterator[Slip]:
 
 
 def _usual(lines: Sequence[str], index: int) -> bool:
-    """Whether the key in that line stands two blanks further in elsewhere, as it does in the other items of a list."""
+    """Return True if the key in that line is two spaces further in elsewhere, as in the other items of a list."""
     key = f"  {lines[index].split(':')[0]}:"
     return bool(_KEYED.match(lines[index])) and any(line.startswith(key) for line in lines)
 
 
 def too_deep(lines: Sequence[str], row: int) -> Iterator[Slip]:
-    """A key that stands further in than the one above it, which has its value already."""
+    """Yield the slip that a key is further in than the one above it, which already has a value."""
     above = next((line for line in reversed(lines[:row]) if is_content(line)), "")
     if _KEYED.match(lines[row]) and _VALUED.match(above) and indent(lines[row]) > indent(above):
         yield from _moved(lines, row, [indent(above)])
 
 
 def depths(lines: Sequence[str], row: int) -> Iterator[Slip]:
-    """Lines that would fit at another depth, alone or with all that stands below them; the nearest first.
+    """Yield slips for lines that would fit at another depth, alone or with all lines below them; the nearest first.
 
-    Where a line stands as deep as some before it, one between them that stands further out has cut it off.
+    If earlier lines have the same indentation, a line between them that is further out may have separated them.
     """
     told = [i for i in range(row, max(row - LINES_BACK, 0) - 1, -1) if is_content(lines[i])]
     known = [indent(lines[i]) for i in told]
@@ -133,7 +133,7 @@ def depths(lines: Sequence[str], row: int) -> Iterator[Slip]:
     for i in [*above, row] if here in known[1:] else [row, *above]:
         yield from _moved(lines, i, [*known, *texts])
     inner = next((a for a, b in pairwise(told[1:]) if indent(lines[a]) > here > indent(lines[b])), None)
-    if inner is not None:  # the first one of a block, and those after it are further out
+    if inner is not None:  # the first line of a block whose other lines are further out
         yield from _moved(lines, inner, [here])
 
 
@@ -159,7 +159,7 @@ def _moved(lines: Sequence[str], index: int, known: Sequence[int]) -> Iterator[S
 
 
 def shifted(line: str, much: int) -> str:
-    """The line with that many more spaces before it, or fewer if the number is negative."""
+    """Return the line with that many more spaces before it, or fewer if the number is negative."""
     if not line.strip():
         return line
     return " " * much + line if much > 0 else line[min(-much, indent(line)) :]

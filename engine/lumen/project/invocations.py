@@ -1,4 +1,4 @@
-"""`invoke` of a state: which behaviours run while it is active."""
+"""Read `invoke` of a state: the behaviours that run while it is active."""
 
 from collections.abc import Iterator
 from itertools import combinations
@@ -12,7 +12,7 @@ from lumen.project.outline import DUPLICATE_ID, BehaviorOutline, OutlinedState
 
 
 def invocations(entry: OutlinedState, expressions: Expressions) -> tuple[Invoke, ...]:
-    """What a state invokes, in the order of the file."""
+    """Return the behaviours that a state invokes, in the order of the file."""
     found = []
     for where, id, row in invoked(entry):
         data = row.get("input") or {}
@@ -22,7 +22,7 @@ def invocations(entry: OutlinedState, expressions: Expressions) -> tuple[Invoke,
 
 
 def invoked(entry: OutlinedState) -> Iterator[tuple[NodePath, str, dict[str, Any]]]:
-    """Each item under `invoke`, with its place and its id."""
+    """Yield the path, the id and the data of each item under `invoke`."""
     body, where = entry.data.get("invoke"), (*entry.where, "invoke")
     rows = [((*where, i), row) for i, row in enumerate(body)] if isinstance(body, list) else [(where, body)]
     for place, row in rows:
@@ -31,7 +31,7 @@ def invoked(entry: OutlinedState) -> Iterator[tuple[NodePath, str, dict[str, Any
 
 
 def check_ids(outline: BehaviorOutline, report: DocumentReport) -> None:
-    """Report where two behaviours that can run at the same time have the same id."""
+    """Report two behaviours that can run at the same time and have the same id."""
     found: dict[str, list[tuple[OutlinedState, NodePath]]] = {}
     for entry in outline.entries.values():
         for where, id, row in invoked(entry):
@@ -46,7 +46,7 @@ def check_ids(outline: BehaviorOutline, report: DocumentReport) -> None:
 
 
 def _together(one: OutlinedState, other: OutlinedState) -> bool:
-    """Whether two states can be active at the same time."""
+    """Return True if two states can be active at the same time."""
     inner = other
     while not one.lies_in(inner):
         assert inner.parent is not None  # every state lies in the root

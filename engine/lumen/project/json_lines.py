@@ -1,4 +1,4 @@
-"""Files of lines of JSON that may name people: what names one of them is taken out."""
+"""Delete the data of a person from files of lines of JSON."""
 
 import json
 from pathlib import Path
@@ -9,9 +9,9 @@ from lumen.upkeep.private_folder import write_private
 
 
 def forget_lines(file: Path, person: PersonName) -> int:
-    """Delete the lines of a file that name the person; how many. Raises ModuleError where it can't be written anew.
+    """Delete the lines of a file that name the person; return how many. Raises ModuleError if it can't be written.
 
-    The file is replaced as a whole, and only where there is something to delete.
+    The file is replaced as a whole, and only if there is something to delete.
     """
     try:
         lines = file.read_bytes().splitlines(keepends=True)
@@ -26,7 +26,7 @@ def forget_lines(file: Path, person: PersonName) -> int:
 
 
 def line_names(line: bytes, person: PersonName) -> bool:
-    """Whether a line of JSON, or one that was cut short, names the person."""
+    """Return True if a line of JSON, or one that was cut short, names the person."""
     text = line.decode("utf-8", "replace")
     try:
         return person.is_in(json.loads(text))

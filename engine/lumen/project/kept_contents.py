@@ -1,4 +1,4 @@
-"""What files held when they were read last: one that nobody has touched since is not read again."""
+"""The contents of files when they were last read, so that an unchanged file is not read again."""
 
 import os
 import stat
@@ -9,7 +9,7 @@ from typing import NamedTuple
 from lumen.upkeep.regular_files import read_regular
 
 SETTLED_NS = 2_000_000_000
-"""How long ago a file was changed whose next change certainly shows in its times [ns]: some disks count in seconds."""
+"""How old a change must be for the next change to alter the file's times [ns]: some disks count whole seconds."""
 
 
 class _Kept(NamedTuple):
@@ -18,16 +18,16 @@ class _Kept(NamedTuple):
 
 
 class KeptContents:
-    """Contents by path, for who reads the same files each second.
+    """Contents by path, for callers that read the same files each second.
 
-    A plain file with the same number, size and times as before, which were settled then, has the same content.
+    A regular file has the same content if its device, inode, size and times are as before and were settled then.
     """
 
     def __init__(self) -> None:
         self._kept: dict[Path, _Kept] = {}
 
     def read(self, path: Path, entry: os.stat_result, most: int) -> bytes:
-        """What the file holds that `entry` is about; raises what `read_regular` raises."""
+        """Return the content of the file that `entry` describes, at most `most` bytes. Raises as `read_regular`."""
         identity = (entry.st_dev, entry.st_ino, entry.st_size, entry.st_mtime_ns, entry.st_ctime_ns)
         kept = self._kept.get(path)
         if kept and kept.identity == identity:

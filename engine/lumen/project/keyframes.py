@@ -1,4 +1,4 @@
-"""The list under `keyframes:`, from plain data to one flat motion, its blocks unrolled."""
+"""Convert the list under `keyframes:` from plain data to one flat motion, with its blocks unrolled."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ ZERO_DURATION = Code("zero-duration", "motions", ERROR, "a motion has no length"
 
 
 MAX_MOTION_KEYS = 200_000
-"""Of all joints together, unrolled; an hour of dancing with every joint on every beat has as many."""
+"""The maximum number of keys of all joints, unrolled; as many as an hour of dancing with every joint on every beat."""
 
 _CUES = ("say", "sound", "leds", "hold")
 _SOON = 1e-9
@@ -34,7 +34,7 @@ _SOON = 1e-9
 class KeyframeReader:
     """Reads the keyframes of one file. `beat` is the length of a beat [s], None without a tempo.
 
-    `motions` are those that `play` may name; what is wrong with one in `broken` has been said where it stands.
+    `motions` are those that `play` may name. The faults of those in `broken` were reported in their own files.
     """
 
     report: DocumentReport
@@ -45,7 +45,7 @@ class KeyframeReader:
     broken: Collection[str] = ()
 
     def read(self, items: list[Any], path: NodePath, interpolation: Interpolation) -> MotionDefinition:
-        """The motion that a list of keyframes and blocks makes, its times from the list's own beginning."""
+        """Return the motion of a list of keyframes and blocks; its times count from the beginning of the list [s]."""
         parts: list[tuple[float, MotionDefinition]] = []
         now, moved, count = 0.0, 0.0, 0
         for i, item in enumerate(items):
@@ -72,7 +72,7 @@ class KeyframeReader:
         return joined(parts, now)
 
     def _keyframe(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> MotionDefinition:
-        """One keyframe at time 0."""
+        """Return the motion of one keyframe, at time 0."""
         how = Interpolation(item.get("interpolation", interpolation))
         handles = self.poses.handles(item, here)
         tracks = {
@@ -97,7 +97,7 @@ class KeyframeReader:
         return mirrored(part, self.poses.mirror) if item.get("mirror") is True else part
 
     def _block(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> MotionDefinition:
-        """A block or another motion, as often, as fast and on the side that the item says."""
+        """Return the motion of a block, or another motion, repeated, scaled and mirrored as the item demands."""
         for word in (
             "joints",
             "roles",
@@ -137,7 +137,7 @@ class KeyframeReader:
     def _repeated(self, part: MotionDefinition, times: int, mirror: bool | str, here: NodePath) -> MotionDefinition:
         if times > 1 and part.duration <= 0.0:
             if has_errors(self.report.diagnostics):
-                return part  # what would take its time is broken
+                return part  # the part with a length is broken and was reported
             hint = "give its last keyframe a time above 0: that is the length of one repetition"
             self.report(ZERO_DURATION, here, "a repeated block needs a length", hint=hint)
             return part
@@ -149,7 +149,7 @@ class KeyframeReader:
         return joined(((i * part.duration, round) for i, round in enumerate(rounds)), part.duration * times)
 
     def _moment(self, item: Mapping[str, Any], here: NodePath) -> float | None:
-        """When an item begins, from the beginning of its list [s]; None where it says nothing that can be used."""
+        """Return when an item begins, from the beginning of its list [s]; None if it has no usable time."""
         if "at" in item and "beat" in item:
             hint = "keep one of them"
             self.report(TWO_TIMES, (*here, "beat"), "a keyframe has `at` or `beat`, not both", hint=hint, key=True)

@@ -1,4 +1,4 @@
-"""Passages, `knowledge/NAME.yaml` or `NAME.md`, and questions to try them with: from plain data to values."""
+"""Build passages, `knowledge/NAME.yaml` or `NAME.md`, and the questions to try them with from plain data."""
 
 from collections.abc import Mapping
 from datetime import date
@@ -13,7 +13,7 @@ BAD_DATE = Code("bad-date", "knowledge", ERROR, "a date of a passage is not vali
 
 
 def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | None:
-    """The passage that the data describes, None where it is no map or lacks its questions or its answer."""
+    """Return the passage that the data describes; None if it is not a map or lacks its questions or its answer."""
     if not isinstance(data, Mapping) or not {"questions", "answer"} <= data.keys():
         return None
     as_of, until = (_day(data, key, report) for key in ("as-of", "until"))
@@ -25,7 +25,7 @@ def build_passage(data: Any, report: DocumentReport, *, name: str) -> Passage | 
 
 
 def build_questions(data: Any, report: DocumentReport, *, name: str) -> QuestionSet | None:
-    """The questions that the data has, None where it is no map."""
+    """Return the questions in the data; None if it is not a map."""
     if not isinstance(data, Mapping):
         return None
     return read_fields(QuestionSet, data, name=name)

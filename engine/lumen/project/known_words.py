@@ -1,4 +1,4 @@
-"""What a behaviour knows by name: its own phrases and answers, and those of the words files that it names."""
+"""The phrases, answers and lists that a behaviour can name: its own, and those of its words files."""
 
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
@@ -25,22 +25,24 @@ WordFiles = Mapping[str, BuiltFile[Words]]
 
 
 class KnownWords(NamedTuple):
-    """The tables by their keys, each from name to content; `files` are those named under `words`.
-
-    `borrowed` says of (key, name) from which of them it comes. Unless `whole`, one of them can't be read, and a name
-    that is not known may be there. `anyhow` are the names of phrases that count even if negated, and `supplied` is
-    what of Lumen's own words is used without being named, as data; `offered` are the names that it has beside.
-    `functions` are those of the project.
-    """
+    """The tables that a behaviour can use."""
 
     tables: Mapping[str, Mapping[str, Any]]
+    """The tables by their keys (`phrases`, `answers`, `lists`), each from name to content."""
     files: tuple[str, ...]
+    """The names of the files under `words`."""
     borrowed: Mapping[tuple[str, str], str]
+    """The file that (key, name) comes from, if it is not from the behaviour itself."""
     whole: bool
+    """False if one of the files can't be read, so that an unknown name may be defined there."""
     anyhow: frozenset[str] = frozenset()
+    """The names of phrases that match even if negated."""
     supplied: Any = None
+    """The part of Lumen's own words that is used, as data."""
     offered: frozenset[str] = frozenset()
+    """Further names that Lumen's own words have."""
     functions: KnownFunctions = MappingProxyType({})
+    """The functions of the project."""
 
 
 def known_words(
@@ -53,10 +55,10 @@ def known_words(
     shipped: bool = False,
     hears: bool = False,
 ) -> KnownWords:
-    """All that a behaviour knows; a file that is not there and a name that is given twice are reported.
+    """Return all that a behaviour can name; a missing file and a name that is defined twice are reported.
 
-    `names` are all words files, those that can't be read among them. If `common` is `shipped`, of it counts what is in
-    the project's `languages`, under names that nothing else has; a behaviour that `hears` uses its word lists anyhow.
+    `names` are those of all words files, also of unreadable ones. If `common` is `shipped`, only names that nothing
+    else defines are used from it, in the project's `languages`; a behaviour that `hears` always uses its word lists.
     """
     return _Gatherer(data, report, files, names, languages, shipped).gather(hears)
 
@@ -97,7 +99,7 @@ class _Gatherer:
         return KnownWords(self.tables, tuple(rows), self.borrowed, whole, self.anyhow, supplied, offered)
 
     def supply(self, common: Words, *, everything: bool) -> Any:
-        """Add Lumen's own words under names that nothing has yet; what was added."""
+        """Add Lumen's own words under names that are still free; return the added part."""
         added = []
         for key in ("phrases", "answers"):
             for name, content in getattr(common, key).items():
@@ -111,14 +113,14 @@ class _Gatherer:
         return added
 
     def in_languages(self, content: Any) -> Any:
-        """Phrases, or rows of answers, in the languages of the project; in all if they are not known."""
+        """Return phrases, or rows of answers, in the languages of the project; in all if these are not known."""
         if isinstance(content, Mapping):
             return {language: texts for language, texts in content.items() if language in (self.languages or content)}
         rows = [Answer(self.in_languages(row.phrases), row.value) for row in content]
         return tuple(row for row in rows if row.phrases)
 
     def take(self, name: str, file: BuiltFile[Words]) -> None:
-        """The tables of a file, without names that are given already."""
+        """Add the tables of a file; report names that are already defined."""
         self.report.lost |= file.report.lost
         self.anyhow |= file.built.anyhow if file.built else frozenset()
         for key, table in self.tables.items():
@@ -129,7 +131,7 @@ class _Gatherer:
                     table[entry], self.borrowed[key, entry] = content, name
 
     def twice(self, key: str, entry: str, file: BuiltFile[Words]) -> None:
-        """Report a name that a file gives, and this behaviour or a file before gave."""
+        """Report a name that is defined both in a file and in this behaviour or an earlier file."""
         other = self.borrowed.get((key, entry))
         first = self.place(self.files[other].report if other else self.report, key, entry)
         second = self.place(file.report, key, entry)

@@ -1,6 +1,6 @@
-"""What comes with Lumen: robots' bodies, a hall and message schemas that a project names and does not hold itself.
+"""Files that come with Lumen and that a project names without having them: robots' bodies, a hall, message schemas.
 
-Only what is named is lent, and only where the project has no file of that name: its own always counts.
+Only what is named is lent, and only if the project has no file of that name: its own file always has priority.
 """
 
 import json
@@ -17,7 +17,7 @@ from lumen.project.settings import Settings
 
 
 def lend(files: Mapping[str, bytes], settings: Settings, models: Collection[str]) -> dict[str, bytes]:
-    """The shipped files, by their path, that this project needs and does not hold.
+    """Return the shipped files, by their path, that this project needs and does not have.
 
     `models` are the names of the bodies that are needed, and of the MJCF of its own bodies.
     """
@@ -29,7 +29,7 @@ def lend(files: Mapping[str, bytes], settings: Settings, models: Collection[str]
 
 
 def _bodies(files: Mapping[str, bytes]) -> Iterator[str]:
-    """Every body that comes with Lumen with its MJCF, since one may be like another, and the ways between postures."""
+    """Yield all shipped bodies with an MJCF, since one may be `like` another, and the passages between postures."""
     own = any(file.startswith(f"{PASSAGES}/") for file in files)
     for file, path in shipped().items():
         if file.startswith(f"{PASSAGES}/"):
@@ -40,7 +40,10 @@ def _bodies(files: Mapping[str, bytes]) -> Iterator[str]:
 
 
 def model_files(project: Project) -> tuple[Path, str]:
-    """The folder with the MJCF of its robot, and where from there its hall is: in the project, else with Lumen."""
+    """Return the folder with the MJCF of the robot, and the path of the hall from there.
+
+    Each is in the project if it has the file, else in the shipped exhibition.
+    """
     own = Path(project.root) / MODELS
     robot = own if (own / project.body.mjcf).exists() else shipped_root() / MODELS
     hall = own if (own / project.hall).exists() else shipped_root() / MODELS
@@ -49,13 +52,13 @@ def model_files(project: Project) -> tuple[Path, str]:
 
 @cache
 def shipped_message(name: str) -> Any:
-    """The schema of a message that comes with Lumen, None if there is none."""
+    """Return the schema of a message that comes with Lumen; None if no schema has that name."""
     file = shipped().get(f"{MESSAGES}/{name}{SCHEMA_SUFFIX}")
     return json.loads(file.read_bytes()) if file else None
 
 
 def shipped_models() -> tuple[str, ...]:
-    """The names of the bodies that come with Lumen."""
+    """Return the names of the bodies that come with Lumen."""
     return tuple(
         Path(file).stem
         for file in shipped()
@@ -64,7 +67,7 @@ def shipped_models() -> tuple[str, ...]:
 
 
 def shipped_names(folder: str) -> tuple[str, ...]:
-    """The names that a project may use without a file of its own in that folder."""
+    """Return the names that a project may use without a file of its own in that folder."""
     if folder == MESSAGES:
         files = (Path(file) for file in shipped())
         return tuple(file.name.removesuffix(SCHEMA_SUFFIX) for file in files if file.parent == Path(MESSAGES))
@@ -73,7 +76,7 @@ def shipped_names(folder: str) -> tuple[str, ...]:
 
 @cache
 def shipped() -> Mapping[str, Path]:
-    """All files that may be lent: what a project writes leads to no other."""
+    """Return all files that may be lent, by path. A project can't refer to any other file of Lumen."""
     endings = {MODELS: (".yaml", ".xml"), MESSAGES: (SCHEMA_SUFFIX,), PASSAGES: (".yaml",)}
     return {
         f"{folder}/{file.name}": file

@@ -1,4 +1,4 @@
-"""A style of life, `motions/life/NAME.yaml`, from its plain data to a `LifeStyle`."""
+"""Build a `LifeStyle` from the plain data of `motions/life/NAME.yaml`."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,13 +12,13 @@ from lumen.project.role_names import RoleNames
 from lumen.project.units import ANGLES, BAD_DURATION, JointUnits, joint_units, seconds
 
 SHORTEST_PERIOD = 0.1
-"""What comes again and again in a life takes at least so long [s]."""
+"""The minimum time between two repetitions of a movement [s]."""
 
 RESERVED_LIFE = Code("reserved-life", "motions", ERROR, "a style of life is called `still`")
 
 
 def build_life(data: Any, report: DocumentReport, *, name: str, body: Body) -> LifeStyle | None:
-    """The style that the data of `motions/life/NAME.yaml` describes, None where that is no map."""
+    """Return the style that the data of `motions/life/NAME.yaml` describes; None if it is not a map."""
     if not isinstance(data, Mapping) or report.broken(("units",)):
         return None
     if name == STILL:
@@ -75,7 +75,7 @@ class _LifeReader:
         return Sway(name, period, self._joints(data, where), data.get("wanders", False), where)
 
     def _joints(self, data: Mapping[str, Any], path: NodePath) -> dict[str, float]:
-        """What `roles` and `joints` of this item say, the latter winning."""
+        """Return the values of this item by joint, in SI units; `joints` overrides `roles`."""
         found: dict[str, float] = {}
         self.roles.some(data, path)
         for name, value in (data.get("roles") or {}).items():
@@ -96,7 +96,7 @@ class _LifeReader:
         return self._time((key, "every"), data["every"])
 
     def _time(self, path: NodePath, text: str) -> float:
-        """A time between two of a kind [s], which is never too short to count with."""
+        """Return the time between two repetitions [s]; one below the minimum is reported and raised to it."""
         time = seconds(text) or 0.0
         if time < SHORTEST_PERIOD:
             hint = f"write at least {1000 * SHORTEST_PERIOD:g}ms"

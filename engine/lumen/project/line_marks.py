@@ -1,4 +1,4 @@
-"""The quotes and brackets of one line of YAML, read without the lines around it: what is open at its end."""
+"""Find the quotes and brackets that are open at the end of one line of YAML, without the lines around it."""
 
 from typing import NamedTuple
 
@@ -13,27 +13,27 @@ class Mark(NamedTuple):
 
 
 class LineMarks(NamedTuple):
-    """What a line leaves open or closes too much, by columns from 0.
-
-    `quote` is the one that opens and is not closed, `ended` a quoted text with something behind it other than a comma,
-    a colon or a closing bracket: where it opens and where it closes. `open` are brackets that are not closed, the outer
-    ones first, `surplus` those that close nothing or another kind; `stop` is where the line ends but for blanks and a
-    comment. `braces` are pairs `{{` outside of quotes.
-    """
+    """The unbalanced quotes and brackets of a line; columns count from 0."""
 
     quote: Mark | None
+    """A quote that opens and is not closed."""
     ended: tuple[Mark, Mark] | None
+    """The opening and closing quote of a text that is followed by anything but a comma, a colon or a bracket."""
     open: tuple[Mark, ...]
+    """Brackets that are not closed, the outer ones first."""
     surplus: tuple[Mark, ...]
+    """Closing brackets that match no open one."""
     stop: int
+    """The end of the line without trailing blanks and comment."""
     braces: tuple[int, ...]
+    """The columns of `{{` at the beginning of an unquoted text."""
 
 
 def marks_of(line: str) -> LineMarks:
-    """The marks of a line that does not begin within a quoted text."""
+    """Return the marks of a line that does not begin within a quoted text."""
     opened, surplus, braces, bracketed = list[Mark](), list[Mark](), list[int](), False
     ended: tuple[Mark, Mark] | None = None
-    i, token, stop = 0, True, 0  # `token`: here a text may begin, and a quote opens it
+    i, token, stop = 0, True, 0  # `token`: a text may begin here, so a quote would open it
     while i < len(line):
         sign = line[i]
         if sign == "#" and (i == 0 or line[i - 1] in " \t"):
@@ -66,12 +66,12 @@ def marks_of(line: str) -> LineMarks:
 
 
 def closers(brackets: tuple[Mark, ...]) -> str:
-    """What closes these brackets, the inner ones first."""
+    """Return the signs that close these brackets, the inner ones first."""
     return "".join(_PAIRS[mark.sign] for mark in reversed(brackets))
 
 
 def _closing(line: str, start: int) -> int:
-    """Where the quoted text that begins there ends, -1 where it does not."""
+    """Return the index of the quote that closes the text which begins there; -1 if none does."""
     quote, i = line[start], start + 1
     while i < len(line):
         if quote == '"' and line[i] == "\\":
@@ -86,7 +86,7 @@ def _closing(line: str, start: int) -> int:
 
 
 def _well_ended(line: str, close: int, within: bool) -> bool:
-    """Whether what comes behind a quoted text may stand there."""
+    """Return True if the characters after a quoted text are allowed there."""
     rest = line[close + 1 :]
     text = rest.lstrip()
     if not text or (text[0] == "#" and rest != text):

@@ -1,4 +1,4 @@
-"""Behaviours that invoke others, each joined with the machines of those others."""
+"""Link behaviours to the machines of the behaviours that they invoke."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import replace
@@ -18,28 +18,29 @@ INVOKE_CYCLE = Code(
 
 
 MAX_INVOKE_DEPTH = 16
-"""How many levels of behaviours may run within one another."""
+"""The maximum depth to which behaviours may invoke one another."""
 
 
 def link(
     machines: Mapping[str, MachineDefinition], reports: Mapping[str, DocumentReport], names: Collection[str]
 ) -> dict[str, MachineDefinition]:
-    """These machines by name, each with those that it invokes; what can't be invoked is reported.
+    """Return these machines by name, each with those that it invokes; invalid invocations are reported.
 
-    `names` are all behaviours that there are; one that could not be read is among them and is not missed.
+    `names` are the names of all behaviours, also of unreadable ones, so that a reference to one of those is not
+    reported.
     """
     linker = _Linker(machines, reports, names)
     return {name: linker.machine(name) for name in machines}
 
 
 def with_robots(machine: MachineDefinition, robots: tuple[str, ...]) -> MachineDefinition:
-    """The machine, and those that it invokes, in a house where these robots hear what is sent to them."""
+    """Return the machine, and those that it invokes, for a house in which these robots receive events sent to them."""
     invoked = {name: with_robots(each, robots) for name, each in machine.invoked.items()}
     return replace(machine, robots=robots, invoked=invoked)
 
 
 class _Linker:
-    """Goes down from each behaviour to what it invokes; `way` are those above the one that is being linked."""
+    """Descends from each behaviour to those that it invokes; `way` is the path from the outermost one."""
 
     def __init__(
         self, machines: Mapping[str, MachineDefinition], reports: Mapping[str, DocumentReport], names: Collection[str]
@@ -50,7 +51,7 @@ class _Linker:
         self.way: list[str] = []
 
     def machine(self, name: str) -> MachineDefinition:
-        """The machine of that name with those that it invokes, and they with theirs."""
+        """Return the machine of that name, linked to those that it invokes at every depth."""
         if name not in self.linked:
             self.way.append(name)
             machine, found = self.machines[name], dict[str, MachineDefinition]()
@@ -65,7 +66,7 @@ class _Linker:
         return self.linked[name]
 
     def invoked(self, name: str, invoke: Invoke) -> MachineDefinition | None:
-        """The machine that is invoked, None where it can't be."""
+        """Return the invoked machine; if it can't be invoked, report why and return None."""
         report, where, wanted = self.reports[name], (*invoke.where, "behavior"), invoke.behavior
         if wanted in self.way:
             way = " → ".join(f"`{n}`" for n in (*self.way[self.way.index(wanted) :], wanted))
@@ -86,7 +87,7 @@ class _Linker:
         return None
 
     def check_input(self, name: str, invoke: Invoke, machine: MachineDefinition) -> None:
-        """Report input that the invoked behaviour has no key for, or that can't be of the key's type."""
+        """Report input that the invoked behaviour has no key for, or that does not fit the key's type."""
         report, checks, called = self.reports[name], type_checks(machine), invoke.behavior
         for key, value in invoke.input.items():
             where, check = (*invoke.where, "input", key), checks.get(key)

@@ -1,4 +1,4 @@
-"""What was looked at beside the files of a project: what is kept of them holds as long as all of it is as it was."""
+"""Record what a result depends on besides the files of a project, so that it is reused only while all is unchanged."""
 
 import os
 import stat
@@ -12,23 +12,23 @@ from lumen.project.kept_contents import SETTLED_NS
 from lumen.project.packaged_models import package_file
 
 Seen = tuple[str | int, ...]
-"""Where a path leads, and what tells what is there from what was there before; the times come last [ns]."""
+"""The target of a path and the status of the file there; its last two elements are times [ns]."""
 
 
 class Looks:
-    """Each path with what was there, and each file of a Python package with where it was."""
+    """The state of each path that was looked at, and the path of each file of a Python package."""
 
     def __init__(self) -> None:
         self._began = time.time_ns()
         self._paths: dict[str, Seen] = {}
         self._packages: dict[str, str] = {}
         self._folders: dict[str, str] = {}
-        """Where folders lead that were looked into."""
+        """The resolved paths of folders that were looked into."""
 
     def at(self, path: Path) -> str:
-        """Say that what comes out depends on what is at this path: a file, which ones are in a folder, or nothing.
+        """Record that the result depends on this path: on the file there, on the list of a folder, or on its absence.
 
-        Return where the path leads, empty for a name that no file can have.
+        Return the resolved path, empty for a name that no file can have.
         """
         name = os.path.abspath(path)
         if name not in self._paths:
@@ -36,7 +36,7 @@ class Looks:
         return str(self._paths[name][0])
 
     def package_file(self, mjcf: str) -> Path | None:
-        """The file of an installed package that `mjcf` names, None where there is none; it is looked at."""
+        """Return the file of an installed package that `mjcf` names, or None; record that the result depends on it."""
         path = package_file(mjcf)
         self._packages[mjcf] = str(path or "")
         if path:
@@ -44,7 +44,7 @@ class Looks:
         return path
 
     def around(self) -> None:
-        """Look at which time zones there are, and at the libraries that were imported."""
+        """Record the time zones and the imported libraries as dependencies."""
         from zoneinfo import TZPATH
 
         libraries = {name.partition(".")[0] for name in sys.modules} - sys.stdlib_module_names
@@ -53,7 +53,7 @@ class Looks:
             self.at(Path(path))
 
     def settled(self) -> bool:
-        """Whether the next change of each certainly shows in its times."""
+        """Return True if the next change of any recorded path will certainly alter its times."""
         times = (int(time) for _, *status in self._paths.values() for time in status[-2:])
         return max(times, default=0) + SETTLED_NS < self._began
 
@@ -62,7 +62,7 @@ class Looks:
 
 
 def unchanged(looks: Mapping[str, Mapping[str, Sequence[str | int]]]) -> bool:
-    """Whether everything is as it was when these looks, as JSON, were taken."""
+    """Return True if nothing has changed since these looks, given as JSON, were recorded."""
     folders: dict[str, str] = {}
     return all(list(_seen(Path(path), folders)) == list(seen) for path, seen in looks["paths"].items()) and all(
         str(package_file(mjcf) or "") == found for mjcf, found in looks["packages"].items()
@@ -70,7 +70,7 @@ def unchanged(looks: Mapping[str, Mapping[str, Sequence[str | int]]]) -> bool:
 
 
 def _seen(path: Path, folders: dict[str, str]) -> Seen:
-    """Of what can't be asked about, or is not there, only where it would be; `folders` remembers where they lead."""
+    """Return the state of a path; only its target if nothing is there. `folders` caches resolved folders."""
     try:
         real = _real(path, folders)
         status = os.stat(real)
@@ -82,7 +82,7 @@ def _seen(path: Path, folders: dict[str, str]) -> Seen:
 
 
 def _real(path: Path, folders: dict[str, str]) -> str:
-    """Return where a path leads. What is no link is looked at once, not each of the folders around it."""
+    """Return the resolved path. A path that is not a link is checked with one call instead of one for each folder."""
     if not path.is_absolute() or ".." in path.parts or not path.name:
         return os.path.realpath(path)
     folder = str(path.parent)

@@ -23,7 +23,7 @@ _HEADING = re.compile(r"#+\s+(\S+)\s*")
 
 
 def parse_markdown(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
-    """The document of a Markdown file, or None, and what is wrong with it; never raises for what the file holds."""
+    """Return the document of a Markdown file, or None, and its faults. No content of the file raises an error."""
     lines = lines_of(content.decode("utf-8-sig", "replace"))
     text = "\n".join(lines)
     end = next((i for i, line in enumerate(lines) if i and line.rstrip() == FENCE), 0)
@@ -46,7 +46,7 @@ def parse_markdown(file: str, content: bytes) -> tuple[Document | None, list[Dia
 def _answers(
     file: str, lines: list[str], begin: int
 ) -> tuple[dict[str, str], dict[NodePath, NodeSpan], list[Diagnostic]]:
-    """The paragraphs beneath each heading, by language, and where they stand."""
+    """Return the paragraphs beneath each heading by language, their places, and the faults found."""
     answer: dict[str, str] = {}
     spans: dict[NodePath, NodeSpan] = {}
     found: list[Diagnostic] = []

@@ -1,7 +1,7 @@
-"""What was worked out of the same content before: of a project's files one is saved at a time.
+"""Reuse results that were computed from the same content: usually only one file of a project changes at a time.
 
-Only the last result of each kind is kept. Whoever asks again shares it with all others, so nobody may change it. All of
-it can be packed for a process that comes later.
+Only the last result of each slot is kept. All callers share it, so don't change it. The results can be packed for
+a later process.
 """
 
 import pickle
@@ -14,13 +14,13 @@ MAX_MEMOIZED = 10_000
 
 _last: dict[Hashable, tuple[Any, Any]] = {}
 _unpacked: set[Hashable] = set()
-"""The slots that still hold what was unpacked."""
+"""The slots whose content was unpacked and not replaced since."""
 _asked: set[Hashable] = set()
-"""The slots that somebody asked for since `begin`."""
+"""The slots that were requested since `begin`."""
 
 
 class Same:
-    """Equal to another only where both hold the very same object: of what never changes, and is long to compare."""
+    """Equal to another one only if both hold the very same object; for immutable values that are slow to compare."""
 
     __slots__ = ("value",)
 
@@ -35,12 +35,12 @@ class Same:
 
 
 def last(slot: Hashable) -> Any:
-    """What was made in this slot last, whatever it was given; None where nothing was."""
+    """Return the last result in this slot, whatever it was computed from; None if the slot is empty."""
     return _last.get(slot, (None, None))[1]
 
 
 def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
-    """What `make` made in this slot when last given an equal `given`, else what it makes now.
+    """Return the last result of `make` in this slot if `given` was equal then, else compute it anew.
 
     `given` is all that the result depends on.
     """
@@ -60,22 +60,22 @@ def memoize(slot: Hashable, given: Any, make: Callable[[], T]) -> T:
 
 
 def begin() -> None:
-    """From now on note what is asked for."""
+    """Forget which slots were requested, to record them from now on."""
     _asked.clear()
 
 
 def packed() -> bytes:
-    """What is remembered in the slots that were asked for since `begin`."""
+    """Return the contents of the slots that were requested since `begin`, as bytes for `unpack`."""
     return pickle.dumps({slot: _last[slot] for slot in _asked if slot in _last}, pickle.HIGHEST_PROTOCOL)
 
 
 def unpack(packed: bytes) -> None:
-    """Remember what was packed by the same engine; raises any exception where it is something else."""
+    """Load results that the same engine has packed. Raises any exception for other bytes."""
     remembered = pickle.loads(packed)
     _last.update(remembered)
     _unpacked.update(remembered)
 
 
 def newly_made() -> float:
-    """The part of the slots that were asked for since `begin` whose content was not unpacked (0..1)."""
+    """Return the share of the slots requested since `begin` that were not unpacked (0..1)."""
     return len(_asked - _unpacked) / len(_asked) if _asked else 0.0

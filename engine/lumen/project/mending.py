@@ -1,8 +1,8 @@
-"""Where a file that is not YAML went wrong: the change to it that lets a reader get furthest.
+"""Find the mistake in a file that is not YAML: the change that lets a parser get furthest.
 
-A reader notices late: an unclosed quote some lines on, a state at the wrong depth where the next one begins. So what
-may have slipped is looked for in the lines before, and each is tried: what makes the file YAML was the mistake. A
-mended text has as many lines as it had.
+A parser notices late: an unclosed quote some lines on, a state at the wrong depth where the next one begins. So
+possible slips are searched in the lines before, and each correction is tried: the one that makes the file valid YAML
+was the mistake. A corrected text has as many lines as before.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -19,35 +19,35 @@ from lumen.project.slips import Slip, brackets, colons, flows, not_closed, quote
 from lumen.project.yaml_composer import shielded
 
 MAX_MENDS = 120
-"""Changes that are tried."""
+"""The maximum number of changes that are tried."""
 
 MAX_JUDGED = 12
-"""Changes that make a file YAML and are compared by what its schema refuses after them."""
+"""The maximum number of changes that make a file valid YAML and are compared by what its schema then refuses."""
 
 MAX_CHARACTERS = 200_000
-"""Of a text in which it is looked for."""
+"""The maximum length of a text that is searched [characters]."""
 
 MAX_READ = 1_000_000
-"""Characters that are read in all to try changes."""
+"""The maximum number of characters parsed for all trials together."""
 
 MAX_LINE = 400
-"""Characters of a line in which it is looked for: people write shorter ones."""
+"""The maximum length of a line that is searched [characters]: people write shorter ones."""
 
 LINES_BACK = 3
-"""Lines before the one at which a reader stopped where a sign may have slipped."""
+"""The number of lines before the parser's error in which a wrong sign is searched."""
 
 QUOTED_LINES_BACK = 400
-"""Lines before it where a quote or a bracket may have been opened."""
+"""The number of lines before the parser's error in which an open quote or bracket is searched."""
 
 
 def mistake(
     text: str, row: int, failed: int, misfits: Callable[[str], int | None] | None = None
 ) -> tuple[Slip, str] | None:
-    """What slipped at or before the line `row`, and the text as it was meant; None where nothing lets a reader get
-    further than to the line `failed` (both count from 0).
+    """Return the slip at or before the line `row`, and the corrected text; None if no change helps.
 
-    `misfits` counts what the file's schema refuses in a text. Of several changes that make the file YAML, the one with
-    the fewest misfits was the mistake.
+    A change helps if a parser gets further than to the line `failed`; both lines count from 0. `misfits` counts what
+    the file's schema refuses in a text. Of several changes that make the file valid YAML, the one with the fewest
+    misfits is returned.
     """
     if len(text) > MAX_CHARACTERS:
         return None
@@ -82,7 +82,7 @@ def mistake(
 
 
 def failure(text: str) -> int | None:
-    """The index of the line at which a reader of that text stops; None where it is YAML."""
+    """Return the index of the line at which a parser stops; None if the text is valid YAML."""
     loader, depth = yaml.CSafeLoader(shielded(text)[0]), 0
     try:
         while loader.check_event():
@@ -101,7 +101,7 @@ def failure(text: str) -> int | None:
 
 
 def _candidates(lines: Sequence[str], row: int) -> Iterator[Slip]:
-    """What may have slipped, the likeliest first: a sign, a quote, a bracket, a colon, a comma, the indentation."""
+    """Yield possible slips, the likeliest first: a sign, a quote, a bracket, a colon, a comma, the indentation."""
     near = [i for i in range(row, max(row - LINES_BACK, 0) - 1, -1) if len(lines[i]) <= MAX_LINE]
     far = [i for i in range(row, max(row - QUOTED_LINES_BACK, 0) - 1, -1) if len(lines[i]) <= MAX_LINE]
     for i in near:
@@ -120,7 +120,7 @@ def _candidates(lines: Sequence[str], row: int) -> Iterator[Slip]:
 
 
 def _open(lines: Sequence[str], row: int) -> Iterator[Slip]:
-    """A bracket of a line further up that is not closed in any line before the one at which a reader stopped."""
+    """Yield slips for brackets further up that no line before the error closes."""
     end = row - 1
     while end > 0 and not lines[end].strip():
         end -= 1

@@ -1,4 +1,4 @@
-"""The fields of a message, as its JSON Schema declares them, for ways that carry bare values in an order."""
+"""The fields of a message, as its JSON Schema declares them, for transports that carry bare values in an order."""
 
 from collections.abc import Mapping
 from enum import StrEnum
@@ -8,7 +8,7 @@ from lumen.language.numbers import is_number
 
 
 class FieldKind(StrEnum):
-    """What a field holds, where that is one certain kind of value; `MIXED` for everything else."""
+    """The type of a field, if the schema allows only one; else `MIXED`."""
 
     NUMBER = "number"
     INTEGER = "integer"
@@ -18,7 +18,7 @@ class FieldKind(StrEnum):
 
 
 class SchemaField(NamedTuple):
-    """A property of a message's schema, and the range of its numbers where it says one."""
+    """A property of a message's schema, and the range of its numbers if the schema declares one."""
 
     name: str
     kind: FieldKind
@@ -27,7 +27,7 @@ class SchemaField(NamedTuple):
 
 
 def message_fields(schema: Mapping[str, Any] | None) -> Mapping[str, SchemaField]:
-    """The fields under their names, in the order of the schema; none where there is no schema."""
+    """Return the fields by name, in the order of the schema; none if there is no schema."""
     rows = (schema or {}).get("properties")
     return {name: _field(name, row) for name, row in rows.items()} if isinstance(rows, Mapping) else {}
 

@@ -25,17 +25,17 @@ FOREIGN_REFERENCE = Code("foreign-reference", "routes", ERROR, "a message schema
 SCHEMA_SUFFIX = ".schema.json"
 
 MAX_INDEX_DIGITS = 10
-"""Digits of a place in a list, in a reference."""
+"""The maximum number of digits of a list index in a reference."""
 
 _IN_PLACE = ("allOf", "anyOf", "oneOf", "not", "if", "then", "else", "$ref")
-"""Keywords whose schemas look at the same value as the one they stand in."""
+"""Keywords whose schemas apply to the same value as the schema that contains them."""
 
 
 @lru_cache(maxsize=1_024)
 def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, tuple[Diagnostic, ...]]:
-    """The JSON Schema in `content`, or None, and what is wrong with it; never raises for what the file holds.
+    """Return the JSON Schema in `content`, or None, and its faults. No content of the file raises an error.
 
-    It depends on nothing else, so that what did not change is not read again.
+    The result depends on nothing else, so that it is cached.
     """
     try:
         data = json.loads(content)
@@ -50,7 +50,7 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
     document, found = parse(file, content.replace(b"\t", b" "))  # JSON may be indented with tabs
     report = DocumentReport(document or Document(file, data))
     report.diagnostics += found
-    data = document.data if document and found else data  # of a key that stands twice, JSON keeps the second
+    data = document.data if document and found else data  # of a duplicate key, JSON keeps the second
     if isinstance(data, dict):
         examine(data, report)
     else:
@@ -59,7 +59,7 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
 
 
 def _plainly_sound(data: Any, content: bytes) -> bool:
-    """Whether nothing is to be said of a schema, so that nobody needs its places: they take most of the time."""
+    """Return True if a schema has no fault, so that it need not be parsed with places, which is slow."""
     try:
         json.loads(content, object_pairs_hook=_each_once)
         if not isinstance(data, dict):
@@ -70,7 +70,7 @@ def _plainly_sound(data: Any, content: bytes) -> bool:
 
 
 def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """The map of these keys and values; raises KeyError where a key stands twice."""
+    """Return the map of these keys and values. Raises KeyError if a key occurs twice."""
     found = dict(pairs)
     if len(found) < len(pairs):
         raise KeyError
@@ -78,7 +78,7 @@ def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def examine(schema: Any, report: DocumentReport, where: NodePath = ()) -> bool:
-    """Whether the JSON Schema at `where` in the report's document is sound; what is wrong with it is reported."""
+    """Return True if the JSON Schema at `where` in the report's document is sound; report its faults."""
     before = len(report.diagnostics)
     for found in schema_faults(schema):
         report(found.code, (*where, *found.path), found.message, hint=found.hint, key=found.key)
@@ -88,7 +88,7 @@ def examine(schema: Any, report: DocumentReport, where: NodePath = ()) -> bool:
 
 
 def _refer(data: Any, report: DocumentReport, where: NodePath) -> None:
-    """What the schema of schemas can't tell: patterns, and where references lead."""
+    """Report faults that the metaschema can't express: invalid patterns and references."""
     for inner, key, text in _texts(data):
         path = (*where, *inner)
         if key == "pattern" or inner[-2:-1] == ("patternProperties",):
@@ -106,7 +106,7 @@ def _refer(data: Any, report: DocumentReport, where: NodePath) -> None:
 
 
 def _texts(data: Any) -> Iterator[tuple[NodePath, str, str]]:
-    """Every text of a schema under its key, and the keys of `patternProperties` as texts."""
+    """Yield every text of a schema with its path and key, and the keys of `patternProperties` as texts."""
     waiting: list[tuple[NodePath, Any]] = [((), data)]
     while waiting:
         path, item = waiting.pop()
@@ -131,7 +131,7 @@ def _pattern(path: NodePath, text: str, report: DocumentReport) -> None:
 
 
 def _target(data: Any, reference: str) -> Any:
-    """The schema that a JSON pointer or an anchor of this file means, None where there is none."""
+    """Return the schema that a JSON pointer or an anchor of this file refers to; None if it is absent."""
     if reference != "#" and not reference.startswith("#/"):
         named = (item for item in _maps(data) if item.get("$anchor") == reference[1:])
         return next(named, None)
@@ -151,7 +151,7 @@ def _maps(data: Any) -> Iterator[dict[str, Any]]:
 
 
 def _circles(data: Any, reference: str) -> bool:
-    """Whether one gets from a reference back to it without going deeper into the value."""
+    """Return True if a reference leads back to itself without going deeper into the value."""
     seen: set[str] = set()
     waiting = [_target(data, reference)]
     while waiting:

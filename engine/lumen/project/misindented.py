@@ -1,9 +1,9 @@
-"""Blocks at the wrong depth in a file that is YAML: the move after which the schema accepts more of the file.
+"""Find blocks at the wrong depth in a valid YAML file: the move after which the schema accepts more of the file.
 
-A key one level too far out is a key of something else, where it may mean nothing, or another thing: `onDone` among
-the states is a state. The schema's own words for that would mislead. So blocks near a finding are moved, and if all
-that goes wrong after a move also went wrong before it, and less goes wrong, the indentation was the mistake. Of the
-moves that mend the most the shortest one is the hint; if two are equally short, in and out, the hint names both.
+A key one level too far out belongs to another map, and may be unknown there or mean something else: `onDone` among the
+states is a state. A message about that would mislead. So blocks near a finding are moved. If a move removes complaints
+and adds none, the indentation was the mistake. Of the moves that remove the most, the shortest one becomes the hint; if
+two are equally short, in and out, the hint names both.
 """
 
 import re
@@ -18,22 +18,22 @@ from lumen.project.document import Document
 from lumen.project.indentation import LineMove, holder, indent, is_content, move_hint, shifted
 
 MAX_TRIES = 12
-"""Moves that are tried in one file."""
+"""The maximum number of moves that are tried in one file."""
 
 MAX_COMPLAINTS = 24
-"""Complaints of one file for which moves are sought: each takes a walk up the lines."""
+"""The maximum number of complaints of a file for which moves are sought: each needs a search of the lines above."""
 
 MAX_CHARACTERS = 300_000
-"""Characters of all trials of one file together: they take less than a second of processor time, in an editor too."""
+"""The maximum characters of all trials of a file: less than a second of processor time, as an editor needs."""
 
 MAX_LEVELS = 3
-"""Levels by which a block may be too far in, or out."""
+"""The maximum number of levels by which a block may be too far in, or out."""
 
 _CODES = frozenset((MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE))
 _BEGINNING = re.compile(r"( *)(- +)?(?:([^\s\"'#\[\]{},:][^\s:]*):(?= |$))?")
 
 CheckedAgain = Callable[[str], list[Complaint] | None]
-"""All complaints about the text of a file; None if it is not YAML."""
+"""Returns all complaints about the text of a file; None if it is not YAML."""
 
 
 _What = tuple[str, str, str]
@@ -47,7 +47,7 @@ class KeyNames(NamedTuple):
 
 
 def key_names(schema: Mapping[str, Any]) -> KeyNames:
-    """Collect the names of a schema's keys."""
+    """Return the names of a schema's keys."""
     declared, free, waiting = set[str](), set[str](), [schema]
     while waiting:
         item = waiting.pop()
@@ -77,7 +77,7 @@ def _is_open(schema: Any, root: Mapping[str, Any]) -> bool:
 def misindented(
     document: Document, found: Sequence[Complaint], names: KeyNames, judge: CheckedAgain
 ) -> Mapping[Complaint, str]:
-    """The complaints that come from a wrong depth: the one to report has the hint, those that follow from it none."""
+    """Return the complaints that a wrong depth caused: the one to report with its hint, the others without one."""
     lines, before = lines_of(document.text), Counter(map(_what, found))
     if not document.spans:
         return {}
@@ -119,12 +119,12 @@ def misindented(
 
 
 def _is_opposite(move: LineMove, other: LineMove) -> bool:
-    """Whether both move the same line by as many spaces, one in and one out."""
+    """Return True if both move the same line by the same number of spaces, one in and one out."""
     return move.rows[0] == other.rows[0] and move.shift == -other.shift
 
 
 def _first(those: Sequence[Complaint], move: LineMove, document: Document, lines: Sequence[str]) -> Complaint:
-    """The complaint to report of those that a move solves: about an empty key, else about the line that moves."""
+    """Return the complaint to report of those that a move removes: about an empty key, else about the moved line."""
     empty = (c for c in those if _is_empty(c, document))
     missing = (c for c in those if c.missing)
     near = (c for c in those if move.rows[0] in _rows(c, document, lines)[:1])
@@ -132,12 +132,12 @@ def _first(those: Sequence[Complaint], move: LineMove, document: Document, lines
 
 
 def _what(complaint: Complaint) -> _What:
-    """The complaint without the place where it is in the file, which a move changes."""
+    """Return a complaint without its place in the file, which a move changes."""
     return complaint.code, complaint.message, complaint.missing
 
 
 def _is_empty(complaint: Complaint, document: Document) -> bool:
-    """Whether it is about a value that is missing, since its lines are too far out."""
+    """Return True if the complaint is about a value that is missing because its lines are too far out."""
     if complaint.code != WRONG_TYPE or complaint.path not in document.spans:
         return False
     value = document.spans[complaint.path].value
@@ -145,7 +145,7 @@ def _is_empty(complaint: Complaint, document: Document) -> bool:
 
 
 def _rows(complaint: Complaint, document: Document, lines: Sequence[str]) -> list[int]:
-    """The lines in which the keys begin that it may be about, the innermost first."""
+    """Return the lines in which the keys begin that a complaint may be about, the innermost first."""
     paths: list[NodePath] = [
         complaint.path[:n] for n in range(len(complaint.path), max(len(complaint.path) - 3, 0), -1)
     ]
@@ -162,7 +162,7 @@ def _rows(complaint: Complaint, document: Document, lines: Sequence[str]) -> lis
 def _moves(
     complaint: Complaint, document: Document, lines: Sequence[str], names: KeyNames, complained: set[int]
 ) -> Iterator[LineMove]:
-    """The moves that may solve a complaint, the likeliest first."""
+    """Yield the moves that may remove a complaint, the likeliest first."""
     rows = _rows(complaint, document, lines)
     empty = bool(rows) and _is_empty(complaint, document)
     if empty:
@@ -185,7 +185,7 @@ def _moves(
 
 
 def _block(lines: Sequence[str], row: int) -> tuple[int, ...]:
-    """That line and the lines below it that are further in."""
+    """Return that line and the lines below it that are further in."""
     end = row + 1
     for i in range(row + 1, len(lines)):
         if is_content(lines[i]):
@@ -198,12 +198,12 @@ def _block(lines: Sequence[str], row: int) -> tuple[int, ...]:
 
 
 def _is_item_of(lines: Sequence[str], row: int, i: int) -> bool:
-    """Whether the line `i` is an item of the list of a key in the same column."""
+    """Return True if the line `i` is an item of the list of a key in the same column."""
     return indent(lines[i]) == indent(lines[row]) and _starts(lines[i])[1] > 0 and lines[row].rstrip().endswith(":")
 
 
 def _group(lines: Sequence[str], row: int, complained: set[int]) -> tuple[int, ...]:
-    """The block of that line and those after it in the same column that are complained of as well."""
+    """Return the block of that line and the following blocks in the same column that have complaints too."""
     rows = _block(lines, row)
     while True:
         following = next((i for i in range(rows[-1] + 1, len(lines)) if is_content(lines[i])), None)
@@ -213,7 +213,7 @@ def _group(lines: Sequence[str], row: int, complained: set[int]) -> tuple[int, .
 
 
 def _depths(lines: Sequence[str], row: int) -> list[int]:
-    """The depths that may have been meant for that line, the nearest first; of two equally near the inner one."""
+    """Return the depths that may have been meant for a line, the nearest first; of two as near, the inner one."""
     here, inner, outer = indent(lines[row]), set[int](), set[int]()
     lowest = here
     for i in range(row - 1, -1, -1):
@@ -235,16 +235,16 @@ def _depths(lines: Sequence[str], row: int) -> list[int]:
 
 
 def _starts(line: str) -> tuple[int, int]:
-    """How many spaces a line begins with, and how wide the hyphen of its item is, with its spaces."""
+    """Return how many spaces a line begins with, and the width of its list hyphen with the spaces after it."""
     found = _BEGINNING.match(line)
     assert found
     return len(found[1]), len(found[2] or "")
 
 
 def _is_sensible(lines: Sequence[str], row: int, depth: int, names: KeyNames, empty: bool, about: NodePath) -> bool:
-    """Whether the schema's keys stay among each other, and the author's own names too.
+    """Return True if a move keeps the schema's keys in the schema's maps, and the author's names in theirs.
 
-    `about` is the key of the complaint: if it is `empty`, the names that belong under it may be any.
+    `about` is the last key of the complaint; if that key is `empty`, any name may move under it.
     """
     found = _BEGINNING.match(lines[row])
     assert found

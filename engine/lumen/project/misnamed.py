@@ -56,7 +56,7 @@ def _listed(root: Path, folder: str) -> list[str]:
 
 
 def _is_inside(root: Path, folder: str) -> bool:
-    """Whether a folder lies in the project, wherever links lead."""
+    """Return True if a folder lies in the project after links are resolved."""
     parts = PurePosixPath(folder).parts
     if not any((root / "/".join(parts[: i + 1])).is_symlink() for i in range(len(parts))):
         return True

@@ -1,4 +1,4 @@
-"""Files of one kind that stand in the folder of another: told once, not key by key."""
+"""Find files in the folder of another kind of file, and report them once instead of key by key."""
 
 from collections.abc import Mapping
 from pathlib import PurePosixPath
@@ -12,9 +12,9 @@ MISPLACED_FILE = Code("misplaced-file", "text", ERROR, "a file is in the folder 
 
 
 class _Kind(NamedTuple):
-    """What such a file is called, and the keys by which one knows it, or else a single one.
+    """The name of a kind of file, and the keys that identify it: all of `marks`, or `alone`.
 
-    Of a kind that has `only` keys that others have as well, one knows it by their being alone.
+    If a kind has only keys that others have too, a file is of that kind if it has no keys but `only`.
     """
 
     name: str
@@ -27,11 +27,11 @@ class _Kind(NamedTuple):
         return self.only or self.marks | {self.alone}
 
     def owns(self, data: Mapping[str, Any]) -> bool:
-        """Whether data is of this kind, at least in part."""
+        """Return True if data has at least one key of this kind; with `only`, if it has no others."""
         return data.keys() <= self.only if self.only else not self.keys.isdisjoint(data)
 
     def is_meant(self, data: Mapping[str, Any]) -> bool:
-        """Whether data, which belongs somewhere else, is of this kind."""
+        """Return True if data from another folder is of this kind."""
         if self.only:
             return self.owns(data) and bool(data)
         return (bool(self.marks) and self.marks <= data.keys()) or self.alone in data
@@ -62,13 +62,13 @@ _KINDS: Mapping[str, _Kind] = {
 
 
 def _home(kind: str) -> str:
-    """Return where a file of a kind belongs, in words."""
+    """Return the folder for a file of a kind, in words."""
     folder = next((path for path, other in KINDS.items() if other == kind), "")
     return f"{folder}/" if folder else f"the project's folder, as {kind}.yaml"
 
 
 def misplaced(data: Any, kind: str, report: DocumentReport) -> bool:
-    """Whether the data is that of another kind of file, and has nothing that makes one of this kind; it is reported."""
+    """Report data that is of another kind of file and has no key of this kind; return True if it is."""
     own = _KINDS[kind]
     if not isinstance(data, Mapping) or own.owns(data):
         return False

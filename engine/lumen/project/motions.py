@@ -1,4 +1,4 @@
-"""A motion file, `motions/NAME.yaml`, from its plain data to a `Motion`."""
+"""Build a motion from the plain data of a motion file, `motions/NAME.yaml`."""
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import fields
@@ -17,10 +17,10 @@ from lumen.project.poses import PoseReader
 from lumen.project.units import joint_units, seconds
 
 DEFAULT_POSTURE = "Stand"
-"""The posture that a motion begins in where its file does not say."""
+"""The posture in which a motion begins if its file does not name one."""
 
 MAX_KEYFRAMES = 20_000
-"""In one list; the schema says so too, but reads every one of them before it does."""
+"""The maximum length of a list of keyframes; the schema has the same limit, but checks every keyframe first."""
 
 
 def build_motion(
@@ -32,9 +32,9 @@ def build_motion(
     motions: Mapping[str, MotionDefinition] | None = None,
     broken: Collection[str] = (),
 ) -> MotionDefinition | None:
-    """The motion that the data of `motions/NAME.yaml` describes, None where it moves nothing.
+    """Return the motion that the data of `motions/NAME.yaml` describes; None if it moves nothing.
 
-    `motions` are those that it may `play`, built before it; `broken` are names of files that can't be.
+    `motions` are those that it may `play`, built before it; `broken` are names of files that can't be built.
     """
     if not isinstance(data, Mapping) or not data.get("keyframes"):
         return None
@@ -60,9 +60,9 @@ def build_motions(
     files: Mapping[str, tuple[Any, DocumentReport]],
     body: Body,
 ) -> dict[str, MotionDefinition]:
-    """Every motion of a project that can be built, from the data and the report of each by its name.
+    """Return every motion of a project that can be built, from the data and the report of each by its name.
 
-    Motions are built after those that they play; a circle of them is reported where it closes.
+    Motions are built after those that they play; if they form a circle, the play that closes it is reported.
     """
     plays = {name: dict(_played(data)) for name, (data, _) in files.items()}
     order, circles = _order({name: [p for p in played if p in files and p != name] for name, played in plays.items()})
@@ -81,7 +81,7 @@ def build_motions(
 
 
 def countable(data: Any, report: DocumentReport) -> bool:
-    """Whether there are few enough keyframes to be read at all; where not, it is said."""
+    """Return True if there are few enough keyframes to be read; report it if there are too many."""
     if not isinstance(data, Mapping) or not isinstance(data.get("keyframes"), list):
         return True
     if len(data["keyframes"]) <= MAX_KEYFRAMES:
@@ -98,7 +98,7 @@ def countable(data: Any, report: DocumentReport) -> bool:
 
 
 def _finished(part: MotionDefinition, data: Mapping[str, Any], poses: PoseReader, name: str) -> MotionDefinition:
-    """The whole motion: what trails, its speed, its side, the way back and where it comes from."""
+    """Return the whole motion, with trailing joints, speed, mirroring, return to its end posture, and origin."""
     part = trailing(part, poses.lags(data.get("trails") or {}, ("trails",)))
     if "speed" in data and poses.number(data["speed"], ("speed",)):
         part = at_speed(part, data["speed"])
@@ -115,7 +115,7 @@ def _finished(part: MotionDefinition, data: Mapping[str, Any], poses: PoseReader
 
 
 def _played(data: Any) -> Iterator[tuple[str, NodePath]]:
-    """Every motion that a file plays, and where."""
+    """Yield the name of every motion that a file plays, with its path."""
     waiting: list[tuple[Any, NodePath]] = [(data, ())]
     while waiting:
         item, path = waiting.pop()
@@ -127,7 +127,7 @@ def _played(data: Any) -> Iterator[tuple[str, NodePath]]:
 
 
 def _order(plays: dict[str, list[str]]) -> tuple[list[str], list[tuple[str, str]]]:
-    """The names, each after those that it plays, and the steps that had to be taken out because they close a circle."""
+    """Return the names, each after those that it plays, and the pairs that were removed because they close a circle."""
     circles: list[tuple[str, str]] = []
     while True:
         try:

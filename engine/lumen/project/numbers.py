@@ -1,4 +1,4 @@
-"""Numbers that nothing can be counted with: what YAML calls `.nan` and `.inf`, and what no float tells from them."""
+"""Check for numbers that can't be calculated with: `.nan` and `.inf` of YAML, and numbers beyond a float's range."""
 
 from collections.abc import Callable, Iterator, Mapping
 from math import isfinite, isinf, isnan
@@ -16,11 +16,11 @@ NOT_FINITE = Code("not-finite", "controllers", ERROR, "a number is infinite wher
 
 
 LEAST_NUMBER, GREATEST_NUMBER = 1e-12, 1e12
-"""A number of a controller is 0, or its size lies between these: their squares and quotients are floats as well."""
+"""A number of a controller is 0, or its size is within this range, so that squares and quotients are finite floats."""
 
 
 def finite(value: float, report: DocumentReport, path: NodePath) -> bool:
-    """Whether that is an ordinary number; reported where it is not."""
+    """Return True if a number is finite; report it if it is not."""
     try:
         sound = isfinite(value)
     except OverflowError:
@@ -33,9 +33,9 @@ def finite(value: float, report: DocumentReport, path: NodePath) -> bool:
 
 
 def without_extremes(data: Any, report: DocumentReport, endless: Callable[[NodePath], bool]) -> Any:
-    """The data of the report's document without the keys whose numbers can't be counted with, each of them reported.
+    """Return the data of the report's document without keys whose numbers can't be used, each of them reported.
 
-    `endless` tells where a number may be infinite.
+    `endless` returns True for the paths at which a number may be infinite.
     """
     doomed = {_key(path) for path, number in numbers_in(data, ()) if not _usable(number, report, path, endless)}
     if not doomed:
@@ -71,7 +71,7 @@ def numbers_in(data: Any, path: NodePath) -> Iterator[tuple[NodePath, float]]:
 
 
 def _key(path: NodePath) -> NodePath:
-    """The key that a number stands under: a list without it would say something else."""
+    """Return the path of the key that contains a number; taking it out of a list would change the list's meaning."""
     while not isinstance(path[-1], str):
         path = path[:-1]
     return path

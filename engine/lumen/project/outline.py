@@ -1,4 +1,4 @@
-"""The tree of a behaviour's states before anything in them is read, so that every target can be resolved."""
+"""The tree of a behaviour's states, made before their contents are read, so that every target can be resolved."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from lumen.language.machines import StateKind
 from lumen.project.document_report import DocumentReport
 
 THIS = "."
-"""The target that is the state itself: it is left and entered again."""
+"""The target that is the state itself, which is left and entered again."""
 
 DUPLICATE_ID = Code(
     "duplicate-id", "statecharts", ERROR, "two states, or two behaviours that are invoked at once, have the same id"
@@ -19,7 +19,7 @@ DUPLICATE_ID = Code(
 
 @dataclass(slots=True)
 class OutlinedState:
-    """A state's place in the tree, and what the file says of it."""
+    """A state's place in the tree, and its data in the file."""
 
     path: str
     parent: "OutlinedState | None"
@@ -30,7 +30,7 @@ class OutlinedState:
     children: "dict[str, OutlinedState]" = field(default_factory=dict)
 
     def lies_in(self, other: "OutlinedState") -> bool:
-        """Whether it is the other one or anywhere below it."""
+        """Return True if this is the other state or lies anywhere below it."""
         entry: OutlinedState | None = self
         while entry is not None and entry is not other:
             entry = entry.parent
@@ -42,7 +42,7 @@ class OutlinedState:
 
     @property
     def title(self) -> str:
-        """What a message calls it."""
+        """The name of the state in messages."""
         return f"`{self.path}`" if self.path else "the behaviour itself"
 
 
@@ -59,10 +59,10 @@ class BehaviorOutline:
             self._alias(entry)
 
     def resolve(self, source: OutlinedState, target: str, where: NodePath, written: str = "") -> OutlinedState | None:
-        """The state that `target` means in a transition of `source`; reported where there is none.
+        """Return the state that `target` refers to in a transition of `source`; if it does not exist, report that.
 
-        `written` is how the file has it, where that differs. A state that was itself reported as broken is not missed
-        a second time.
+        `written` is the target as the file has it, if that differs. A state that was itself reported as broken is not
+        reported again.
         """
         if target == THIS:
             found: OutlinedState | None = source
@@ -79,7 +79,7 @@ class BehaviorOutline:
     def _unknown(self, source: OutlinedState, target: str, where: NodePath, written: str) -> None:
         self.report.missed.add(target.rpartition(".")[2].lstrip("#"))
         message = f"there is no state `{written}` to go to from {source.title}"
-        if len(self.report.missed) > MAX_COMPARED_NAMES:  # what was meant by each would take long to find out
+        if len(self.report.missed) > MAX_COMPARED_NAMES:  # searching a suggestion for each would take long
             self.report(UNKNOWN_STATE, where, message, hint="write the name of a state in this file")
             return
         known = self._known(source, target)
@@ -94,7 +94,7 @@ class BehaviorOutline:
         self.report(UNKNOWN_STATE, where, message, hint=hint, related=related, cause=cause, root=root)
 
     def _known(self, source: OutlinedState, target: str) -> list[str]:
-        """What could have been written in place of a target."""
+        """Return the targets that could have been written in place of `target`."""
         if target.startswith("#"):
             return [f"#{e.name}" for e in self.entries.values() if e.name]
         children = [f".{key}" for key in source.children]
@@ -122,7 +122,7 @@ class BehaviorOutline:
         return did_you_mean(target, known)
 
     def _loop(self, source: OutlinedState, key: str) -> OutlinedState | None:
-        """The outermost state with a `for` around the state of that key, where the source is not in it."""
+        """Return the outermost state with a `for` around the state of that key, unless `source` is inside it too."""
         inner = [e for e in self.entries.values() if e.path.rpartition(".")[2] == key]
         state, found = (inner[0].parent if inner else None), None
         while state is not None:
@@ -155,12 +155,12 @@ class BehaviorOutline:
         if first is None or first is entry or entry.parent is None:
             self.aliases.setdefault(alias, entry)
         elif first.parent is None and first is self.aliases.get(alias):
-            self.aliases[alias] = entry  # the behaviour's own name gives way to a state's
+            self.aliases[alias] = entry  # a state's id has priority over the behaviour's own name
         else:
             message = f"the id `{alias}` of `{entry.path}` already belongs to {first.title}"
             hint = "give each state its own id"
             if first.alias == alias and entry.path.rpartition(".")[2] == alias != first.path.rpartition(".")[2]:
-                self.aliases[alias] = entry  # it is called so itself: the first one took its id
+                self.aliases[alias] = entry  # this state has that name: the other one's id is the fault
                 first, entry = entry, first
                 message = f"the id `{alias}` of `{entry.path}` belongs to {first.title}"
             before = [((*first.where, "id") if first.alias == alias else first.where, "it belongs to this one")]

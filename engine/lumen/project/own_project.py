@@ -1,4 +1,4 @@
-"""The project that somebody wants judged: their own, never the shipped one for want of another."""
+"""Find the project that a user wants to check: their own, never the shipped one as a fallback."""
 
 import os
 from collections.abc import Iterator
@@ -10,16 +10,16 @@ from lumen.project.packaged import find_project, misnamed_main_file, project_abo
 from lumen.project.project_folders import MAIN_FILE
 
 MAX_FOLDERS = 5_000
-"""How many folders are looked into, which takes a fraction of a second; a project has its place near the top."""
+"""The maximum number of folders that are searched, in a fraction of a second; projects are usually near the top."""
 NAMED = 8
 _PASSED_OVER = ("node_modules", "__pycache__", "site-packages")
 
 
 def own_project(path: str | Path | None = None) -> Path:
-    """The folder of a project: `path`, else the working directory or the nearest parent with a lumen.yaml.
+    """Return the folder of a project: `path`, else the working directory or the nearest parent with a lumen.yaml.
 
-    Raises UsageError where there is none, with those that are seen below. A folder that was named and has none in it
-    or below is returned all the same: whoever reads its files says what is missing.
+    Raises UsageError if no project is found; the message lists those below. A given folder without any is returned
+    nevertheless, and the code that reads its files reports the missing lumen.yaml.
     """
     folder = project_above(Path.cwd()) if path is None else find_project(path)
     if folder and ((folder / MAIN_FILE).is_file() or (path is not None and not any(projects_below(folder)))):
@@ -29,8 +29,9 @@ def own_project(path: str | Path | None = None) -> Path:
 
 
 def projects_below(folder: Path) -> Iterator[Path]:
-    """Folders with a lumen.yaml, the upper ones first by name; what is hidden or installed is passed over, and so is
-    what lies within a project.
+    """Yield the folders with a lumen.yaml, the upper ones first, then by name.
+
+    Hidden and installed folders are skipped, and so are folders inside a project.
     """
     waiting, looked = [folder], 0
     while waiting and looked < MAX_FOLDERS:
@@ -63,5 +64,5 @@ def _instead(folder: Path) -> str:
 
 
 def _named(folder: Path) -> str:
-    """As one types it from here."""
+    """Return a folder's path relative to the working directory, as one would type it."""
     return Path(os.path.relpath(folder)).as_posix()

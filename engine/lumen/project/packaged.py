@@ -1,4 +1,4 @@
-"""Where the shipped exhibition and the engine's own schemas are, and which project is meant by a path or by none."""
+"""Find the shipped exhibition, the engine's own schemas, and the project that a path, or no path, refers to."""
 
 import os
 import re
@@ -15,23 +15,23 @@ PACKAGE = Path(__file__).parents[1]
 
 @cache
 def shipped_root() -> Path:
-    """The folder of the shipped exhibition: inside the wheel, else the repository's root."""
+    """Return the folder of the shipped exhibition: inside the wheel, else the repository's root."""
     inside = PACKAGE / "exhibition"
     return inside if inside.is_dir() else PACKAGE.parents[1]
 
 
 def schema_folder() -> Path:
-    """The folder of `KIND.schema.json`; always the engine's own, whatever a project holds."""
+    """Return the folder of `KIND.schema.json`; always the engine's own, even if a project has such a folder."""
     return shipped_root() / "schemas"
 
 
 def project_above(here: Path) -> Path | None:
-    """This folder or its nearest parent with a lumen.yaml; None where there is none."""
+    """Return this folder or its nearest parent with a lumen.yaml; None if no folder has one."""
     return next((folder for folder in (here, *here.parents) if (folder / MAIN_FILE).is_file()), None)
 
 
 def misnamed_main_file(folder: Path) -> str:
-    """The file in that folder that was probably meant to be its lumen.yaml; empty if no name is similar."""
+    """Return the file in that folder that was probably meant to be its lumen.yaml; empty if no name is similar."""
     try:
         names = sorted(os.listdir(folder))
     except OSError:
@@ -40,9 +40,11 @@ def misnamed_main_file(folder: Path) -> str:
 
 
 def find_project(path: str | Path | None = None) -> Path:
-    """The folder of a project: `path`, else the working directory or the nearest parent with a lumen.yaml, else the
-    shipped one. `path` may name the folder or its lumen.yaml. Raises UsageError if there is no such folder, or if
-    one of them holds a lumen.yaml under another name.
+    """Return the folder of a project: `path`, or if that is None, one found from the working directory.
+
+    That is the working directory or its nearest parent with a lumen.yaml, else the shipped exhibition. `path` may name
+    the folder or its lumen.yaml. Raises UsageError if there is no such folder, or if one of the searched folders holds
+    a lumen.yaml under another name.
     """
     if path is None:
         here = Path.cwd()

@@ -1,18 +1,18 @@
-"""Robots' models that a Python package carries: `mjcf: PACKAGE:PATH`, as `dm_control:suite/humanoid.xml`."""
+"""Robot models in a Python package: `mjcf: PACKAGE:PATH`, such as `dm_control:suite/humanoid.xml`."""
 
 from importlib.util import find_spec
 from pathlib import Path
 
 
 def in_package(mjcf: str) -> bool:
-    """Whether a body's `mjcf` names a file of a package rather than one beside it."""
+    """Return True if a body's `mjcf` names a file of a package instead of one in its own folder."""
     return ":" in mjcf
 
 
 def package_file(mjcf: str) -> Path | None:
-    """The file of an installed package that `mjcf` names; None where there is no such package, or no such file in it.
+    """Return the file of an installed package that `mjcf` names; None if there is no such package or file.
 
-    The package is not imported, and a path that leads out of it leads nowhere.
+    The package is not imported. A path that leads out of the package counts as absent.
     """
     package, _, inner = mjcf.partition(":")
     try:
@@ -27,5 +27,5 @@ def package_file(mjcf: str) -> Path | None:
 
 
 def mjcf_path(mjcf: str, models: Path) -> Path:
-    """Where a body's model is: in its package, else in `models`, whether it is there or not."""
+    """Return the path of a body's model: in its package, else in `models`, even if it does not exist there."""
     return (package_file(mjcf) if in_package(mjcf) else None) or models / mjcf

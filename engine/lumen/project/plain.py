@@ -1,4 +1,4 @@
-"""A Python dict in place of a file: checked to be plain data, each node with its dotted path as its place."""
+"""Use a Python dict in place of a file: it is checked to be plain data, and the place of a node is its dotted path."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -9,10 +9,10 @@ from lumen.project.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Documen
 
 
 def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnostic]]:
-    """A document of this data, and what in it no YAML file could hold; that stands as null in the document.
+    """Return a document of this data, and findings about values that no YAML file could hold; these become null.
 
-    None where the data is too large, as a dict that holds itself is.
-    Where a file would have a line, the place of a node is its dotted path: `tour (states.idle.on.face)`.
+    The document is None if the data is too large, as a dict that contains itself is. Instead of a line, the place of a
+    node has its dotted path: `tour (states.idle.on.face)`.
     """
     reader = _Reader(name)
     plain = reader.read(data, ())

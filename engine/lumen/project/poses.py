@@ -1,4 +1,4 @@
-"""Where joints stand in a keyframe: postures of the body, the file's own poses, joints and hands, in [rad] and 0..1."""
+"""Read joint angles of a keyframe [rad; hands 0..1]: postures of the body, the file's poses, joints and hands."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ SHARED_DRIVE = Code("shared-drive", "motions", ERROR, "two joints with one motor
 
 
 PlacedAngles = dict[str, tuple[float, NodePath]]
-"""For every joint its angle [rad; a hand 0..1] and where it stands in the file."""
+"""For every joint its angle [rad; a hand 0..1] and its place in the file."""
 
 Handles = dict[str, tuple[tuple[float, float], tuple[float, float]]]
 
@@ -32,7 +32,7 @@ DRIVE_TOLERANCE = 1e-6
 
 @dataclass
 class PoseReader:
-    """Reads what places joints, in the units of the file."""
+    """Reads the joint angles of one file, in the units of the file."""
 
     report: DocumentReport
     body: Body
@@ -45,13 +45,13 @@ class PoseReader:
         self.mirror, self.roles = mirror_of(self.body), RoleNames(self.report, self.body)
 
     def define(self, poses: Mapping[str, Any], path: NodePath) -> None:
-        """Learn the poses under `poses:`; one may build on those above it."""
+        """Add the poses under `poses:`; each may use those above it."""
         for name, pose in poses.items():
             angles = self.read(pose, (*path, name))
             self.poses[name] = _mirrored(angles, self.mirror) if pose.get("mirror") else angles
 
     def read(self, item: Mapping[str, Any], here: NodePath) -> PlacedAngles:
-        """The joints of a keyframe or pose: posture, poses, `roles`, `joints`, `hands`, the later ones winning."""
+        """Return the angles of a keyframe or pose: posture, poses, `roles`, `joints`, `hands`; later ones override."""
         angles: PlacedAngles = {}
         if "posture" in item:
             angles |= self._posture(item["posture"], (*here, "posture"))
@@ -64,7 +64,7 @@ class PoseReader:
         return self._shared(angles | own, own)
 
     def posture(self, name: str, path: NodePath) -> Mapping[str, float] | None:
-        """The angles of a posture [rad], None (and a diagnostic) where the robot does not know it."""
+        """Return the angles of a posture [rad]; if the robot has no such posture, report that and return None."""
         if name in self.body.postures:
             return self.body.postures[name]
         hint = did_you_mean(name, self.body.postures, f"{self.body.name} has")
@@ -72,13 +72,13 @@ class PoseReader:
         return None
 
     def number(self, value: float, path: NodePath) -> bool:
-        """Whether a number is one to count with."""
+        """Return True if a number is finite; report it if it is not."""
         if not isfinite(value):
             self.report(NOT_A_NUMBER, path, f"`{value}` can't be used here", hint="write a finite number")
         return isfinite(value)
 
     def handles(self, item: Mapping[str, Any], here: NodePath) -> Handles:
-        """The Bezier handles of a keyframe, as (dt [s], da [rad]) before and after the key."""
+        """Return the Bezier handles of a keyframe, as (dt [s], da [rad]) before and after the key."""
         found: Handles = {}
         for name, sides in (item.get("handles") or {}).items():
             path = (*here, "handles", name)
@@ -89,13 +89,13 @@ class PoseReader:
         return found
 
     def _named(self, name: str, path: NodePath) -> JointRole | None:
-        """The joint that is meant by its name, or by its role; reported where it can't be."""
+        """Return the joint of that name or role; if the body lacks it, report that and return None."""
         if "." in name:
             return self.roles.joint(name, path)
         return JointRole(name) if self._known(name, path) else None
 
     def _by_role(self, roles: Mapping[str, float], path: NodePath) -> PlacedAngles:
-        """The angles that roles give; a joint that can't go there stands at its limit."""
+        """Return the angles given by role; one that a joint can't reach is reported and set to its limit."""
         found: PlacedAngles = {}
         for name, value in roles.items():
             here = (*path, name)
@@ -149,7 +149,7 @@ class PoseReader:
         return found
 
     def lags(self, trails: Mapping[str, str], path: NodePath) -> dict[str, float]:
-        """How much later each joint is to come [s]; joints that share a motor come together."""
+        """Return the delay of each joint under `trails` [s]; joints that share a motor have the same delay."""
         named = {name: self._named(name, (*path, name)) for name in trails}
         found = {role.joint: seconds(trails[name]) or 0.0 for name, role in named.items() if role}
         twins = {**self.body.shared, **{leader: follower for follower, leader in self.body.shared.items()}}
@@ -205,7 +205,7 @@ class PoseReader:
         return {}
 
     def _shared(self, angles: PlacedAngles, own: PlacedAngles) -> PlacedAngles:
-        """Joints on one drive move together: what is said of one holds for both."""
+        """Return the angles with both joints of each shared motor set alike; report different angles for them."""
         for follower, leader in self.body.shared.items():
             if follower in own and leader in own and abs(own[follower][0] - own[leader][0]) > DRIVE_TOLERANCE:
                 message = f"`{leader}` and `{follower}` share one motor, so they can't have different angles"

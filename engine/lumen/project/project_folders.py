@@ -1,4 +1,4 @@
-"""The folders of a project and the kinds of file in them, for all that reads, watches, copies or completes them."""
+"""The folders of a project and the kinds of file in them, for code that reads, watches, copies or completes them."""
 
 from collections.abc import Mapping
 from pathlib import PurePosixPath
@@ -8,7 +8,7 @@ from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS
 
 MAIN_FILE, MAIN_KIND = "lumen.yaml", "lumen"
 FLEET_FILE = "fleet.yaml"
-"""The houses, and whose orders a robot accepts; lint checks it with a project, and no bundle contains it."""
+"""The file with the houses and whose orders a robot accepts; lint checks it, and no bundle contains it."""
 
 BEHAVIORS, STORIES, WORDS_FOLDER = "behaviors", "behaviors/stories", "behaviors/words"
 CONTROLLERS = "fuzzy"
@@ -53,7 +53,7 @@ FILE_KINDS = tuple(dict.fromkeys((MAIN_KIND, *KINDS.values(), "fleet")))
 """All kinds of file; each has a `schemas/KIND.schema.json`."""
 
 PROJECT_FOLDERS = tuple(dict.fromkeys(folder.path.partition("/")[0] for folder in FOLDERS))
-"""The folders beside lumen.yaml that belong to a project."""
+"""The folders next to lumen.yaml that belong to a project."""
 
 ALL_FOLDERS = frozenset((*PROJECT_FOLDERS, *KINDS))
 

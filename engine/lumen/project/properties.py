@@ -1,4 +1,4 @@
-"""`properties` of a behaviour or a story, from their plain data."""
+"""Read `properties` of a behaviour or a story from their plain data."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -17,7 +17,7 @@ ReadCondition = Callable[[str, NodePath], Expression | None]
 
 
 def build_properties(data: Mapping[str, Any], report: DocumentReport, read: ReadCondition) -> tuple[Property, ...]:
-    """The properties that can be read, in the order of the file."""
+    """Return the properties that can be read, in the order of the file; report the others."""
     found = []
     for name, row in (data.get("properties") or {}).items():
         where = ("properties", name)
@@ -36,7 +36,7 @@ def build_properties(data: Mapping[str, Any], report: DocumentReport, read: Read
 
 
 def unbound_conditions(report: DocumentReport, functions: KnownFunctions) -> ReadCondition:
-    """Return the reader of conditions of a file that does not declare what they name."""
+    """Return a reader of conditions for a file that does not declare the names in them."""
 
     def read(source: str, where: NodePath) -> Expression | None:
         findings = check_expression(source, context=None, functions=functions)

@@ -1,4 +1,4 @@
-"""A report's document without some of its nodes; the others keep their places."""
+"""Remove nodes from a report's document; the others keep their places."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -10,9 +10,9 @@ from lumen.project.document_report import DocumentReport
 
 
 def prune(report: DocumentReport, doomed: set[NodePath]) -> None:
-    """Take these nodes out of the report's document, and remember what was lost with them.
+    """Remove these nodes from the report's document, and record the names that were lost with them.
 
-    Items of lists move up, and their places with them.
+    Later items of a list move up, and their places with them.
     """
     document = report.document
     for path in doomed:
@@ -27,7 +27,7 @@ def prune(report: DocumentReport, doomed: set[NodePath]) -> None:
 
 
 class _Copy:
-    """A copy of a document's data without what is doomed; `moved` maps old paths to new ones."""
+    """A copy of a document's data without the doomed nodes; `moved` maps old paths to new ones."""
 
     def __init__(self, document: Document, doomed: set[NodePath]) -> None:
         self._document, self._doomed = document, doomed
@@ -35,7 +35,7 @@ class _Copy:
         self.moved: dict[NodePath, NodePath] = {}
 
     def of(self, data: Any, old: NodePath, new: NodePath) -> Any:
-        """The copy of what stood at `old`, its places under `new`."""
+        """Return the copy of the data at `old`, with its places under the path `new`."""
         self.moved[old] = new
         if old in self._document.spans:
             self.spans[new] = self._document.spans[old]
@@ -49,7 +49,7 @@ class _Copy:
 
 
 def _names(data: Any) -> Iterator[str]:
-    """Every name that `data` could have told of: its keys and its texts."""
+    """Yield every name that `data` may define: its keys and its texts."""
     for item in values_in(data):
         if isinstance(item, str):
             yield item

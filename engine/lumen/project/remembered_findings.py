@@ -1,4 +1,4 @@
-"""What was found in expressions, kept while all that they may name stays: most of a file is as it was a key ago."""
+"""Cache the findings in expressions while the names in scope are unchanged: each key typed changes little of a file."""
 
 from collections.abc import Callable, Hashable, Mapping
 from typing import Any
@@ -9,13 +9,13 @@ from lumen.project.memoization import memoize
 MAX_REMEMBERED_FINDINGS = 20_000
 
 Check = Callable[..., list[ExpressionFinding]]
-"""`check_expression` or `check_template`."""
+"""The type of `check_expression` and `check_template`."""
 
 
 class RememberedFindings:
-    """The findings of one file's sources, of whoever asks with the same `slot`.
+    """The findings of one file's sources, shared between callers with the same `slot`.
 
-    `names` are what all sources may name, for the checks; `given` is what else the findings depend on.
+    `names` are the names in scope for all sources; `given` is any further input of the checks.
     """
 
     def __init__(self, slot: Hashable, names: Mapping[str, Any], given: Any = None) -> None:
@@ -25,7 +25,7 @@ class RememberedFindings:
     def of(
         self, check: Check, source: str, site: Hashable, around: Callable[[], Mapping[str, Any]]
     ) -> list[ExpressionFinding]:
-        """What a check finds; `site` tells apart what may be named beside, which is `around`."""
+        """Return the findings of a check; `site` identifies the further names in scope, which `around` returns."""
         key = check, source, site
         known = self._found.get(key)
         if known is None:

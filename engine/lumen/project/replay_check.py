@@ -1,4 +1,4 @@
-"""`replay` and `budget` under `reload:` of lumen.yaml, from their data to `ReplayCheck`."""
+"""Read `replay` and `budget` under `reload:` of lumen.yaml as a `ReplayCheck`."""
 
 from collections.abc import Mapping
 from typing import Any

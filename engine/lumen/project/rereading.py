@@ -1,8 +1,8 @@
-"""A document read again after a key: of a file in which a line has changed, only the block around that line.
+"""Parse a changed document again, but only the block around the lines that have changed.
 
-All other lines are made blank but those that say how far in the block stands, and what follows it. So the parser of
-whole files reads the block, with its places, and what it makes of it stands in the document of before. Wherever that
-might be another thing than the whole file says, nothing is made, and the file is read as a whole.
+All other lines are blanked except those that fix the indentation of the block and what follows it. The usual parser
+reads the block, with its places, and the result is inserted into the previous document. If that might differ from a
+complete parse, the whole file is parsed instead.
 """
 
 import re
@@ -19,15 +19,15 @@ from lumen.project.yaml_composer import TooLargeError, compose
 
 Spans = dict[NodePath, NodeSpan]
 Read = Callable[[str, yaml.Node, NodePath, yaml.Node], tuple[Any, Spans] | None]
-"""Makes data and places of the node at a path, by the text in which it stands; None where something is wrong in it."""
+"""Returns the data and places of the node at a path, from the text that holds it; None if it has a fault."""
 
 _OUTER, _NEXT = "outer", "next"
 _FAR_REACHING = re.compile(r"[\r\ufeff]|(?m:^%|^<<<<<<< )|(?<![^\s\[{,:-])&[\w-]")
-"""What changes how other lines are read, or where they begin: ends of lines, directives, conflicts, anchors."""
+"""Syntax that changes how other lines are read or separated: line ends, directives, conflicts, anchors."""
 
 
 def reread(before: Document, text: str, read: Read) -> Document | None:
-    """The document that a text makes some of whose lines are not as before; None where it has to be read as a whole."""
+    """Return the document of a text of which some lines have changed; None if the whole text must be parsed."""
     old, new = lines_of(before.text), lines_of(text)
     if len(old) != len(new) or new[-1] or before.dropped or _FAR_REACHING.search(text):
         return None
@@ -45,7 +45,7 @@ def reread(before: Document, text: str, read: Read) -> Document | None:
 
 
 def _block(before: Document, lines: list[str], first: int, last: int) -> NodePath:
-    """The innermost key whose block holds those lines, and that stands alone above them; empty where there is none."""
+    """Return the path of the innermost key alone on a line whose block holds those lines; empty if no key does."""
     path: NodePath = ()
     node = before.data
     while isinstance(node, dict):
@@ -66,7 +66,7 @@ def _holds(span: NodeSpan, lines: list[str], first: int, last: int) -> bool:
 
 
 def _fragment(before: Document, lines: list[str], path: NodePath) -> str:
-    """The text with nothing but the block at a path, in keys that stand as far in as those around it."""
+    """Return the text with only the block at a path, in keys that are indented as those around it."""
     key, value = before.spans[path]
     assert key
     kept = [""] * len(lines)
@@ -81,7 +81,7 @@ def _fragment(before: Document, lines: list[str], path: NodePath) -> str:
 
 
 def _found(node: yaml.Node | None, depth: int, span: NodeSpan) -> tuple[yaml.Node, yaml.Node] | None:
-    """Key and value of the block; None where its lines are anything beside that."""
+    """Return key and value of the block; None if its lines hold anything else."""
     for inner in range(depth, -1, -1):
         if not isinstance(node, yaml.MappingNode) or node.flow_style or not node.value:
             return None
@@ -97,7 +97,7 @@ def _found(node: yaml.Node | None, depth: int, span: NodeSpan) -> tuple[yaml.Nod
 
 
 def _with(before: Document, text: str, path: NodePath, made: Any, spans: Spans) -> Document:
-    """The document with something else at a path; all else is shared with the one before."""
+    """Return the document with another value at a path; everything else is shared with the previous document."""
     depth, together = len(path), Spans()
     for where, span in before.spans.items():
         if where[:depth] != path:

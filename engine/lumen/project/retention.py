@@ -1,4 +1,4 @@
-"""`journal:` and `record:` of lumen.yaml, from their data to how long they are kept."""
+"""Read `journal:` and `record:` of lumen.yaml: how long journals and recordings are kept."""
 
 from collections.abc import Mapping
 from typing import Any

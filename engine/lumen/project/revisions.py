@@ -1,4 +1,4 @@
-"""The files of a project as they were in a revision of its git repository, read without a checkout."""
+"""Read the files of a project at a revision of its git repository, without a checkout."""
 
 import os
 import subprocess
@@ -12,9 +12,9 @@ from lumen.upkeep.regular_files import MEGABYTE
 
 
 def files_at(root: Path, revision: str) -> dict[str, bytes] | None:
-    """The files that count in the project at `root` as they stood in a revision; None where git knows no such one.
+    """Return the files of the project at `root` at a revision; None if git has no such revision.
 
-    Raises UsageError where there is no git, or `root` lies in no repository.
+    Raises UsageError if git is not installed, if `root` is not in a repository, or if the project was too large.
     """
     where = _git(root, "rev-parse", "--show-prefix")
     if where is None:
@@ -34,7 +34,7 @@ def files_at(root: Path, revision: str) -> dict[str, bytes] | None:
 
 
 class _Blob(NamedTuple):
-    """A file of a revision, and how large it is [bytes]."""
+    """A file of a revision and its size [bytes]."""
 
     path: str
     id: str
@@ -42,7 +42,7 @@ class _Blob(NamedTuple):
 
 
 def _blobs(listed: bytes) -> Iterator[_Blob]:
-    """Every plain file in the output of `git ls-tree -l -z`."""
+    """Yield every regular file in the output of `git ls-tree -l -z`."""
     for row in filter(None, listed.split(b"\0")):
         about, _, path = row.partition(b"\t")
         mode, _, id, size = about.decode().split()
@@ -51,7 +51,7 @@ def _blobs(listed: bytes) -> Iterator[_Blob]:
 
 
 def _contents(root: Path, ids: Sequence[str]) -> list[bytes]:
-    """What these files hold, in their order."""
+    """Return the contents of these files, in their order."""
     found, text = [], _git(root, "cat-file", "--batch", given="".join(f"{id}\n" for id in ids).encode()) or b""
     while text:
         head, _, text = text.partition(b"\n")
@@ -62,7 +62,7 @@ def _contents(root: Path, ids: Sequence[str]) -> list[bytes]:
 
 
 def _git(root: Path, *arguments: str, given: bytes = b"") -> bytes | None:
-    """What git says, None where it refuses."""
+    """Return the output of git; None if it fails. Raises UsageError if git is not installed."""
     try:
         done = subprocess.run(
             ["git", "-C", str(root), *arguments],

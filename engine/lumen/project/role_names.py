@@ -1,4 +1,4 @@
-"""Roles as motions name them, `head.yaw` or `arms.left.elbow-roll`, and what becomes of those that a body lacks."""
+"""Find the joints of roles that motions name, such as `head.yaw`, and report roles that the body lacks."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,14 +15,14 @@ OUT_OF_REACH = Code("out-of-reach", "motions", WARNING, "the angle of a role is 
 
 
 class RoleNames:
-    """Finds the joints of roles in a body, and remembers which roles it lacks and where they were named first."""
+    """Finds the joints of roles in a body, and records which roles it lacks and where each was first named."""
 
     def __init__(self, report: DocumentReport, body: Body) -> None:
         self._report, self._body = report, body
         self._lacking: dict[str, NodePath] = {}
 
     def joint(self, name: str, path: NodePath) -> JointRole | None:
-        """The joint of a role, None where the body has none; a role that no body has is reported."""
+        """Return the joint of a role; None if the body has none, or if there is no such role, which is reported."""
         if name not in JOINT_PATHS:
             hint = did_you_mean(name, JOINT_PATHS, "the roles are")
             self._report(UNKNOWN_ROLE, path, f"there is no role `{name}`", hint=hint, key=True, cause=f"role {name}")
@@ -32,7 +32,7 @@ class RoleNames:
         return role
 
     def some(self, data: Mapping[str, Any], path: NodePath) -> bool:
-        """Whether that names joints at all, by role or by name; reported where it does not."""
+        """Return True if the data names joints, by role or by name; report it if it does not."""
         here = "roles" in data or "joints" in data
         if not (here or self._report.broken((*path, "joints")) or self._report.broken((*path, "roles"))):
             hint = "write `roles: {head.pitch: 5}`, or `joints` for this robot alone"
@@ -40,7 +40,7 @@ class RoleNames:
         return here
 
     def tell_left_out(self, what: str) -> None:
-        """Say which roles the body lacks that were named, once for all of them; `what` leaves them out."""
+        """Report once all named roles that the body lacks; `what` is the item that leaves them out."""
         if lacking := {name: path for name, path in self._lacking.items() if name not in self._report.lost}:
             names = ", ".join(f"`{name}`" for name in lacking)
             hint = "if the body has these joints, name them under `roles` of the body"

@@ -1,4 +1,4 @@
-"""`roles` of `models/NAME.yaml`: which part of the body is what, from plain data to `Roles`."""
+"""Read `roles` of `models/NAME.yaml`, which assigns joints and sensors to parts of the body, as `Roles`."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import Any
@@ -16,10 +16,11 @@ _WALKING_SENSORS = ("gyro", "accelerometer")
 
 
 class RoleReader:
-    """Reads the roles of one file. `known` says of a joint's name, and where it stands, whether there is such a joint.
+    """Reads the roles of one file.
 
-    `given` are the keys of the file, of which some roles need one; `hands` the joints that open rather than turn.
-    Only one that is `modelled`, in an MJCF, names the wheels there.
+    `known` returns True if a joint of this name exists; its second argument is the path for a report. `given` are the
+    keys of the file, some of which a role may need; `hands` are the joints with an opening instead of an angle. Wheels
+    must be named only by a body that is `modelled` in an MJCF.
     """
 
     def __init__(
@@ -38,7 +39,7 @@ class RoleReader:
         self._sound = True
 
     def read(self, length: float, angle: float) -> Roles:
-        """The roles; `length` and `angle` are what one unit of the file is in [m] and [rad]."""
+        """Return the roles; `length` and `angle` are one unit of the file in [m] and [rad]."""
         data = self.data
         eyes, sensors = data.get("eyes") or {}, data.get("sensors") or {}
         roles = Roles(
@@ -87,7 +88,7 @@ class RoleReader:
         return JointRole(name, not isinstance(role, str) and role.get("reversed", False))
 
     def _whole(self, roles: Roles) -> None:
-        """Report roles that need others which are not there."""
+        """Report roles that need others which are absent."""
         row = roles.base.row
         if row.legs and (lacking := list(_lacking_for_feet(roles))):
             self._say(("base", "kind"), row.title, lacking)
@@ -136,5 +137,5 @@ def _sides(data: Mapping[str, Any] | None) -> dict[str, Any]:
 
 
 def _written(path: NodePath) -> str:
-    """A role as messages write it: `arms.left.elbow-roll`."""
+    """Return a role as messages write it: `arms.left.elbow-roll`."""
     return ".".join(str(key) for key in path[1:])

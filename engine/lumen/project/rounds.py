@@ -1,8 +1,9 @@
-"""`for` of a state: what is in it runs once for each entry of a list. It is read as a statechart without `for`.
+"""Convert `for` of a state, which runs its content once for each entry of a list, to a statechart without `for`.
 
-A key of the context holds the entry and those that are left. The state begins in a final child that stands for "none is
-left"; whenever it is done and an entry is left, that entry is taken, and it begins with its first child. Only then do
-the file's own `onDone` have their turn. Expressions within say `context.KEY.entry` where the file says `question`.
+A key of the context holds the current entry and those that are left. The state begins in an added final child. Whenever
+the state is done and an entry is left, that entry becomes the current one, and the state begins with its first child.
+After the last entry, the file's own `onDone` applies. Expressions inside use `context.KEY.entry` in place of the
+entry's name in the file, such as `question`.
 """
 
 import re
@@ -22,17 +23,17 @@ from lumen.talk.hearing import HEARD
 BAD_FOR = Code("bad-for", "statecharts", ERROR, "a `for` can't run through its list here")
 
 NOTHING_YET: Mapping[str, Any] = {"entry": {}, "left": []}
-"""What the key of a `for` holds before the state is entered."""
+"""The value of the context key of a `for` before the state is entered."""
 
 ReadExpression = Callable[[str, NodePath], Expression | None]
 
 _TAKEN = frozenset(("context", "event", "state", "lists", HEARD))
 _WITHIN = (("states",), ("on",), ("hears",), ("after",), ("at",))
-"""Where in a state with `for` its entry is known: not yet where it begins, and no longer where all is done."""
+"""The parts of a state with `for` in which its entry is defined; `initial` and `onDone` are not among them."""
 
 
 class Rounds:
-    """The `for`s of one document, by the paths of their states; what is `shared` is known everywhere."""
+    """The `for`s of one document, by the paths of their states. If `shared`, the shared keys are defined everywhere."""
 
     def __init__(
         self, outline: BehaviorOutline, report: DocumentReport, context: Mapping[str, Any], *, shared: bool = False
@@ -42,7 +43,7 @@ class Rounds:
         self.by_place: dict[NodePath, tuple[str, str]] = {}
         self.keys: dict[str, str] = {}
         self.rows: dict[NodePath, int] = {}
-        """The numbers of rows of `hears` by their places, in which `heard` is known."""
+        """The number of each row of `hears`, by its path; `heard` is defined inside these rows."""
         for entry in outline.entries.values():
             if "for" in entry.data and self._sound(entry):
                 name, key = entry.data["for"]["as"], self._key(entry, context)
@@ -50,7 +51,7 @@ class Rounds:
                 self.by_place[entry.where] = name, key
 
     def variables(self, where: NodePath) -> dict[str, str]:
-        """What the names of entries mean in an expression that stands there."""
+        """Return the names that are defined for an expression at this path, each with what replaces it."""
         found = dict(self.known)
         for place, (name, key) in self.by_place.items():
             if where[: len(place)] == place and where[len(place) : len(place) + 1] in _WITHIN:
@@ -62,7 +63,7 @@ class Rounds:
         return found
 
     def read(self, entry: OutlinedState, expression: ReadExpression) -> ForEach | None:
-        """The `for` of a state, None where it has none that can be read."""
+        """Return the `for` of a state; None if it has none, or none that can be read."""
         if entry.path not in self.keys:
             return None
         data, where = entry.data["for"], (*entry.where, "for")
@@ -73,11 +74,11 @@ class Rounds:
         return ForEach(each, data["as"], key, data.get("shuffle", False), data.get("most"), where)
 
     def elsewhere(self, name: str) -> str:
-        """Where a name stands for an entry; empty for nowhere."""
+        """Return the state whose `for` defines this name; empty if none does."""
         return next((".".join(map(str, at[1::2])) for at, (known, _) in self.by_place.items() if known == name), "")
 
     def _sound(self, entry: OutlinedState) -> bool:
-        """Whether a state may have a `for`, and its name is free; reported where not."""
+        """Return True if a state may have a `for` and its name is free; report it if not."""
         name, where = entry.data["for"]["as"], (*entry.where, "for")
         if entry.kind is not StateKind.COMPOUND:
             if entry.kind in (StateKind.ATOMIC, StateKind.PARALLEL):
@@ -116,7 +117,7 @@ class Rounds:
 
 
 def unrolled(state: State, first: tuple[str, ...]) -> Iterator[State]:
-    """The state with a `for` as a statechart knows it, and the child in which it begins; `first` are its first ones."""
+    """Yield a state with a `for` as a plain statechart, then its added final child; `first` are its initial states."""
     loop = state.for_each
     assert loop is not None
     where, key = loop.where, f"context.{loop.key}"

@@ -1,4 +1,4 @@
-"""The route table under `routes:` of lumen.yaml, from its plain data to `Route`s."""
+"""Build `Route`s from the plain data of the table under `routes:` of lumen.yaml."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,23 +10,23 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.units import BAD_DURATION, seconds
 
 DEFAULT_LATENCY = 0.15
-"""How old a body without a `time` is taken to be [s], where its route does not say."""
+"""The assumed age of a message without a `time` if its route has no `latency` [s]."""
 
 PERIODS: Mapping[str, float] = {"s": 1.0, "min": 60.0}
-"""In what `most` of a route counts [s]."""
+"""The units of time of `most` of a route [s]."""
 _USUAL = {COMMAND: Carried.COMMAND, STOP: Carried.STOP}
-"""How the routes are carried whose names say it."""
+"""How a route is carried if its name implies it."""
 
 
 def build_routes(
     data: Mapping[str, Any], report: DocumentReport, where: NodePath = ("routes",), stand: str = ""
 ) -> dict[str, Route]:
-    """The routes by name, in the order written; `{stand}` in their keys is the stand's name, where it has one."""
+    """Return the routes by name, in the order written; `{stand}` in keys becomes the stand's name, if it has one."""
     return {name: build_route(name, row, report, (*where, name), stand) for name, row in data.items()}
 
 
 def build_route(name: str, data: Mapping[str, Any], report: DocumentReport, where: NodePath, stand: str = "") -> Route:
-    """One row; a duration that can't be read is reported and left out."""
+    """Return the route of one row; a duration that can't be read is reported and left out."""
     latency = duration(data, "latency", report, where)
     carried = Carried(data.get("carried", _USUAL.get(name, Carried.TELEMETRY)))
     return Route(
@@ -55,7 +55,7 @@ def _size(data: Mapping[str, Any]) -> Size | None:
 
 
 def _rate(data: Mapping[str, Any]) -> float | None:
-    """`50/s` or `30/min` [1/s]; the schema knows what that looks like."""
+    """Return the rate of `50/s` or `30/min` [1/s]; the schema has checked the form."""
     number, _, unit = data.get("most", "").partition("/")
     return float(number) / PERIODS[unit] if number else None
 
@@ -63,7 +63,7 @@ def _rate(data: Mapping[str, Any]) -> float | None:
 def duration(
     data: Mapping[str, Any], key: str, report: DocumentReport, where: NodePath, *, positive: bool = False
 ) -> float | None:
-    """The duration under that key [s]; None where there is none, or (reported) none that can be read."""
+    """Return the duration under a key [s]; None if the key is absent, or if it can't be read, which is reported."""
     if key not in data:
         return None
     length = seconds(data[key])

@@ -1,8 +1,8 @@
-"""The text of a fuzzy rule: `if FaceXLoc is very Negative and not (A is B or C is D) then AngleX is Positive with 0.5`.
+"""Parse a fuzzy rule: `if FaceXLoc is very Negative and not (A is B or C is D) then AngleX is Positive with 0.5`.
 
 `and` binds tighter than `or`, `not` tighter than both; keywords and hedges may be written in capitals. Several
-consequents are joined by `and` or a comma. The grammar knows no names: each word that stands for a variable or a term
-is handed back with its place, for whoever does.
+consequents are joined by `and` or a comma. The parser does not check names: it returns each word that should name a
+variable or a term with its offset, so that the caller can check it.
 """
 
 import re
@@ -27,12 +27,12 @@ class RuleWord(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The word as a keyword is compared."""
+        """The word in lower case, for comparison with keywords."""
         return self.text.lower()
 
 
 class Mention(NamedTuple):
-    """The words of one proposition: `term` is None after `any`, which needs none."""
+    """The names in one proposition: `term` is None after `any`, which needs none."""
 
     variable: RuleWord
     term: RuleWord | None
@@ -40,7 +40,7 @@ class Mention(NamedTuple):
 
 
 class RuleText(NamedTuple):
-    """What a rule says, and which words name what."""
+    """The parsed rule, and the words in it that are names."""
 
     antecedent: Antecedent
     consequents: tuple[Proposition, ...]
@@ -49,7 +49,7 @@ class RuleText(NamedTuple):
 
 
 class RuleSyntaxError(Exception):
-    """The text is not a rule; `word` is where it stops being one."""
+    """Raised if a text is not a rule; `word` is the first one that is wrong."""
 
     def __init__(self, message: str, word: RuleWord, hint: str = "") -> None:
         super().__init__(message)
@@ -57,7 +57,7 @@ class RuleSyntaxError(Exception):
 
 
 def parse_rule(text: str) -> RuleText:
-    """What the rule says; raises RuleSyntaxError."""
+    """Return the parsed rule. Raises RuleSyntaxError."""
     return _Parser(text).rule()
 
 

@@ -1,4 +1,4 @@
-"""The rules of a fuzzy controller, in blocks, with each of their words checked against the variables."""
+"""Read the rules of a fuzzy controller, in blocks, and check each name in them against the variables."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -19,10 +19,10 @@ UNKNOWN_VARIABLE = Code(
 
 
 class Rulebook:
-    """Reads the rules of one file, whose usable variables are these.
+    """Reads the rules of one file; `inputs` and `outputs` are the usable variables.
 
-    A word is unknown where the file does not write it; one that names something broken has been reported already, and
-    only costs its rule.
+    A name is reported as unknown if it is not in the file. A name that belongs to something broken was reported there,
+    and only makes its rule invalid.
     """
 
     def __init__(
@@ -37,7 +37,7 @@ class Rulebook:
         self.operators = data.get("operators") or {}
 
     def blocks(self) -> list[RuleBlock]:
-        """The rules under `rules:`, then those of each of `blocks:`."""
+        """Return the rules under `rules:`, then those of each of `blocks:`."""
         own = RuleBlock(tuple(self.rules(("rules",), self.data.get("rules") or ())), self.combination({}))
         blocks = [own] if own.rules else []
         for name, spec in (self.data.get("blocks") or {}).items():
@@ -48,7 +48,7 @@ class Rulebook:
         return blocks
 
     def combination(self, differing: Mapping[str, Any]) -> Operators:
-        """The file's operators where the block does not differ."""
+        """Return the file's operators, replaced by those of the block."""
         operators = {**self.operators, **differing}
         names = ("conjunction", "disjunction", "implication")
         given = {name: operators[name] for name in names if name in operators}
@@ -69,7 +69,7 @@ class Rulebook:
         return Rule(said.antecedent, said.consequents, said.weight, text, path) if all(known) else None
 
     def mentioned(self, path: NodePath, text: str, mention: Mention) -> bool:
-        """Whether both words of a proposition name something usable."""
+        """Return True if both names of a proposition can be used; report those that are unknown."""
         word, term = mention.variable, mention.term
         side = "outputs" if mention.concluded or word.text not in self.data["inputs"] else "inputs"
         spec = self.data[side].get(word.text)
@@ -96,5 +96,5 @@ class Rulebook:
         self.at_word(UNKNOWN_VARIABLE, path, text, word, f"there is no variable `{word.text}`", hint)
 
     def at_word(self, code: Code, path: NodePath, text: str, word: RuleWord, message: str, hint: str) -> None:
-        """Report something of one word of a rule."""
+        """Report a finding about one word of a rule."""
         report_word(self.report, code, path, text, word.offset, len(word.text), message, hint)

@@ -1,4 +1,4 @@
-"""The project that an exhibition runs in: never the installed one, since a run writes into its project.
+"""Find the project for a run: never the installed exhibition itself, since a run writes into its project.
 
 If there is no project here or above, `lumen run` plays a copy of the shipped exhibition in the user's state folder. The
 other commands about a run find the same copy.
@@ -18,24 +18,24 @@ from lumen.upkeep.state_folder import state_folder
 
 
 def is_substituted(path: str | Path | None) -> bool:
-    """Whether the shipped exhibition is meant only because no project was named and none is here or above."""
+    """Return True if the shipped exhibition is used because no project was named or found here or above."""
     return path is None and project_above(Path.cwd()) is None
 
 
 def running_project(path: str | Path | None = None) -> Path:
-    """The folder of a project, as `find_project`; instead of the shipped one its copy, if there is one."""
+    """Return the folder of a project like `find_project`, but the copy of the shipped exhibition if there is one."""
     root = find_project(path)
     return copy if is_substituted(path) and (copy := copy_of_shipped()).is_dir() else root
 
 
 def project_to_run(path: str | Path | None = None) -> Path:
-    """As `running_project`, but make the copy if it is missing. Raises UsageError if it can't be written."""
+    """Return the folder like `running_project`, and make a missing copy. Raises UsageError if that fails."""
     root = find_project(path)
     return _copied() if is_substituted(path) else root
 
 
 def copy_of_shipped() -> Path:
-    """The folder for a copy of the shipped exhibition as it is now: files of another version have another folder."""
+    """Return the folder for a copy of the current shipped exhibition; another version has another folder."""
     return state_folder() / f"exhibition-{_digest()}"
 
 
@@ -49,14 +49,14 @@ def _digest() -> str:
 
 
 def _files() -> list[Path]:
-    """The files of the shipped exhibition, relative to its folder."""
+    """Return the files of the shipped exhibition, relative to its folder."""
     root = shipped_root()
     found = (file for name in PROJECT_FOLDERS for file in (root / name).rglob("*") if file.is_file())
     return [Path(MAIN_FILE), *sorted(file.relative_to(root) for file in found)]
 
 
 def _copied() -> Path:
-    """Make the copy if it is missing, as a whole or not at all: another run may make it at the same time.
+    """Return the copy, made as a whole or not at all if it is missing: another run may make it at the same time.
 
     Permissions are not copied, so that a copy of a read-only installation can be written.
     """

@@ -1,4 +1,4 @@
-"""A file of sayings, `behaviors/sayings/NAME.yaml`, from its plain data to a `SayingSet`."""
+"""Build a `SayingSet` from the plain data of a file of sayings, `behaviors/sayings/NAME.yaml`."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -10,7 +10,7 @@ SAY = "say"
 
 
 def build_sayings(data: Any, report: DocumentReport, *, name: str) -> SayingSet | None:
-    """Return the sayings in the data, None if it is no map."""
+    """Return the sayings in the data; None if it is not a map."""
     return SayingSet(name, tuple(_sayings(data))) if isinstance(data, Mapping) else None
 
 

@@ -1,7 +1,7 @@
-"""Where each character of a text stands in the YAML that it was written in.
+"""Find the place of each character of a value in the YAML text that contains it.
 
-YAML folds lines, strips indentation and knows escapes, but apart from white space it keeps what is written, in its
-order: the characters of a value that are no blanks are found again one after the other.
+YAML folds lines, strips indentation and has escapes, but apart from white space it keeps the characters in order. So
+the visible characters of a value are located one after the other.
 """
 
 import re
@@ -20,16 +20,16 @@ _LETTERS = {
     "0": "\0", "a": "\a", "b": "\b", "t": "\t", "n": "\n", "v": "\v", "f": "\f", "r": "\r", "e": "\x1b",
     "N": "\x85", "_": "\xa0", "L": "\u2028", "P": "\u2029",
 }  # fmt: skip
-"""What a letter after a backslash stands for between double quotes (YAML 1.2, 5.7); other signs mean themselves."""
+"""The meaning of a letter after a backslash in double quotes (YAML 1.2, 5.7); other characters mean themselves."""
 
 Unit = tuple[int, int, str]
-"""From where to where a character of the value is written, and which it is."""
+"""The start and end offset of a character of the value in the text, and the character."""
 
 
 def within(text: str, place: Place, value: str, offset: int, length: int) -> Place | None:
-    """The place of `length` characters from `offset` of the value that stands at `place` in a file's text.
+    """Return the place of `length` characters from `offset` in the value at `place` in a file's text.
 
-    None where the two can't be brought together.
+    Return None if the characters of the value can't be located.
     """
     lines = LineIndex(text)
     begin, end = (lines.offset(line, column) for line, column in _corners(place))
@@ -39,7 +39,7 @@ def within(text: str, place: Place, value: str, offset: int, length: int) -> Pla
         return None
     first = bisect_right(wanted, max(offset - 1, -1))
     last = max(bisect_right(wanted, offset + length - 1) - 1, 0)
-    if first > last:  # nothing but blanks, or the end: the sign before it
+    if first > last:  # only blanks, or the end: use the character before it
         first = last
     (line, column), (end_line, end_column) = (
         (lines.line(at), lines.column(at)) for at in (written[first][0], written[last][1])
@@ -53,7 +53,7 @@ def _corners(place: Place) -> Iterator[tuple[int, int]]:
 
 
 def _units(text: str, begin: int, end: int) -> Iterator[Unit]:
-    """The characters between these places of the text as they are meant, blanks included."""
+    """Yield the characters between two offsets of the text, with escapes decoded, blanks included."""
     found = _PROPERTIES.match(text, begin, end)
     begin = found.end() if found else begin
     if header := _HEADER.match(text, begin, end):

@@ -1,4 +1,4 @@
-"""Times of day as people write them: `18:00`, `mon-fri 11:00, 15:00`, `2026-12-24 14:00`."""
+"""Parse times of day as people write them: `18:00`, `mon-fri 11:00, 15:00`, `2026-12-24 14:00`."""
 
 import re
 from collections.abc import Iterator
@@ -25,11 +25,11 @@ _ISO = re.compile(
 )
 _CRON = re.compile(r"(?:[0-9*/,?L#-]+|[A-Za-z]{3}(?:[-,][A-Za-z]{3})*)")
 _SEXAGESIMAL = re.compile(r"[1-9][0-9]?:[0-5][0-9]")
-"""What YAML 1.1 reads as a number to the base of 60, where it is not quoted."""
+"""A text that YAML 1.1 reads as a number to the base 60 if it is not quoted."""
 
 
 class MisreadTimeError(Exception):
-    """What is wrong with a time of day, and what would be right."""
+    """Raised if a time of day can't be read; the message has the reason, and `hint` what to write."""
 
     def __init__(self, message: str, hint: str = TIME_HINT) -> None:
         super().__init__(message)
@@ -37,7 +37,7 @@ class MisreadTimeError(Exception):
 
 
 def read_schedule(text: str) -> Schedule:
-    """The schedule that is written so; raises MisreadTimeError."""
+    """Return the schedule that a text describes. Raises MisreadTimeError."""
     times: set[int] = set()
     weekdays: set[int] = set()
     dates: set[date] = set()
@@ -63,7 +63,7 @@ def read_schedule(text: str) -> Schedule:
 
 
 def schedule(text: object, report: DocumentReport, where: NodePath, *, key: bool = False) -> Schedule | None:
-    """The schedule that stands at `where` (with `key` as the key), None (and reported) where it is none."""
+    """Return the schedule at `where` (with `key`, in the key); if it can't be read, report that and return None."""
     try:
         found = read_schedule(str(text))
     except MisreadTimeError as error:
@@ -76,7 +76,7 @@ def schedule(text: object, report: DocumentReport, where: NodePath, *, key: bool
 
 
 def _words(text: str) -> Iterator[str]:
-    """Its parts, between blanks and commas; `mon - fri` is one of them, and so is `6 pm`."""
+    """Yield the parts between blanks and commas; `mon - fri` is one part, and so is `6 pm`."""
     parts = re.sub(r"(?i)(?<=[0-9])\s+(?=[ap]m\b)", "", re.sub(r"\s*-\s*", "-", text.strip()))
     for word in re.split(r"\s*,\s*|\s+", parts) if parts else ():
         if not word:
@@ -85,7 +85,7 @@ def _words(text: str) -> Iterator[str]:
 
 
 def _time(word: str) -> int:
-    """Minutes since midnight."""
+    """Return the minutes since midnight."""
     if not (match := _TIME.fullmatch(word)):
         raise MisreadTimeError(f"`{word}` is not a time of day", _other_time(word))
     hour, minute = int(match[1]), int(match[2])
@@ -96,7 +96,7 @@ def _time(word: str) -> int:
 
 
 def _other_time(word: str) -> str:
-    """How a time is written that is written otherwise elsewhere."""
+    """Return a hint for a time in another notation."""
     if match := _OTHER_TIME.fullmatch(word):
         hour, minute, half = int(match[1]), int(match[2] or 0), (match[3] or "").lower()
         if half and 1 <= hour <= 12:
@@ -109,7 +109,7 @@ def _other_time(word: str) -> str:
 
 
 def _iso(text: str) -> str:
-    """The hint for `2026-12-24T18:00`, ISO 8601 with a `T`; empty for anything else."""
+    """Return the hint for `2026-12-24T18:00`, ISO 8601 with a `T`; empty for any other text."""
     if (found := _ISO.fullmatch(text.strip())) is None:
         return ""
     zone = "; convert it to the project's time zone (`timezone` in lumen.yaml)" if found[3] else ""
@@ -117,7 +117,7 @@ def _iso(text: str) -> str:
     try:
         read_schedule(written)
     except MisreadTimeError:
-        written = "2026-12-24 18:00"  # the form alone
+        written = "2026-12-24 18:00"  # an example of the form only
     return f"write `{written}`{zone}"
 
 
@@ -125,7 +125,7 @@ _CRON_DAYS = dict(zip("01234567", ("sun", *WEEKDAYS), strict=True))
 
 
 def _cron(text: str) -> str:
-    """The hint for a line of cron; empty for anything else."""
+    """Return the hint for a line of cron; empty for any other text."""
     fields = text.split()
     fields = fields[1:6] if len(fields) in (6, 7) else fields
     if len(fields) != 5 or not all(map(_CRON.fullmatch, fields)) or all(f.isalpha() for f in fields):
@@ -157,7 +157,7 @@ def _date(word: str) -> date:
 
 
 def _weekdays(word: str) -> Iterator[int]:
-    """The days of `sat` or `fri-mon`, which goes on from sunday to monday."""
+    """Yield the days of `sat` or `fri-mon`, as numbers from 0; a range may continue from Sunday to Monday."""
     first, dash, last = word.partition("-")
     begin = _weekday(first)
     end = _weekday(last) if dash else begin
@@ -174,7 +174,7 @@ def _weekday(word: str) -> int:
 
 
 def _quoted(report: DocumentReport, where: NodePath, key: bool) -> bool:
-    """Whether that node is written with quotes."""
+    """Return True if that node is written with quotes."""
     place = report.document.place(where, key=key)
     lines = lines_of(report.document.text)
     line = lines[place.line - 1] if 0 < place.line <= len(lines) else ""

@@ -1,4 +1,4 @@
-"""Documents against the JSON Schema of their kind: every error at its node, and the data without its broken nodes."""
+"""Check documents against the JSON Schema of their kind: report each error at its node, and prune broken nodes."""
 
 import json
 import re
@@ -28,19 +28,19 @@ from lumen.project.yaml_nodes import read_text
 
 MAX_PRUNING_ROUNDS = 20
 MAX_SCHEMAS = 64
-"""The number of schemas that are kept: of each kind of file, once more for each version of a project's own verbs."""
+"""The number of schemas that are cached: one for each kind of file and version of a project's own verbs."""
 
 _ASTRAY = (UNKNOWN_KEY, ONE_VERB)
-"""What is said of keys that belong below the one above them."""
+"""The codes of complaints about keys that belong below the key above them."""
 
 
 def check_schema(document: Document, kind: str, report: DocumentReport, verbs: OwnVerbs = NO_VERBS) -> Any:
-    """The document's data without what its schema refuses; each error is reported at its node.
+    """Return the document's data without what its schema refuses; each error is reported at its node.
 
-    A broken node is taken out with its key, or as an item of its list; one that lacks a required key is taken out
-    whole, but never the root: a builder asks for the root's required keys itself. None where nothing is left. The
-    report's document becomes the pruned one, so that paths into the returned data have the right places; its `lost`
-    names stand in what was taken out. `verbs` are those that the project declares.
+    A broken node is removed with its key, or as an item of its list. One that lacks a required key is removed as a
+    whole, except the root, whose required keys the builder checks itself. The result is None if nothing is left. The
+    report's document becomes the pruned one, so that paths into the returned data have the right places; the names that
+    were removed are in its `lost`. `verbs` are those that the project declares.
     """
     said: set[NodePath] = set()
     moved: Mapping[Complaint, str] = {}
@@ -67,7 +67,7 @@ def check_schema(document: Document, kind: str, report: DocumentReport, verbs: O
 
 
 def misfits(kind: str, text: str) -> int | None:
-    """The number of findings of the schema of that kind in a text that is only tried; None if it is not YAML."""
+    """Return the number of schema findings in a trial version of a text; None if it is not YAML."""
     try:
         found = _judged(kind, NO_VERBS, text)
     except RecursionError:
@@ -107,7 +107,7 @@ def _add_verbs(schema: Any, kind: str, verbs: Mapping[str, VerbRow]) -> None:
 
 
 def _performance(row: VerbRow) -> dict[str, Any]:
-    """How the recording robot performs an added verb in a story."""
+    """Return the schema for how the recording robot performs an added verb in a story."""
     result = {"description": "What it returns.", **row.result, "type": "object"}
     return {
         "description": "`fails`, `hangs`, a duration, or how long it takes and what it returns",
@@ -119,7 +119,7 @@ def _performance(row: VerbRow) -> dict[str, Any]:
 
 
 def _end(schema: Any, row: VerbRow) -> dict[str, Any]:
-    """How an added verb ends in a story."""
+    """Return the schema for how an added verb ends in a story."""
     if row == UNUSABLE:
         return {}
     result = {"additionalProperties": False, **row.result, "type": "object"}
@@ -127,7 +127,7 @@ def _end(schema: Any, row: VerbRow) -> dict[str, Any]:
 
 
 def _did(verbs: Mapping[str, VerbRow]) -> dict[str, Any]:
-    """An added verb in an expectation."""
+    """Return the schema for an added verb in an expectation."""
     return {
         "description": "A skill or a package's verb that it finished since then; maybe with some of its arguments.",
         "type": ["string", "object"],
@@ -141,12 +141,12 @@ def _did(verbs: Mapping[str, VerbRow]) -> dict[str, Any]:
 
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:
-    """What is wrong with data by a schema that is sound itself."""
+    """Return what is wrong with data by a schema, which must be sound itself."""
     return _faults(JsonSchema(schema), data)
 
 
 def schema_faults(schema: Any) -> list[Complaint]:
-    """What is wrong with a JSON Schema itself."""
+    """Return what is wrong with a JSON Schema itself."""
     return _faults(_schema("message", NO_VERBS), schema)
 
 
@@ -173,7 +173,7 @@ def _key_names(kind: str, verbs: OwnVerbs) -> KeyNames:
 
 
 def _judged(kind: str, verbs: OwnVerbs, text: str) -> list[Complaint] | None:
-    """What the schema of that kind refuses in a text; None if it is not YAML."""
+    """Return what the schema of that kind refuses in a text; None if it is not YAML."""
     document = read_text(text)
     if not document:
         return None
@@ -184,7 +184,7 @@ def _judged(kind: str, verbs: OwnVerbs, text: str) -> list[Complaint] | None:
 def _judge(
     found: list[Complaint], report: DocumentReport, said: set[NodePath], moved: Mapping[Complaint, str], names: KeyNames
 ) -> set[NodePath]:
-    """The nodes that have to go. What follows from a node that went before, and what was said, is not said again."""
+    """Return the paths to prune, and report the findings, except those that follow from others or are known already."""
     suggested = {(c.path[:-1], c.suggestion) for c in found if c.suggestion}
     doomed = {c.doomed for c in found if c.doomed is not None}
     emptied, outdented = _emptied(found, report), _outdented(found, report)
@@ -206,11 +206,11 @@ def _judge(
         if any(path[: len(beside)] == beside for beside in outdented for path in (about, complaint.path)):
             continue
         if about in emptied and complaint.code in _ASTRAY:
-            continue  # what should have been indented further
+            continue  # it should have been indented further
         follows = any(path[: len(about)] == about for path in report.pruned) if about else False
         lost = bool(complaint.missing) and (*about, complaint.missing) in report.pruned
         meant = bool(complaint.missing) and (about, complaint.missing) in suggested
-        tagged = complaint.code == WRONG_TYPE and _begins(report, complaint.path, "!")  # its tag is told
+        tagged = complaint.code == WRONG_TYPE and _begins(report, complaint.path, "!")  # its tag was reported
         if not (follows or lost or meant or tagged or complaint.path in spoken or complaint.path in said):
             hint = complaint.hint
             if complaint.path in emptied.values():
@@ -229,7 +229,7 @@ def _judge(
 
 
 def _emptied(found: list[Complaint], report: DocumentReport) -> dict[NodePath, NodePath]:
-    """The nodes in which a key is empty and keys after it are unknown, each with that key: those belong below it."""
+    """Return the nodes with unknown keys after an empty key to which they probably belong, each with the empty one."""
     empty = {
         c.about[:-1]: c.path for c in found if c.code == WRONG_TYPE and c.path and report.document.value(c.path) is None
     }
@@ -243,7 +243,7 @@ def _emptied(found: list[Complaint], report: DocumentReport) -> dict[NodePath, N
 
 
 def _outdented(found: list[Complaint], report: DocumentReport) -> set[NodePath]:
-    """The nodes that mean nothing where they stand, and that the node before them lacks."""
+    """Return the nodes that are invalid in their place and that the node before them lacks."""
     wrong = {path[:n] for c in found if not c.missing for path in (c.about, c.path) for n in range(1, len(path) + 1)}
     missed = ((c, (*c.about[:-1], c.missing)) for c in found if c.missing and c.about)
     return {beside for c, beside in missed if beside in wrong and _stands_after(report, beside, c.about)}
@@ -255,16 +255,16 @@ def _stands_after(report: DocumentReport, path: NodePath, other: NodePath) -> bo
 
 
 def _cause(complaint: Complaint, report: DocumentReport) -> str:
-    """What several keys of one node have in common that mean nothing there, or are missing: they are one mistake."""
+    """Return the cause that several unknown or missing keys of one node share, since they are usually one mistake."""
     if complaint.suggestion or complaint.code not in (UNKNOWN_KEY, MISSING_KEY):
         return ""
-    if not complaint.about and complaint.hint:  # of the root's keys each may be a mistake of its own
+    if not complaint.about and complaint.hint:  # each unknown key of the root may be a mistake of its own
         return ""
     return f"{report.document.file} keys of {complaint.about}"
 
 
 def _begins(report: DocumentReport, path: NodePath, sign: str) -> bool:
-    """Whether what stands at that path begins with a sign, as it is written."""
+    """Return True if the node at a path is written with this character at its beginning."""
     if path not in report.document.spans:
         return False
     place = report.document.place(path)
@@ -272,7 +272,7 @@ def _begins(report: DocumentReport, path: NodePath, sign: str) -> bool:
 
 
 def _comment(report: DocumentReport, path: NodePath) -> str:
-    """The comment that stands in place of a value, where it may have been meant for one: `onDone: #offer`."""
+    """Return the comment in place of a value, if it may have been meant as the value: `onDone: #offer`."""
     place = report.document.place(path, key=True)
     line = lines_of(report.document.text)[place.line - 1] if path in report.document.spans else ""
     found = re.match(r": +(#[\w.-]+)\s*$", line[place.end_column - 1 :])

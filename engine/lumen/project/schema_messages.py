@@ -1,4 +1,4 @@
-"""What a schema's validator has to say of a value, in a student's words."""
+"""Describe what a schema's validator refuses in a student's words."""
 
 import re
 from collections.abc import Collection, Iterable, Mapping
@@ -31,7 +31,7 @@ _TRUTHS = {"yes": "true", "y": "true", "on": "true", "no": "false", "n": "false"
 
 
 def node(path: NodePath) -> str:
-    """What to call the node at that path."""
+    """Return the name of the node at that path for a message."""
     if not path:
         return "this"
     if isinstance(path[-1], str):
@@ -41,7 +41,7 @@ def node(path: NodePath) -> str:
 
 
 def kind(value: Any) -> str:
-    """What sort of value that is."""
+    """Return the type of a value in words."""
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"
     match value:
@@ -57,7 +57,7 @@ def kind(value: Any) -> str:
 
 
 def wording(error: Error, path: NodePath) -> tuple[str, str]:
-    """Message and hint of a value that is of the wrong type, or not one of those allowed."""
+    """Return the message and the hint about a value of the wrong type, or one that is not allowed."""
     value, bound, name = error.instance, error.validator_value, node(path)
     hint = describe(error.schema)
     match error.validator:
@@ -108,7 +108,7 @@ def wording(error: Error, path: NodePath) -> tuple[str, str]:
 
 
 def describe(schema: Any) -> str:
-    """What a schema says of its values, with an example where it is short."""
+    """Return the description of a schema, with a short example if it has one."""
     if not isinstance(schema, dict):
         return ""
     text = str(schema.get("description", "")).strip().rstrip(".")
@@ -119,7 +119,10 @@ def describe(schema: Any) -> str:
 
 
 def like(path: NodePath, schema: Any, wanted: Iterable[str] = ()) -> str:
-    """The key at the end of a path with an example of its schema that has one of the wanted types; "" without one."""
+    """Return the key at the end of a path with a short example from its schema: "write it as in `at: 2s`".
+
+    The example has one of the wanted types; the text is empty if there is no such example.
+    """
     if not isinstance(schema, dict) or not path or not isinstance(path[-1], str):
         return ""
     types = {*wanted} or {*_JSON_TYPES.values()}
@@ -132,7 +135,7 @@ _JSON_TYPES = {dict: "object", list: "array", str: "string", int: "number", floa
 
 
 def _transition(value: Any, wanted: Collection[str], path: NodePath) -> str:
-    """What to write in place of a transition that lacks its state, or its time or event."""
+    """Return what to write in place of a transition that lacks its state, or its time or event."""
     key, holder = path[-1] if path else "", path[-2] if len(path) > 1 else ""
     if value is None and (key in _MOMENTS or holder in _WAITED):
         moment = _MOMENTS[key] if key in _MOMENTS else _moment(holder, str(key))
@@ -160,19 +163,19 @@ _WAITED = ("after", "at", "on")
 
 
 def _moment(key: str | int, text: str) -> str:
-    """When a row of `after`, `at` or `on` enters its state, as in "after 30 s"."""
+    """Return when a row of `after`, `at` or `on` enters its state, as in "after 30 s"."""
     if key == "after":
         return f"after {re.sub(r'(?<=[0-9])(?=[a-z])', ' ', text)}"
     return f"at {text}" if key == "at" else f"on the event `{text}`"
 
 
 def _yaml(key: str) -> str:
-    """A key as it is written in YAML: a time of day is in quotes."""
+    """Return a key as it is written in YAML: a time of day is in quotes."""
     return f'"{key}"' if ":" in key or " " in key else key
 
 
 def _flow(value: Any) -> str:
-    """A value in one line, as YAML has it between braces and brackets."""
+    """Return a value in one line of YAML, in flow style."""
     match value:
         case dict():
             return "{" + ", ".join(f"{k}: {_flow(v)}" for k, v in value.items()) + "}"
@@ -182,7 +185,7 @@ def _flow(value: Any) -> str:
 
 
 def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> str:
-    """What to write in place of a value of the wrong type that is nearly right."""
+    """Return what to write in place of a value of the wrong type that is nearly right."""
     if "boolean" in wanted and (truth := _truth(value)):
         return f"write `{truth}`: in YAML 1.2 `{value}` is a text"
     if {"number", "integer"} & set(wanted) and isinstance(value, str):
@@ -223,7 +226,7 @@ def _instead(value: Any, wanted: Iterable[str], schema: Mapping[str, Any]) -> st
 
 
 def _truth(value: Any) -> str:
-    """`true` or `false` for a word that means it; empty for anything else."""
+    """Return `true` or `false` for a word with that meaning; empty for any other value."""
     return _TRUTHS.get(value.lower(), "") if isinstance(value, str) else ""
 
 
@@ -232,11 +235,11 @@ _COLOURS = {
     "schwarz": "black", "lila": "purple", "rosa": "pink", "türkis": "turquoise", "merah": "red", "hijau": "green",
     "biru": "blue", "kuning": "yellow", "putih": "white", "hitam": "black", "ungu": "purple", "aus": "off",
 }  # fmt: skip
-"""Colours in the languages of those who wrote the first exhibitions; CSS has English names."""
+"""Colours in the languages of the authors of the first exhibitions; CSS has English names."""
 
 
 def _colour(value: Any, allowed: Collection[str]) -> str:
-    """What to write in place of a colour that has no name of CSS."""
+    """Return what to write in place of a colour that has no name in CSS."""
     if "turquoise" not in allowed or not isinstance(value, str):
         return ""
     if re.fullmatch(r"[0-9a-fA-F]{6}", value):
@@ -245,7 +248,7 @@ def _colour(value: Any, allowed: Collection[str]) -> str:
 
 
 def _unit(unit: str) -> str:
-    """Where to say the unit of a number that has one."""
+    """Return where to declare the unit of a number that has one."""
     kind = "angle" if unit in ("°", "deg", "rad") else "length" if unit in ("m", "cm", "mm") else ""
     name = "deg" if unit == "°" else unit
     return f", and at the top of the file `units: {{{kind}: {name}}}`" if kind else ""

@@ -1,4 +1,4 @@
-"""lumen.yaml, from its plain data to `Settings`: what an exhibition is put together from."""
+"""Build `Settings`, from which an exhibition is composed, from the plain data of lumen.yaml."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -32,17 +32,15 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Settings:
-    """What lumen.yaml says; a text is empty where the file lacks it or what stood there was refused.
-
-    `robot` and what is said of it is that of `robots` whose exhibition this is; `told_apart` where they are several.
-    `removed_routes` are the names of rows that are `null`.
-    """
+    """The content of lumen.yaml; a text is empty if the file lacks it or if its value was refused."""
 
     vocabulary: int = FIRST_VOCABULARY
     name: str = ""
     robot: str = DEFAULT_ROBOT
+    """The robot of this exhibition, one of `robots`; the settings of one robot are this one's."""
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
     told_apart: bool = False
+    """True if lumen.yaml has `robots:`, so that robots are distinguished by name."""
     house: str = ""
     model: str = ""
     hall: str = ""
@@ -52,6 +50,7 @@ class Settings:
     timezone: str = ""
     routes: Mapping[str, Route] = field(default_factory=dict)
     removed_routes: frozenset[str] = frozenset()
+    """The names of rows that are `null`."""
     stage: Stage | None = None
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
@@ -61,14 +60,14 @@ class Settings:
     sections: Sections = field(default_factory=dict)
 
     def section(self, kind: type[T]) -> T:
-        """Return the settings of this type, its defaults if lumen.yaml lacks the section."""
+        """Return the settings of this type; its defaults if lumen.yaml lacks the section."""
         return section_of(self.sections, kind)
 
 
 def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settings:
-    """The settings in the data of lumen.yaml, which has the shape of lumen.schema.json but may lack any key.
+    """Return the settings in the data of lumen.yaml, which has the shape of lumen.schema.json but may lack any key.
 
-    They are those of this `robot`, the first where the name is empty.
+    They are the settings of this `robot`, or of the first one if the name is empty.
     """
     if not isinstance(data, Mapping):
         return Settings()
@@ -104,7 +103,7 @@ def build_settings(data: Any, report: DocumentReport, robot: str = "") -> Settin
 
 
 def said_at(settings: Settings, report: DocumentReport, key: str) -> NodePath:
-    """Where lumen.yaml says what its robot is or does: `model`, `behavior`, `languages`, `story`."""
+    """Return the path of `model`, `behavior`, `languages` or `story` of this robot in lumen.yaml."""
     if settings.told_apart:
         own: NodePath = ("robots", settings.robot, key)
         if key == "model" or key in report.document.data["robots"][settings.robot]:
@@ -113,7 +112,7 @@ def said_at(settings: Settings, report: DocumentReport, key: str) -> NodePath:
 
 
 def other_vocabulary(settings: Settings, report: DocumentReport) -> Diagnostic | None:
-    """What to do about files that this Lumen would misread, None where it reads them; else nothing more can be said."""
+    """Return the finding about files that this Lumen would misread; None if it can read them."""
     place, said = report.document.place((VOCABULARY_KEY,)), settings.vocabulary
     if said > VOCABULARY:
         hint = f"install a newer Lumen; if the files use nothing newer, write `{VOCABULARY_KEY}: {VOCABULARY}`"

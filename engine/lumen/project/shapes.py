@@ -1,4 +1,4 @@
-"""What a state may hold, by its type; a schema can say it only in riddles."""
+"""Check which keys a state of each type may have; a JSON Schema could express this, but only with unclear errors."""
 
 from lumen.language.diagnostics import ERROR, Code, did_you_mean
 from lumen.language.machines import StateKind
@@ -31,7 +31,7 @@ _ARTICLES = {"atomic": "an atomic"}
 
 
 def check_shapes(outline: BehaviorOutline, report: DocumentReport) -> None:
-    """Reports keys that mean nothing in a state of that type, and states that lack what their type needs."""
+    """Report keys that a state of that type can't have, and states that lack what their type needs."""
     for entry in outline.entries.values():
         _check_keys(entry, report)
         _check_children(entry, report)

@@ -1,4 +1,4 @@
-"""`shared:` of lumen.yaml, from its data to the keys that all robots of a house read."""
+"""Read `shared:` of lumen.yaml as the keys that all robots of a house can read."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""What an output of a fuzzy controller does that moves no joint, from the data of `bind`."""
+"""Read the data of `bind` for outputs of a fuzzy controller that move no joint."""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -20,18 +20,18 @@ UNBOUND_OUTPUT = Code(
 )
 
 STEP_SHARE = 0.02
-"""By which part of its range an output has to change to be told anew, where the file does not say."""
+"""The default of `step`: the share of its range by which an output must change to be sent again."""
 
 HYSTERESIS_SHARE = 0.05
-"""By which part of its range an output has to come back before its threshold counts again, where nothing is said."""
+"""The default of `hysteresis`: the share of its range by which an output must return to rearm its threshold."""
 
 
 DEEDS = ("joint", "volume", "message", "context", "event")
-"""What an output can do; it does one of these."""
+"""The kinds of target of an output; each output has only one."""
 
 
 class BindingFault(NamedTuple):
-    """Why what an output is bound to can't be read: a message that goes on from its name, and what would be right."""
+    """Why the binding of an output can't be read; the message continues a sentence that begins with its name."""
 
     code: Code
     message: str
@@ -39,7 +39,7 @@ class BindingFault(NamedTuple):
 
 
 def signal_fault(spec: str | Mapping[str, Any]) -> BindingFault | None:
-    """What is wrong with what an output is bound to, None where nothing is."""
+    """Return the fault of an output's binding; None if it is sound."""
     if isinstance(spec, str):
         return None
     deeds = [deed for deed in DEEDS if deed in spec]
@@ -60,7 +60,7 @@ def signal_fault(spec: str | Mapping[str, Any]) -> BindingFault | None:
 
 
 def build_signal(variable: Variable, spec: str | Mapping[str, Any], path: NodePath) -> SignalBinding | None:
-    """What `volume`, `route.field` or a map at `path` says that the output does; None for a joint."""
+    """Return the binding to `volume`, to `route.field` or to the target in a map at `path`; None for a joint."""
     name = variable.name
     if isinstance(spec, str):
         spec = {"volume": True} if spec == "volume" else {"message": spec}

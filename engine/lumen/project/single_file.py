@@ -1,4 +1,4 @@
-"""A YAML file that is read on its own, without the project around it."""
+"""Read a YAML file on its own, without the project around it."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def parse_file(path: Path) -> tuple[Document | None, list[Diagnostic]]:
 
 
 def read_document(path: Path) -> Document:
-    """Return the document in a file. Raises UsageError if it can't be read, ProjectError if it is no YAML."""
+    """Return the document in a file. Raises UsageError if it can't be read, ProjectError if it is not YAML."""
     document, diagnostics = parse_file(path)
     if document is None or has_errors(diagnostics):
         raise ProjectError(diagnostics)

@@ -1,4 +1,4 @@
-"""Slips of the keyboard and of word processors in one line, each with the line as it was meant."""
+"""Find slips of the keyboard and of word processors in one line, each with the corrected line."""
 
 import json
 import re
@@ -11,10 +11,7 @@ KEY = r"[A-Za-z_][\w.]*"
 
 
 class Slip(NamedTuple):
-    """Where (from 1) and how long it is, what it is, what to write; `meant` are lines by index, as they should be.
-
-    It is told `only_whole`, where it makes the file YAML, or also where a reader gets further with it.
-    """
+    """A slip at a place that counts from 1."""
 
     line: int
     column: int
@@ -22,7 +19,9 @@ class Slip(NamedTuple):
     message: str
     hint: str
     meant: Mapping[int, str]
+    """The corrected lines, by index from 0."""
     only_whole: bool = False
+    """Report it only if the correction makes the whole file valid YAML, not merely more of it."""
 
 
 NOT_CLOSED = (
@@ -99,18 +98,18 @@ _SIGNS: tuple[tuple[re.Pattern[str], str, str, str], ...] = (
 
 
 class _Line(NamedTuple):
-    """A line that may have slipped, and its index in the file."""
+    """A line that may contain a slip, and its index in the file."""
 
     text: str
     row: int
 
     def slip(self, column: int, length: int, words: tuple[str, str], start: int, end: int, meant: str) -> Slip:
-        """A slip of that length at that column; from `start` to `end` should stand what was meant (all from 0)."""
+        """Return a slip of that length at that column; `meant` should replace `start` to `end` (all from 0)."""
         right = self.text[:start] + meant + self.text[end:]
         return Slip(self.row + 1, column + 1, length, *words, {self.row: right})
 
     def quoted(self, start: int, end: int, message: str, hint: str = "") -> Slip:
-        """A text that should stand in quotes."""
+        """Return the slip that a text lacks its quotes."""
         value = self.text[start:end]
         plain = '"' not in value and "\\" not in value
         meant = f'"{value}"' if plain else "'" + value.replace("'", "''") + "'"
@@ -119,7 +118,7 @@ class _Line(NamedTuple):
 
 
 def signs(text: str, index: int) -> Iterator[Slip]:
-    """Signs that stand for others, and blanks that are missing."""
+    """Yield slips about mistaken signs and missing spaces."""
     line = _Line(text, index)
     for pattern, meant, message, hint in _SIGNS:
         if found := pattern.search(text):
@@ -133,7 +132,7 @@ def signs(text: str, index: int) -> Iterator[Slip]:
 
 
 def quotes(text: str, index: int) -> Iterator[Slip]:
-    """A quoted text that is not closed, or that is closed too early."""
+    """Yield slips about a quoted text that is not closed, or closed too early."""
     line, marks = _Line(text, index), marks_of(text)
     if marks.quote:
         sign, column = marks.quote
@@ -153,10 +152,10 @@ def quotes(text: str, index: int) -> Iterator[Slip]:
 
 
 def _early(line: _Line, marks: LineMarks, first: Mark, last: Mark) -> Iterator[Slip]:
-    """A quoted text with something behind it."""
+    """Yield slips about a quoted text that is followed by something."""
     (sign, start), text = first, line.text
     rest = text[last.column + 1 :]
-    if found := re.search(rf"(?P<end>,) *(?:{KEY}: +)?$", text[start : last.column]):  # it opens the next one
+    if found := re.search(rf"(?P<end>,) *(?:{KEY}: +)?$", text[start : last.column]):  # the quote opens the next text
         yield line.slip(start, 1, NOT_CLOSED, start + found.start(), start + found.start(), sign)
     if re.match(rf" +(?:{KEY}|['\"\[{{])", rest):
         yield line.slip(last.column + 1, 1, NO_COMMA, last.column + 1, last.column + 1, ",")
@@ -175,7 +174,7 @@ def _early(line: _Line, marks: LineMarks, first: Mark, last: Mark) -> Iterator[S
 
 
 def _ends(text: str, start: int) -> Iterator[int]:
-    """Where a text that begins there may have been meant to end: before what is like the next key, or at the end."""
+    """Yield the offsets at which a text may have been meant to end: before a likely next key, or at the end."""
     stop = len(text.rstrip())
     if found := re.search(rf", *{KEY}:(?= )", text[start:]):
         yield start + found.start()
@@ -187,7 +186,7 @@ def _ends(text: str, start: int) -> Iterator[int]:
 
 
 def brackets(text: str, index: int) -> Iterator[Slip]:
-    """A bracket that is not closed in its line, or that closes nothing."""
+    """Yield slips about a bracket that its line does not close, or that closes nothing."""
     line, marks = _Line(text, index), marks_of(text)
     if marks.quote:
         return
@@ -211,7 +210,7 @@ def brackets(text: str, index: int) -> Iterator[Slip]:
 
 
 def _cut(line: _Line, marks: LineMarks) -> Iterator[Slip]:
-    """A text in brackets that a comment cuts off."""
+    """Yield slips about a text in brackets that a comment cuts off."""
     text, at = line.text, line.text.index("#", marks.stop)
     start = next(
         (i + 2 for i in range(marks.stop - 1, 0, -1) if text[i : i + 2] in (": ", ", ")), marks.open[-1].column + 1
@@ -223,12 +222,12 @@ def _cut(line: _Line, marks: LineMarks) -> Iterator[Slip]:
 
 
 def not_closed(sign: str, close: str) -> tuple[str, str]:
-    """What is said of a bracket that is not closed."""
+    """Return the message and the hint about a bracket that is not closed."""
     return f"the bracket `{sign}` is not closed", f"write `{close}` after its last entry"
 
 
 def _braces(line: _Line, marks: LineMarks) -> Iterator[Slip]:
-    """`{{` without quotes: YAML takes it for a map in a map."""
+    """Yield slips about `{{` without quotes, which YAML reads as a map in a map."""
     start = marks.braces[0]
     words = BARE_BRACES, QUOTE_BRACES
     ends = [found.end() for found in re.finditer(r"\}\}", line.text) if found.end() > start]
@@ -238,7 +237,7 @@ def _braces(line: _Line, marks: LineMarks) -> Iterator[Slip]:
 
 
 def colons(text: str, index: int) -> Iterator[Slip]:
-    """A key without its colon, or a value with one that is none of YAML's."""
+    """Yield slips about a key without its colon, or a value with one that YAML misreads."""
     line, item = _Line(text, index), r"^ *(?:- +)*"
     if found := re.search(rf"{item}(?:\{{ *)?(?P<key>{KEY})(?P<rest> +[^ :#].*| *)$", text):
         start, end, rest = *found.span("key"), found["rest"].strip()
@@ -261,7 +260,7 @@ def colons(text: str, index: int) -> Iterator[Slip]:
     found = re.search(rf"{item}(?P<key>{KEY}): +(?P<value>(?P<inner>#?[a-z][\w.]*): .*?) *$", text)
     if found and (
         len(found["key"]) > 2 or found["key"] in ("on", "do", "at", "if")
-    ):  # a language has two letters, and a text behind it
+    ):  # a two-letter key is a language, followed by a text
         message = f"two keys are on one line: `{found['key']}` and `{found['inner']}`"
         hint = f"write `{found['inner']}:` on the next line, indented further, or put quotes around it if it is a text"
         yield line.quoted(*found.span("value"), message, hint)
@@ -275,13 +274,13 @@ _TRANSLATION = re.compile(
     r"""(?<=[{,])\s*(?:[a-z]{2}|any): +"""
     r"""(?P<value>[^"'\[\]{},: ][^"'\[\]{},:]*(?<! [a-z]{2})(?<! any): [^"'\[\]{},]*[^"'\[\]{}, ])"""
 )
-"""A text of a language with a colon in it, behind a word that is no language itself."""
+"""A text with a colon in it under a language, after a word that is no language itself."""
 
 
 def flows(text: str, index: int) -> Iterator[Slip]:
-    """What is missing in brackets: commas, colons, and quotes around texts with a colon in them."""
+    """Yield slips inside brackets: missing commas and colons, and missing quotes around texts with a colon."""
     line = _Line(text, index)
-    for found in re.finditer(_TRANSLATION, text):  # before the comma: these words are no keys
+    for found in re.finditer(_TRANSLATION, text):  # before the missing commas, because these words are no keys
         yield line.quoted(*found.span("value"), COLON_IN_TEXT)
     for found in re.finditer(rf"(?<=[\w\"'\]}}.])(?P<slip> +)(?={KEY}: )", text):
         yield line.slip(found.start(), 1, NO_COMMA, found.start(), found.start(), ",")

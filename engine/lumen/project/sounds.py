@@ -1,4 +1,4 @@
-"""Sound files of a project: WAV of 16 bits, one channel or two."""
+"""Sound files of a project: WAV with 16 bits, one channel or two."""
 
 import wave
 from pathlib import Path
@@ -6,15 +6,16 @@ from pathlib import Path
 from lumen.project.files import on_disk
 
 MAX_SOUND_DURATION = 600.0
-"""How long a sound may be [s]."""
+"""The maximum duration of a sound [s]."""
 RATES = (8_000, 96_000)
-"""The least and the most samples a second."""
+"""The lowest and the highest sample rate [Hz]."""
 
 
 def sound_duration(root: Path, file: str) -> float:
-    """How long a sound of the project takes [s].
+    """Return the duration of a sound of the project [s].
 
-    Raises OSError where it is not there or outside of the project, ValueError with a reason where it can't be played.
+    Raises FileNotFoundError if it is absent or outside the project, OSError if it can't be read, and ValueError with a
+    reason if it can't be played.
     """
     path = on_disk(root, file)
     if not path.resolve().is_relative_to(root.resolve()) or not path.is_file():

@@ -1,4 +1,4 @@
-"""A behaviour without a project around it: from its file and those beside it, or from dicts."""
+"""Build a behaviour without a project: from its file and those in its folder, or from dicts."""
 
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
@@ -35,7 +35,7 @@ ReadDocument = Callable[[str], tuple[Document | None, list[Diagnostic]]]
 def machine_from_file(path: Path) -> MachineDefinition:
     """Return the machine in a file; behaviours that it invokes are in the same folder.
 
-    The functions that it calls are in the folder `functions` beside that folder. Raises UsageError if a file can't be
+    The functions that it calls are in a folder `functions` next to that folder. Raises UsageError if a file can't be
     read, ProjectError for faults of the files.
     """
     beside, words = _yaml_files(path.parent), _yaml_files(path.parent / "words")
@@ -48,9 +48,9 @@ def machine_from_file(path: Path) -> MachineDefinition:
 def machine_from_dict(
     data: Mapping[str, Any], name: str, behaviors: Mapping[str, Any], words: Mapping[str, Any] = MappingProxyType({})
 ) -> MachineDefinition:
-    """The machine that a dict of a file's shape describes; `behaviors` are those that it may invoke, by name.
+    """Return the machine that a dict with the shape of a file describes. Raises ProjectError for its faults.
 
-    `words` are the words files that they may name. Raises ProjectError.
+    `behaviors` are those that it may invoke, by name; `words` are the words files that they may name.
     """
     return _Family(_Shelf.of_dicts({**behaviors, name: data}), _Shelf.of_dicts(words), _Shelf.of_dicts({})).head(name)
 
@@ -60,14 +60,14 @@ def _yaml_files(folder: Path) -> dict[str, Path]:
 
 
 class _Shelf(NamedTuple):
-    """Documents of one kind that may be read by their names."""
+    """Documents of one kind that can be read by name."""
 
     read: ReadDocument
     names: Collection[str]
 
     @classmethod
     def of_files(cls, files: Mapping[str, Path]) -> Self:
-        """Those in files; reading one raises UsageError where that can't be done."""
+        """Return the shelf of these files; reading one that is unreadable raises UsageError."""
         return cls(lambda name: parse_file(files[name]), files.keys())
 
     @classmethod
@@ -77,14 +77,14 @@ class _Shelf(NamedTuple):
 
 @cache
 def supplied_words() -> BuiltFile[Words]:
-    """The words that come with Lumen, for behaviours without a project."""
+    """Return the words that come with Lumen, for behaviours without a project."""
     read, _ = read_file(COMMON_FILE, common_words(), "words", build_words)
-    assert read is not None  # it is tested
+    assert read is not None  # a test ensures it
     return read
 
 
 class _Family:
-    """A behaviour, those that it invokes, and those that they invoke.
+    """A behaviour and those that it invokes, at every depth.
 
     `words` are the words files in their folder, `functions` those that they may call.
     """
@@ -98,7 +98,7 @@ class _Family:
         self.functions = self.join(functions)
 
     def head(self, name: str) -> MachineDefinition:
-        """The machine of that name, its family linked; raises ProjectError."""
+        """Return the machine of that name, linked to those that it invokes. Raises ProjectError."""
         waiting = [name]
         while waiting:
             each = waiting.pop()
@@ -107,14 +107,14 @@ class _Family:
         linked = link(self.machines, self.reports, self.names)
         reports = [*self.reports.values(), *(file.report for file in self.words.values())]
         found = [*self.loose, *(d for r in reports for d in r.diagnostics if not r.follows(d.code, d.message))]
-        if any(report.pruned for report in self.reports.values()):  # perhaps for a broken function
+        if any(report.pruned for report in self.reports.values()):  # perhaps because of a broken function
             found += self.function_faults
         if name not in linked or has_errors(found):
             raise ProjectError(found)
         return linked[name]
 
     def build(self, name: str) -> list[str]:
-        """Build one of them; what it invokes."""
+        """Build one of the behaviours; return the names of those that it invokes."""
         document, diagnostics = self.read(name)
         self.loose += diagnostics
         report = self.reports[name] = DocumentReport(document or Document(name, None))
@@ -137,7 +137,7 @@ class _Family:
         return [invoke.behavior for state in machine.states.values() for invoke in state.invoke]
 
     def join(self, shelf: _Shelf) -> KnownFunctions:
-        """Read all functions; faults of one count only if the behaviours call it."""
+        """Return all functions; the faults of one count only if the behaviours call it."""
         read, faults = dict[str, BuiltFile[FunctionFile]](), list[Diagnostic]()
         for name in shelf.names:
             document, diagnostics = shelf.read(name)

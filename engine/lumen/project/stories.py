@@ -1,4 +1,4 @@
-"""A story file, `behaviors/stories/NAME.yaml`, from its plain data to a `Story`."""
+"""Build a `Story` from the plain data of a story file, `behaviors/stories/NAME.yaml`."""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -38,7 +38,7 @@ from lumen.project.schedules import BAD_TIME, schedule
 from lumen.project.units import BAD_DURATION, seconds
 
 DEFAULT_WITHIN = 30.0
-"""How long an expectation waits where it does not say [s]."""
+"""The default of `within`: how long an expectation waits [s]."""
 
 
 def build_story(
@@ -76,7 +76,7 @@ def build_story(
 
 
 def _performances(data: Mapping[str, Any], report: DocumentReport) -> dict[str, str | float]:
-    """`fails`, `hangs` or a duration [s] by verb; a map has the duration under `takes`."""
+    """Return `fails`, `hangs` or a duration [s] by verb; in a map, the duration is under `takes`."""
     found = {}
     for verb, how in data.items():
         if not isinstance(how, Mapping):
@@ -87,7 +87,7 @@ def _performances(data: Mapping[str, Any], report: DocumentReport) -> dict[str, 
 
 
 def _performance(how: str, report: DocumentReport, where: NodePath) -> str | float:
-    """`fails`, `hangs`, or a duration [s]."""
+    """Return `fails`, `hangs`, or a duration [s]; one that can't be read is reported and counts as `fails`."""
     if how in ("fails", "hangs"):
         return how
     length = seconds(how)
@@ -140,7 +140,7 @@ def _operator(body: Mapping[str, Any]) -> VisitorAction:
 
 
 def _moment(text: str, report: DocumentReport, where: NodePath) -> Schedule | None:
-    """A time of day, which may name the day; a story begins once."""
+    """Return a time of day, which may include the day; several times are reported, because a story begins once."""
     found = schedule(text, report, where)
     if found and len(found.times) > 1:
         hint = "write one of them here, and a separate story for each of the others"
@@ -162,7 +162,7 @@ def _visitor(body: Any, report: DocumentReport, where: NodePath) -> VisitorActio
 
 
 def _did(data: Any, verbs: OwnVerbs) -> dict[str, Mapping[str, Any]]:
-    """The added verb in `did: blink`, `did: {blink: 3}` or `did: {blink: {times: 3}}`, and its arguments."""
+    """Return the added verb in `did: blink`, `did: {blink: 3}` or `did: {blink: {times: 3}}`, and its arguments."""
     if isinstance(data, str):
         return {data: {}}
     return {verb: given_arguments(verbs.all[verb], given) for verb, given in data.items()}

@@ -12,9 +12,9 @@ from lumen.project.terms import TWO_SHAPES
 
 
 def spread(report: DocumentReport) -> Any:
-    """The data with each cell of the table moved to the variable it belongs to; its place stays where it was written.
+    """Return the data with each cell of the table moved to its variable; its place in the file stays the same.
 
-    A cell of no variable, and one of a term that the variable has already, is reported.
+    A cell without a variable, and one of a term that the variable already has, is reported.
     """
     document = report.document
     if not document.data.get("terms"):
@@ -49,7 +49,7 @@ class _Table:
             hint = did_you_mean(name, names, "the variables are")
             message, cause = f"there is no variable `{name}`", f"{self.report.document.file} unknown-variable {name}"
             self.report(UNKNOWN_VARIABLE, path, message, hint=hint, key=True, cause=cause)
-            self.report.lost.add(term)  # its own variable has none of that name now
+            self.report.lost.add(term)  # the intended variable now lacks a term of that name
             return
         if term in self.sides[side][name]["terms"]:
             message = f"`{name}` already has a term `{term}`: a term can have only one shape"
@@ -59,7 +59,7 @@ class _Table:
         self.moved(path, (side, name, "terms", term), kind)
 
     def moved(self, path: NodePath, to: NodePath, kind: str) -> None:
-        """The cell's place under its new path, and those of its numbers."""
+        """Add the places of the cell and its numbers under the new path."""
         if any(lost[: len(path)] == path for lost in self.report.pruned):
             self.report.pruned.add((*to, kind))
         found = self.report.document.spans.get(path)

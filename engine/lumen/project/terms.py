@@ -1,4 +1,4 @@
-"""The terms of a fuzzy variable: which kind, how many parameters, and whether they make a shape."""
+"""Read the terms of a fuzzy variable, and check their kind, number of parameters, and shape."""
 
 from collections.abc import Mapping, Sequence
 from math import inf, isfinite
@@ -33,17 +33,17 @@ _INFINITE = ("triangle", "trapezoid", "binary", "rectangle")
 def build_terms(
     data: Mapping[str, Any], report: DocumentReport, path: NodePath, inputs: int, names: Sequence[str] = ()
 ) -> dict[str, Term]:
-    """The usable ones of these terms, by name; what is wrong with the others is reported at its number.
+    """Return the usable terms by name; the faults of the others are reported at the faulty number.
 
-    `inputs` is how many inputs the controller has, of which each `linear` term takes a coefficient; `names` are the
-    variables that a formula may ask for.
+    `inputs` is the number of inputs of the controller, for each of which a `linear` term has a coefficient; `names` are
+    the variables that a formula may use.
     """
     terms = (_Term(name, shape, report, (*path, name), inputs, names).build() for name, shape in data.items())
     return {term.name: term for term in terms if term}
 
 
 def plain_name(name: str, report: DocumentReport, path: NodePath) -> None:
-    """Report a name that a rule could not tell from its own words."""
+    """Report a name that is a keyword in rules."""
     if name.lower() in KEYWORDS:
         report(RESERVED_NAME, path, f"`{name}` is a keyword in rules", hint="choose another name", key=True)
 
@@ -158,7 +158,7 @@ class _Term:
 
 
 def _flat(value: Any) -> tuple[float, ...]:
-    """A number, a list of numbers or a list of points as one row of numbers."""
+    """Return a number, a list of numbers or a list of points as one row of numbers."""
     if isinstance(value, list | tuple):
         return tuple(number for item in value for number in _flat(item))
     return (float(value),)

@@ -10,10 +10,10 @@ from lumen.project.document import Document
 
 
 def whole_text(document: Document, path: NodePath, *, by_language: bool = False) -> str:
-    """Return the entry whose text continues in the key at `path`, quoted: `en: "Oh, step back"`; "" if there is none.
+    """Return the entry whose text continues in the key at `path`, quoted: `en: "Oh, step back"`; "" if no entry does.
 
-    The rest of a text is a key without a colon, behind an entry that is a text. If a colon is in the rest, it is a key
-    with a text; that counts only in a map `by_language`, for keys that are no language.
+    The rest of a text is a key without a colon, after an entry that is a text. If the rest contains a colon, it is a
+    key with a text; that counts only in a map `by_language`, for keys that are no language.
     """
     around = document.find(path[:-1])
     if not path or not isinstance(around, dict) or path[-1] not in around:
@@ -51,7 +51,7 @@ def _is_rest(document: Document, path: NodePath, value: Any, by_language: bool) 
 
 
 def _follows(document: Document, path: NodePath) -> str:
-    """The sign that follows a key in the file."""
+    """Return the character that follows a key in the file."""
     if path not in document.spans:
         return ":"
     place = document.place(path, key=True)

@@ -1,4 +1,4 @@
-"""Transitions of a behaviour: `on`, `always`, `after`, `at`, `onDone` and `onError`, their targets resolved."""
+"""Read transitions of a behaviour, `on`, `always`, `after`, `at`, `onDone` and `onError`, with resolved targets."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -27,7 +27,7 @@ ENDLESS_ALWAYS = Code("endless-always", "statecharts", ERROR, "an `always` would
 
 _OUTSIDE = frozenset(("on", "hears"))
 _OWN = ("done", "error", "after", "at")
-"""How the names of events begin that come from within."""
+"""The first words of names of internal events."""
 
 PlacedValue = tuple[NodePath, Any]
 
@@ -43,15 +43,15 @@ class TransitionReader:
         self.rows = HearsKeys(report, expressions)
 
     def of(self, entry: OutlinedState) -> tuple[Transition, ...]:
-        """The candidates of a state, in the order of the file; broken ones are left out."""
+        """Return the candidates of a state, in the order of the file, without broken ones."""
         return tuple(found for key, body in entry.data.items() for found in self._under(entry, key, body))
 
     def targets(
         self, entry: OutlinedState, body: Any, where: NodePath, written: Any = None
     ) -> list[OutlinedState] | None:
-        """The states that a target or a list of them names; None (and reported) where one is wrong.
+        """Return the states that a target or a list of them names; if one is wrong, report it and return None.
 
-        `written` is how the file has them, where that differs.
+        `written` is the target as the file has it, if that differs.
         """
         rows = _rows(body, where)
         shown = [text for _, text in _rows(written or body, where)]
@@ -88,7 +88,7 @@ class TransitionReader:
                 yield from self._candidates(entry, body, where, event=f"error.do.{entry.name}", exact=True)
 
     def _heard(self, entry: OutlinedState, key: str, body: Any, where: NodePath) -> Iterator[Transition]:
-        """The candidates of a row of `hears`."""
+        """Yield the candidates of a row of `hears`."""
         way, names = self.rows.read(key, where)
         if way == "" and not names:
             self.report.pruned.add(where)
@@ -113,7 +113,7 @@ class TransitionReader:
                 event = f"at.{''.join(found.text.split())}.{entry.name}"
                 yield from self._candidates(entry, rows, (*where, text), event=event, exact=True, schedule=found)
             else:
-                self.report.pruned.add((*where, text))  # what it leads to is not gone to for this reason
+                self.report.pruned.add((*where, text))  # its target counts as unreachable for this reason
 
     def _candidates(
         self,
@@ -134,7 +134,10 @@ class TransitionReader:
                 yield replace(found, delay=delay, schedule=schedule, exact=exact, where=place)
 
     def _one(self, entry: OutlinedState, row: Any, where: NodePath, event: str, leaves: bool) -> Transition | None:
-        """A candidate; `leaves` says that an event, or one that stands before it with a guard, ends what it repeats."""
+        """Return a candidate; None if it is broken, which is reported.
+
+        `leaves` is true if an event, or a candidate before it with a guard, keeps it from repeating forever.
+        """
         if isinstance(row, str):
             row, place = {"target": row}, where
         else:
@@ -165,7 +168,7 @@ class TransitionReader:
         )
 
     def _approval(self, data: Any, where: NodePath, event: str) -> Approval | None:
-        """What has to be approved, None (and reported) where nothing can wait."""
+        """Return what must be approved; if the transition can't wait for approval, report that and return None."""
         if event == "*" or event.split(".")[0] in _OWN or len(set(where) & _OUTSIDE) == 0:
             message = "only a transition that is started by an event from outside can wait for approval"
             hint = "go to a state that waits for a button, and add `approve` to the transition in its `on`"
@@ -190,10 +193,10 @@ _Nested = TypeVar("_Nested")
 
 
 def rivals(states: Sequence[_Nested], kind: Callable[[Any], str]) -> tuple[_Nested, _Nested] | None:
-    """Two states that can't be targets together, None where all can.
+    """Return two states that can't be targets together; None if all can.
 
-    From each one goes up: where two come to a state that is not parallel from different children, they are rivals. A
-    history speaks for all that is in its parent.
+    From each state the search ascends: if two of them reach a state that is not parallel from different children, they
+    are rivals. A history counts as everything in its parent.
     """
     came: dict[int, tuple[Any, _Nested]] = {}
     outer: Sequence[Any] = states

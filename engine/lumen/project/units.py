@@ -1,4 +1,4 @@
-"""Durations, angles and lengths as people write them, in SI."""
+"""Convert durations, angles and lengths as people write them to SI."""
 
 from collections.abc import Mapping
 from math import pi
@@ -33,7 +33,7 @@ class JointUnits(NamedTuple):
 
 
 def joint_units(data: Any) -> JointUnits:
-    """Return the units that the `units` of a file name; those of SI if it names none."""
+    """Return the units that the `units` of a file name; SI units if it names none."""
     units = data.get("units") if isinstance(data, Mapping) else None
     given = units if isinstance(units, Mapping) else {}
     return JointUnits(given.get("angle", "rad"), given.get("length", "m"))

@@ -1,4 +1,4 @@
-"""The routes that come with Lumen, as far as the behaviours of a project use them: nobody needs to write their rows."""
+"""The routes that come with Lumen and that a project's behaviours use without rows of their own."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -16,7 +16,7 @@ from lumen.project.settings import Settings
 
 
 class _Uses(NamedTuple):
-    """What a behaviour hears and the routes on which it publishes, each with its first place; the events it makes."""
+    """The events that a behaviour hears and the routes it publishes to, with first places; the events it makes."""
 
     heard: Mapping[str, NodePath]
     published: Mapping[str, NodePath]
@@ -29,11 +29,11 @@ def used_routes(
     controllers: Iterable[ControllerDefinition],
     lost: Collection[str],
 ) -> dict[str, Route]:
-    """Return the routes that come with Lumen and hold in this project, each with the places that use it.
+    """Return the routes that come with Lumen and apply to this project, each with the places that use it.
 
-    A route holds if a behaviour hears its event, by name and not by `*`, or publishes to it. What the project says
-    itself wins: a row of the same name, key, alias or event, a row that is `null`, and an event of the same name that
-    its behaviours declare, raise or send, or that its buttons or controllers raise. `lost` are names that stand in
+    A route applies if a behaviour hears its event, by name and not by `*`, or publishes to it. The project's own
+    declarations have priority: a row of the same name, key, alias or event, a row that is `null`, and an event of the
+    same name that its behaviours declare, raise or send, or that its buttons or controllers raise. `lost` are names in
     broken rows of lumen.yaml.
     """
     used = {f"behaviors/{name}.yaml": _uses(machine) for name, machine in behaviors.items()}

@@ -1,4 +1,4 @@
-"""The variables of a fuzzy controller: range, terms, and an output's way to a number."""
+"""Read the variables of a fuzzy controller: ranges, terms, and the defuzzification of outputs."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -20,7 +20,7 @@ TERM_WITHOUT_VALUE = Code(
 
 
 def build_variables(data: Mapping[str, Any], report: DocumentReport, side: str) -> dict[str, Variable]:
-    """The usable `inputs` or `outputs` (`side`) of a controller's data, by name."""
+    """Return the usable `inputs` or `outputs` (`side`) of a controller's data, by name."""
     reader = _Variables(data, report, side)
     found = (reader.variable(name, spec) for name, spec in data[side].items())
     return {variable.name: variable for variable in found if variable}
@@ -68,7 +68,10 @@ class _Variables:
             self.report(DUPLICATE_VARIABLE, ("outputs", name), message, hint="rename one of them", key=True)
 
     def named_in(self, name: str) -> tuple[str, ...]:
-        """The variables that a formula of this one's terms may ask for: with weights, what is known before it."""
+        """Return the variables that a formula in the terms of this one may use.
+
+        With a weighted defuzzifier, these are the inputs and the outputs before it; otherwise none.
+        """
         spec = self.data[self.side][name]
         if (
             self.side == "inputs"
@@ -79,7 +82,7 @@ class _Variables:
         return (*self.data["inputs"], *outputs[: outputs.index(name)])
 
     def spans(self, name: str, low: float, high: float) -> bool:
-        """Whether the range holds something; an input's may be without end."""
+        """Return True if the range is not empty, and for an output finite; report it if not."""
         path: NodePath = (self.side, name, "range")
         if not low < high:
             hint = (
@@ -94,7 +97,7 @@ class _Variables:
         return False
 
     def defuzzified(self, variable: Variable, spec: Mapping[str, Any]) -> Variable:
-        """The output with its own or the file's way to a number; weights add up where nothing else is said."""
+        """Return the output with its own defuzzification, or the file's; weighted ones are added up by default."""
         said = {**self.operators, **spec}
         method = said.get("defuzzifier", "centroid")
         usual = "unbounded-sum" if method in WEIGHTED_DEFUZZIFIERS else "maximum"
@@ -107,7 +110,7 @@ class _Variables:
         )
 
     def fits(self, variable: Variable) -> None:
-        """Report terms that the variable can't use: a value where a set is asked for, or the other way round."""
+        """Report terms that the variable can't use: a value if it needs a set, or a set if it needs a value."""
         output = self.side == "outputs"
         weighted = output and variable.weighted
         for term in variable.terms.values():

@@ -1,4 +1,4 @@
-"""The place of a single word within a text of a document."""
+"""Find the place of a single word within a text of a document."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from lumen.project.document_report import DocumentReport
 def report_word(
     report: DocumentReport, code: Code, path: NodePath, text: str, offset: int, length: int, message: str, hint: str
 ) -> None:
-    """Report something of `text[offset : offset + length]`, where `text` is the scalar at `path`."""
+    """Report a finding about `text[offset : offset + length]`, where `text` is the scalar at `path`."""
     before = len(report.diagnostics)
     word = text[offset : offset + length]
     report(code, path, message, hint=hint, cause=f"{report.document.file} {code} {word}" if "unknown" in code else "")
@@ -21,11 +21,11 @@ def report_word(
 
 
 def place_of(document: Document, path: NodePath, text: str, offset: int, length: int) -> Place:
-    """The place of `text[offset : offset + length]`, where `text` is the scalar at `path`.
+    """Return the place of `text[offset : offset + length]`, where `text` is the scalar at `path`.
 
-    Follows the text through quotes, folded lines and blocks by its visible characters. What can't be followed so (an
-    escape), and a document without a source, gives the place of the whole text. At the end of the text it is the
-    character after it.
+    The text is followed through quotes, folded lines and blocks by its visible characters. If that fails (at an
+    escape), or if the document has no source, the place is that of the whole text. At the end of the text, it is that
+    of the character after it.
     """
     whole = document.place(path)
     columns = _columns(document, whole, text)
@@ -41,7 +41,7 @@ def place_of(document: Document, path: NodePath, text: str, offset: int, length:
 
 
 def _columns(document: Document, whole: Place, text: str) -> dict[int, tuple[int, int]]:
-    """Line and column of each visible character of the text; empty where one can't be found."""
+    """Return line and column of each visible character of the text; empty if one can't be found."""
     lines = lines_of(document.text)
     first = lines[whole.line - 1] if document.text and whole.line <= len(lines) else ""
     line, column = whole.line, whole.column
@@ -65,5 +65,5 @@ def _columns(document: Document, whole: Place, text: str) -> dict[int, tuple[int
 
 
 def _skippable(between: str) -> bool:
-    """Whether only spaces and quotes stand between two characters of a text."""
+    """Return True if there are only spaces and quotes between two characters of a text."""
     return not between.strip(" \t'\"")

@@ -1,4 +1,4 @@
-"""A words file, `behaviors/words/NAME.yaml`, from its plain data to `Words`."""
+"""Build `Words` from the plain data of a words file, `behaviors/words/NAME.yaml`."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,12 +11,12 @@ ANYHOW = "anyhow"
 
 
 def build_words(data: Any, report: DocumentReport, *, name: str) -> Words | None:
-    """What the data of `behaviors/words/NAME.yaml` holds, None where that is no map."""
+    """Return the content of `behaviors/words/NAME.yaml`; None if the data is not a map."""
     return Words(name, **tables(data), anyhow=anyhow(data)) if isinstance(data, Mapping) else None
 
 
 def tables(data: Mapping[str, Any]) -> dict[str, Any]:
-    """The tables that a words file and a behaviour may both hold, each by its key."""
+    """Return the tables that both a words file and a behaviour may have, by key."""
     return {
         "phrases": {key: _phrases(body) for key, body in (data.get("phrases") or {}).items()},
         "answers": {key: _answers(rows) for key, rows in (data.get("answers") or {}).items()},
@@ -25,7 +25,7 @@ def tables(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def anyhow(data: Mapping[str, Any]) -> frozenset[str]:
-    """The names of phrases that count even if they are negated."""
+    """Return the names of phrases that match even if they are negated."""
     phrases = data.get("phrases") or {}
     return frozenset(name for name, body in phrases.items() if isinstance(body, Mapping) and body.get(ANYHOW) is True)
 

@@ -1,8 +1,7 @@
-"""The nodes of a YAML file, composed from libyaml's events.
+"""Compose the nodes of a YAML file from libyaml's events.
 
-libyaml's own composer calls itself for every level: 60,000 brackets end the process. Here depth and number are counted
-event by event, an alias as all that it stands for, and what is too much ends the reading there, before it is parsed any
-further.
+libyaml's own composer is recursive: 60,000 brackets end the process. Here depth and number of nodes are counted with
+each event, an alias as many nodes as it refers to, and reading stops before too large a file is parsed any further.
 """
 
 from collections.abc import Callable, Mapping
@@ -14,7 +13,7 @@ from yaml.composer import ComposerError
 from lumen.project.document import MAX_NODE_DEPTH, MAX_NODES
 
 MAX_TAG_DIRECTIVES = 100
-"""libyaml compares each with all before it."""
+"""The maximum number of tag directives; libyaml compares each with all before it."""
 
 _TEXT, _LIST, _MAP = "tag:yaml.org,2002:str", "tag:yaml.org,2002:seq", "tag:yaml.org,2002:map"
 PLAIN_TAGS = frozenset((_TEXT, _LIST, _MAP))
@@ -22,7 +21,7 @@ PLAIN_TAGS = frozenset((_TEXT, _LIST, _MAP))
 
 
 class TooLargeError(Exception):
-    """The file holds too much, in words, from this mark on."""
+    """Raised if the file is too large from this mark on; the message says in which respect."""
 
     def __init__(self, what: str, mark: Any) -> None:
         super().__init__(what)
@@ -30,7 +29,7 @@ class TooLargeError(Exception):
 
 
 class UnknownAliasError(ComposerError):
-    """An alias names an anchor that is not above it."""
+    """Raised if an alias names an anchor that is not above it."""
 
     def __init__(self, name: str, known: tuple[str, ...], mark: Any) -> None:
         super().__init__(None, None, "found undefined alias", mark)
@@ -44,8 +43,8 @@ _OLD_BREAKS = "\x85\u2028\u2029"
 def shielded(text: str) -> tuple[str, Mapping[int, str]]:
     """Replace the characters that only YAML 1.1 reads as line breaks; return the text and the map to undo it.
 
-    Places stay the same: one character replaces one. The new ones come from the private use area and are not in the
-    text.
+    Places stay the same, because one character replaces one. The new ones come from the private use area and are not in
+    the text.
     """
     old = [sign for sign in _OLD_BREAKS if sign in text]
     if not old:
@@ -56,9 +55,9 @@ def shielded(text: str) -> tuple[str, Mapping[int, str]]:
 
 
 def compose(text: str) -> yaml.Node | None:
-    """The root of the file's only document, None where it holds nothing; tags of plain scalars are not resolved.
+    """Return the root of the file's only document; None if it is empty. Tags of plain scalars are not resolved.
 
-    Raises TooLargeError, or a YAMLError for what is not YAML.
+    Raises TooLargeError, or a YAMLError if the text is not YAML.
     """
     if text.count("%TAG") > MAX_TAG_DIRECTIVES:
         raise TooLargeError(f"more than {MAX_TAG_DIRECTIVES} tag directives", None)
@@ -128,14 +127,14 @@ class _Composer:
         return node
 
     def _named(self, event: Any, node: yaml.Node) -> yaml.Node:
-        """The node, known by its anchor from here on: an anchor may be used again (YAML 1.2, 3.2.2.2)."""
+        """Return the node, after storing it under its anchor, which may be defined again (YAML 1.2, 3.2.2.2)."""
         if event.anchor is not None:
             self._anchors[event.anchor] = node
             self._sizes.pop(event.anchor, None)
         return node
 
     def _named_before(self, event: Any) -> yaml.Node:
-        """The node that an alias stands for."""
+        """Return the node that an alias refers to."""
         if event.anchor not in self._anchors:
             raise UnknownAliasError(event.anchor, tuple(self._anchors), event.start_mark)
         if event.anchor not in self._sizes:

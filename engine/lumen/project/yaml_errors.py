@@ -1,4 +1,4 @@
-"""What to say of a file that is not YAML: where it went wrong, in a student's words."""
+"""Describe what is wrong with a file that is not YAML, and where, in a student's words."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -34,14 +34,14 @@ TABBED = re.compile(r"[ \t]*\t[ \t]*")
 """The beginning of a line that is indented with a tab."""
 
 TAB_WIDTHS = (2, 4, 8)
-"""How many spaces a tab may have been meant for."""
+"""The numbers of spaces for which a tab may have been meant."""
 
 _MOST_NULS = 0.2
-"""The share of zero bytes above which a file is read as UTF-16 without a mark at its beginning."""
+"""The share of zero bytes above which a file counts as UTF-16 without a byte order mark."""
 
 
 def merge_conflict(file: str, text: str) -> Diagnostic | None:
-    """What to say of a file that holds both sides of a merge, None where it does not."""
+    """Return the finding about a file that holds both sides of a merge; None if it does not."""
     begun = (_CONFLICT.match(line) for line in lines_of(text))
     line, found = next(((number, match) for number, match in enumerate(begun, 1) if match), (0, None))
     if found is None:
@@ -52,7 +52,7 @@ def merge_conflict(file: str, text: str) -> Diagnostic | None:
 
 
 def not_utf8(file: str, content: bytes, at: int) -> Diagnostic:
-    """What to say of bytes that are no UTF-8 from there on."""
+    """Return the finding about bytes that are not UTF-8 from offset `at` on."""
     if _is_utf16(content):
         return _utf16(file)
     before = lines_of(content[:at].decode("utf-8-sig", "replace"))
@@ -67,12 +67,12 @@ def _utf16(file: str) -> Diagnostic:
 
 
 def _is_utf16(content: bytes) -> bool:
-    """Whether the bytes begin with the mark of UTF-16, or hold as many zeros as a text of it does."""
+    """Return True if the bytes begin with the byte order mark of UTF-16, or contain as many zeros as such a text."""
     return content[:2] in (b"\xff\xfe", b"\xfe\xff") or content.count(0) > _MOST_NULS * len(content)
 
 
 def not_allowed(file: str, text: str) -> Diagnostic | None:
-    """The finding for a character that YAML does not allow (5.1); None if there is no such character."""
+    """Return the finding for a character that YAML does not allow (5.1); None if there is no such character."""
     found = _NOT_ALLOWED.search(text)
     if found is None:
         return None
@@ -88,6 +88,7 @@ def not_allowed(file: str, text: str) -> Diagnostic | None:
 
 
 def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
+    """Return the finding about the first syntax error of a file, with the probable mistake as its hint."""
     if found := not_allowed(file, text):  # libyaml counts its place in bytes
         return found
     if isinstance(error, UnknownAliasError):
@@ -97,7 +98,7 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
     context = getattr(error, "context", None) or ""
     mark: Any = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     lines, failed = lines_of(text), mark.line
-    source = lines[failed] if failed < len(lines) else ""  # YAML knows other ends of lines as well
+    source = lines[failed] if failed < len(lines) else ""  # YAML has other ends of lines as well
     if "\t" in (before := source[: mark.column + 1]) and not before.strip():
         column = before.index("\t") + 1
         place = Place(file, failed + 1, column, failed + 1, column + 1)
@@ -106,7 +107,7 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
         )
     if "quoted scalar" in context or _begins_late(error, lines):
         mark = error.context_mark  # type: ignore[attr-defined]
-    from lumen.project.mending import mistake  # only where something slipped
+    from lumen.project.mending import mistake  # imported only if there is a syntax error
     from lumen.project.slips import NOT_CLOSED
 
     if slipped := mistake(text, mark.line, failed, _misfits(file)):
@@ -123,7 +124,7 @@ def syntax_error(file: str, text: str, error: Exception) -> Diagnostic:
 
 
 def _misfits(file: str) -> Callable[[str], int | None] | None:
-    """Counts what the schema of that file refuses in a text; None for a file without a schema."""
+    """Return a function that counts what the file's schema refuses in a text; None for a file without a schema."""
     from lumen.project.schema import misfits  # it imports what imports this module
 
     kind = kind_of(file)
@@ -131,7 +132,7 @@ def _misfits(file: str) -> Callable[[str], int | None] | None:
 
 
 def _spaces(file: str, lines: Sequence[str], row: int) -> str:
-    """How many spaces to write in place of the tabs in that line: as many as `lint --fix` writes."""
+    """Return a hint with the spaces to write in place of the tabs in that line: as many as `lint --fix` writes."""
     misfits, before = _misfits(file), TABBED.match(lines[row])
     assert before
     for width in TAB_WIDTHS:
@@ -144,7 +145,7 @@ def _spaces(file: str, lines: Sequence[str], row: int) -> str:
 
 
 def _unknown_alias(file: str, error: UnknownAliasError) -> Diagnostic:
-    """The finding for `*name` without `&name` above it: a slip in the name, or a text that begins with `*`."""
+    """Return the finding for `*name` without `&name` above it: a misspelt name, or a text that begins with `*`."""
     mark, name = error.mark, error.name
     place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + len(name) + 2)
     quotes = f'put quotes around it if it is a text: "*{name}"'
@@ -155,6 +156,6 @@ def _unknown_alias(file: str, error: UnknownAliasError) -> Diagnostic:
 
 
 def _begins_late(error: Any, lines: Sequence[str]) -> bool:
-    """Whether what could not be ended is a key that began in an earlier line."""
+    """Return True if the unfinished node is a key that began in an earlier line."""
     late = "simple key" in (getattr(error, "context", None) or "")
     return late and not "".join(lines[error.context_mark.line :][:1]).lstrip().startswith(("-", "?"))

@@ -1,4 +1,4 @@
-"""Plain data from composed YAML nodes, with the place of each."""
+"""Convert composed YAML nodes to plain data, with the place of each."""
 
 import re
 from collections.abc import Iterator
@@ -25,7 +25,7 @@ _TAGS = {"!include": "copy the content of that file here: a file can't include a
 
 
 def read_text(text: str) -> Document | None:
-    """The document in a text that is only tried, None if anything is wrong with it as YAML; nothing is kept."""
+    """Return the document in a trial version of a text; None if it has any fault as YAML. Nothing is cached."""
     try:
         node = compose(text)
     except (yaml.YAMLError, TooLargeError):
@@ -38,14 +38,14 @@ def read_text(text: str) -> Document | None:
 
 
 def too_large(file: str, error: TooLargeError) -> Diagnostic:
-    """What to say of a file that holds too much."""
+    """Return the finding about a file that is too large."""
     mark = error.mark
     place = Place(file, mark.line + 1, mark.column + 1, mark.line + 1, mark.column + 2) if mark else Place(file)
     return TOO_LARGE.at(place, f"the file is too large to be read: {error}", _SMALLER)
 
 
 class NodeReader:
-    """Turns composed nodes into plain data, remembering where each stood."""
+    """Converts composed nodes to plain data, and records the place of each."""
 
     def __init__(self, file: str, text: str) -> None:
         self.file, self.text = file, text
@@ -78,7 +78,7 @@ class NodeReader:
         return self.mapping(node, path, depth)
 
     def braces(self, node: yaml.MappingNode) -> str:
-        """The text of `{{ … }}` that stands without quotes, which YAML takes for a map in a map; empty for others."""
+        """Return the text of `{{ … }}` without quotes, which YAML reads as a map in a map; empty for other maps."""
         if not (node.flow_style and len(node.value) == 1 and isinstance(node.value[0][0], yaml.MappingNode)):
             return ""
         start, end = node.start_mark, node.end_mark
@@ -90,7 +90,7 @@ class NodeReader:
         return text
 
     def commas(self, node: yaml.SequenceNode, numbers: list[str]) -> list[Any]:
-        """Report a list of numbers that are written with commas."""
+        """Report a list of numbers that are written with commas; return the numbers."""
         message = "a comma separates numbers, so this list would have twice as many"
         self.say(DECIMAL_COMMA, node, message, f"write points: [{', '.join(numbers)}]")
         return [resolve(number) for number in numbers]
@@ -113,7 +113,7 @@ class NodeReader:
                 self.say(COMPLEX_KEY, key, "a key must be a single word or text", hint)
             elif key.value in data:
                 self.duplicate(key, path)
-                if data[key.value] is None:  # the line was doubled, and the second one goes on
+                if data[key.value] is None:  # the line is doubled, and the second one has the content
                     data[key.value] = self.read(value, (*path, key.value), key, depth + 1)
                 else:
                     self.dropped.update(_texts_below(value))
@@ -122,14 +122,14 @@ class NodeReader:
         return data
 
     def comma(self, before: yaml.Node, key: yaml.Node, number: str) -> None:
-        """Report a number that was written with a comma."""
+        """Report a number that is written with a comma."""
         start, end = before.start_mark, key.end_mark
         place = Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
         message = f"a comma ends the number {before.value}, so `{key.value}` would be a key"
         self.diagnostics.append(DECIMAL_COMMA.at(place, message, f"write a point: {number}"))
 
     def duplicate(self, key: yaml.Node, path: NodePath) -> None:
-        """Report a key that stands a second time; those of one map are one finding."""
+        """Report a duplicate key; those of one map are one finding."""
         first = self.spans[(*path, key.value)].key
         hint = f"delete one of them: the first one is on line {first.line}" if first else ""
         related = (Related(first, "the first one is here"),) if first else ()
@@ -137,7 +137,7 @@ class NodeReader:
         self.diagnostics.append(DUPLICATE_KEY.at(self.place(key), message, hint, related=related, cause=cause))
 
     def too_deep(self, key: yaml.Node, first: yaml.Node, depth: int) -> None:
-        """Report a key that stands as far in as those that were meant to be below it."""
+        """Report a key in the same column as the keys that belong below it."""
         message = f"`{key.value}` is in the same column as `{first.value}` below it, so some keys are written twice"
         blanks = "2 spaces" if key.start_mark.column > 1 else "the spaces"
         self.say(DUPLICATE_KEY, key, message, f"delete {blanks} before `{key.value}`")
@@ -161,7 +161,7 @@ class NodeReader:
 
 
 def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
-    """The number that a value and an empty key behind its comma were meant to be; empty where they are none."""
+    """Return the number that a value and an empty key after its comma were meant to be; empty if they are none."""
     near = key.start_mark.index == before.end_mark.index + 1 and value.start_mark.index == value.end_mark.index
     plain = near and all(isinstance(node, yaml.ScalarNode) and not node.style for node in (before, key, value))
     whole, decimals = typed(before.value if plain else ""), typed(key.value if plain else "")
@@ -169,7 +169,7 @@ def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
 
 
 def _begun_anew(node: yaml.Node) -> tuple[yaml.Node, yaml.Node] | None:
-    """An empty key behind which the keys of a map begin anew, and the first of those; None where there is none."""
+    """Return an empty key after which the keys of a map repeat, and the first of those; None if no keys repeat."""
     keys = [key.value if isinstance(key, yaml.ScalarNode) else "" for key, _ in node.value]
     before: set[str] = set()
     for i, (key, value) in enumerate(node.value[:-1]):
@@ -183,7 +183,7 @@ def _begun_anew(node: yaml.Node) -> tuple[yaml.Node, yaml.Node] | None:
 
 
 def _decimals(node: yaml.SequenceNode) -> list[str]:
-    """The numbers that a list was meant to hold where some commas in it have a blank behind them, and others none."""
+    """Return the numbers of a list in which every other comma has no blank after it; empty for any other list."""
     items = node.value
     if len(items) < 4 or len(items) % 2 or not node.flow_style:
         return []
@@ -198,7 +198,7 @@ def _decimals(node: yaml.SequenceNode) -> list[str]:
 
 
 def _texts_below(node: yaml.Node) -> Iterator[str]:
-    """Every key and text below a node, each part of the file once."""
+    """Yield every key and text below a node, each part of the file once."""
     waiting, seen = [node], set[int]()
     while waiting:
         item = waiting.pop()

@@ -1,4 +1,4 @@
-"""YAML 1.2 with a place for every node.
+"""Read YAML 1.2 with a place for every node.
 
 PyYAML reads YAML 1.1 (`on:` is true there, `12:30` is 750); here only its parser is used, and scalars are resolved by
 the YAML 1.2 core schema.
@@ -21,9 +21,9 @@ EMPTY_FILE = Code("empty-file", "text", ERROR, "a file is empty")
 
 
 def parse(file: str, content: bytes) -> tuple[Document | None, list[Diagnostic]]:
-    """The document in `content`, or None, and what is wrong with it; never raises for what the file holds.
+    """Return the document in `content`, or None, and its faults. No content of the file raises an error.
 
-    It depends on nothing else, so that a file that did not change is not read again.
+    The result depends on nothing else, so it is cached until the file changes.
     """
     document, found = memoize(("parse", file), content, lambda: _read(file, content))
     return document, [*found]

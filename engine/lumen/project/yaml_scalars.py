@@ -14,11 +14,11 @@ _INF = re.compile(r"([-+]?)\.(inf|Inf|INF)")
 _NAN = frozenset((".nan", ".NaN", ".NAN"))
 
 MAX_DIGITS = 250
-"""An integer that has more is read as a number with a point: no number that anybody means, and inf at worst."""
+"""The maximum number of digits of an integer; a longer one is read as a float, which may be infinite."""
 
 
 def resolve(text: str) -> Any:
-    """What a plain scalar stands for by the YAML 1.2 core schema (10.3.2)."""
+    """Return the value of a plain scalar by the YAML 1.2 core schema (10.3.2)."""
     if text in _NULL:
         return None
     if text in _BOOL:

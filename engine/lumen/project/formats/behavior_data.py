@@ -1,4 +1,4 @@
-"""Actions, values and transitions of a machine as they stand in YAML; lengths in [m], angles in [rad]."""
+"""Convert actions, values and transitions of a machine to YAML data; lengths are in [m], angles in [rad]."""
 
 from collections.abc import Iterable, Mapping
 from math import isfinite
@@ -31,19 +31,19 @@ from lumen.language.verbs import Quantity, verb_of
 from lumen.project.formats.durations import duration
 
 ActionData = dict[str, Any]
-"""An action of a behaviour file: its verb, and what stands under it."""
+"""An action of a behaviour file: its verb, and the verb's arguments."""
 
 TransitionData = dict[str, Any]
 """A transition of a behaviour file: `target`, `guard`, `actions`, `reenter`."""
 
 
 def plain_block(steps: Iterable[PlacedAction]) -> list[ActionData]:
-    """A list of actions."""
+    """Return a list of actions as data."""
     return [plain_action(step.action) for step in steps]
 
 
 def plain_button(button: Button) -> dict[str, Any]:
-    """An entry of `buttons`."""
+    """Return an entry of `buttons`."""
     label = button.label.get("", dict(button.label))
     row: dict[str, Any] = {"label": label, "event": button.event}
     more = {"data": button.data, "confirm": button.confirm or None, "key": button.key or None}
@@ -51,7 +51,7 @@ def plain_button(button: Button) -> dict[str, Any]:
 
 
 def plain_value(value: ComputedValue) -> Any:
-    """A value: its expressions are texts."""
+    """Return a value as data; expressions become texts."""
     match value:
         case Expression(source):
             return as_written(source)
@@ -63,14 +63,14 @@ def plain_value(value: ComputedValue) -> Any:
 
 
 def plain_phrases(table: Mapping[str, Iterable[str]], *, anyhow: bool = False) -> Any:
-    """Phrases by language, or the list of those of every language; `anyhow` if they count though they are negated."""
+    """Return phrases by language, or a list if they serve all languages; `anyhow` if they match although negated."""
     if set(table) == {""} and not anyhow:
         return list(table[""])
     return {language: list(rows) for language, rows in table.items()} | ({"anyhow": True} if anyhow else {})
 
 
 def plain_properties(machine: MachineDefinition) -> dict[str, dict[str, Any]]:
-    """What stands under `properties`."""
+    """Return the data of `properties`."""
     found = {}
     for one in machine.properties:
         conditions = {"always": one.always, "whenever": one.whenever, "eventually": one.eventually}
@@ -80,7 +80,7 @@ def plain_properties(machine: MachineDefinition) -> dict[str, dict[str, Any]]:
 
 
 def plain_action(action: Action) -> ActionData:
-    """One action: an object with its verb as the key."""
+    """Return one action as data: an object with its verb as the key."""
     match action:
         case SayText(texts, gestures):
             return {"say": {**_say(texts), **({"gestures": gestures} if gestures else {})}}
@@ -124,13 +124,13 @@ def _written(quantity: Quantity, value: Any) -> Any:
 
 
 def single(rows: list[TransitionData]) -> Any:
-    """The one row, or the list; a row that is only a target in one place is that text."""
+    """Return the only row, or the list; a row with nothing but one target becomes that text."""
     shown = [row["target"] if set(row) == {"target"} and isinstance(row["target"], str) else row for row in rows]
     return shown[0] if len(shown) == 1 else shown
 
 
 def quoted(value: Any) -> Any:
-    """A value of ours that is this JSON: its texts become expressions."""
+    """Return the data whose value is this JSON: each text becomes an expression for that text."""
     match value:
         case str():
             return unparse(Literal(value))

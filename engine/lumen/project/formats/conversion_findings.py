@@ -1,14 +1,14 @@
-"""What of a behaviour a format can't represent, and what is wrong with a file of another format."""
+"""Findings about a conversion: what a format can't represent, and faults in a file of another format."""
 
 from collections.abc import Callable
 
 from lumen.language.diagnostics import Diagnostic, NodePath, Place, Severity
 
 MAX_FILE_BYTES = 4_000_000
-"""Of a file of another tool; those that people draw are a hundredth of that."""
+"""The maximum size of another tool's file [bytes]; those that people draw are a hundredth of that."""
 
 PlaceOfPath = Callable[[NodePath], Place]
-"""Where the node at that path of a behaviour's file stands."""
+"""Returns the place of the node at a path of a behaviour's file."""
 
 LOST, CHANGED = "not-carried-over", "carried-over-differently"
 CODE_MEANINGS = {
@@ -18,7 +18,7 @@ CODE_MEANINGS = {
 
 
 class ForeignFileError(Exception):
-    """A file can't be read at all; holds the one diagnostic with the reason."""
+    """Raised if a file can't be read at all; holds the one diagnostic with the reason."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(str(diagnostic))
@@ -26,10 +26,10 @@ class ForeignFileError(Exception):
 
 
 class ConversionFindings:
-    """Collects what was lost or changed in a conversion, each thing once.
+    """Collects what was lost or changed in a conversion, each item once.
 
-    What is `lost` is not in the result at all (an error: the behaviour is another one); what is `changed` is there in
-    another form, which is worth a look.
+    A `lost` part is absent from the result, which is an error because the behaviour differs. A `changed` part has
+    another form in the result, which is worth checking.
     """
 
     def __init__(self) -> None:
@@ -37,15 +37,15 @@ class ConversionFindings:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """Everything reported, by file and line."""
+        """All findings, sorted by file and line."""
         return sorted(self._found, key=lambda d: (d.place, d.message))
 
     def lost(self, place: Place, message: str, hint: str = "") -> None:
-        """Something is left out."""
+        """Report a part that is left out."""
         self._found[Diagnostic(LOST, message, place, hint)] = None
 
     def changed(self, place: Place, message: str, hint: str = "") -> None:
-        """Something is there in another form."""
+        """Report a part that has another form in the result."""
         self._found[Diagnostic(CHANGED, message, place, hint, Severity.WARNING)] = None
 
     def include(self, other: "ConversionFindings") -> None:
@@ -54,14 +54,14 @@ class ConversionFindings:
 
 
 def check_size(file: str, content: bytes) -> None:
-    """Raise ForeignFileError for a file that is too large to be read."""
+    """Raise ForeignFileError if a file is too large to be read."""
     if len(content) > MAX_FILE_BYTES:
         hint = f"the maximum is {MAX_FILE_BYTES // 1_000_000} MB"
         raise broken(Place(file), "too-large", f"the file is too large: {len(content) / 1e6:.0f} MB", hint)
 
 
 def decoded(file: str, content: bytes) -> str:
-    """The file's text; raises ForeignFileError where it is not UTF-8."""
+    """Return the file's text. Raises ForeignFileError if it is not UTF-8."""
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -69,12 +69,12 @@ def decoded(file: str, content: bytes) -> str:
 
 
 def broken(place: Place, code: str, message: str, hint: str = "") -> ForeignFileError:
-    """A file can't be read: the error to raise."""
+    """Return the error to raise for a file that can't be read."""
     return ForeignFileError(Diagnostic(code, message, place, hint))
 
 
 class ExportReport:
-    """What an export leaves out, and what in it only Lumen understands: that once for each word, at its first place."""
+    """Collects what an export leaves out, and the words that only Lumen understands, each once, at its first place."""
 
     def __init__(self, place: PlaceOfPath, hint: str = "other tools ignore it") -> None:
         self.place, self.hint = place, hint
@@ -83,7 +83,7 @@ class ExportReport:
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """Everything reported, by line."""
+        """All findings, sorted by line."""
         for word, places in self._foreign.items():
             times = f", {len(places)} times" if len(places) > 1 else ""
             self.findings.changed(min(places), f"only Lumen understands {word}{times}", self.hint)
@@ -91,18 +91,18 @@ class ExportReport:
         return self.findings.diagnostics
 
     def lost(self, message: str, where: NodePath, hint: str = "") -> None:
-        """Something is left out."""
+        """Report a part that is left out."""
         self.findings.lost(self.place(where), message, hint)
 
     def changed(self, message: str, where: NodePath, hint: str = "") -> None:
-        """Something is there in another form."""
+        """Report a part that has another form in the result."""
         self.findings.changed(self.place(where), message, hint)
 
     def foreign(self, word: str, where: NodePath) -> None:
-        """Something is there that only Lumen understands."""
+        """Report a part that only Lumen understands."""
         self._foreign.setdefault(word, []).append(self.place(where))
 
 
 def dotted(file: str) -> PlaceOfPath:
-    """Places in a behaviour that comes from no file: the dotted paths of its nodes."""
+    """Return a function that gives the places in a behaviour without a file: the dotted paths of its nodes."""
     return lambda where: Place(f"{file} ({'.'.join(map(str, where))})" if where else file)

@@ -1,15 +1,15 @@
-"""Delays: `1.5s` and `100ms` in CSS, which SCXML uses, and ours."""
+"""Convert delays between CSS, which SCXML uses (`1.5s`, `100ms`), and Lumen."""
 
 import re
 
 MAX_DELAY = 1e15
-"""[ms]"""
+"""The longest delay that is read [ms]."""
 _DELAY = re.compile(r"\+?(\d+(?:\.\d+)?|\.\d+)(ms|s|min|m|h)?")
 _FACTORS = {"": 1.0, "ms": 1.0, "s": 1e3, "min": 60e3, "m": 60e3, "h": 3600e3}
 
 
 def milliseconds(text: str) -> float | None:
-    """[ms], None where the text is no delay, or longer than any; a bare number counts them, as several tools do."""
+    """Return the delay [ms]; None if the text is no delay or too long. A bare number is in ms, as in several tools."""
     match = _DELAY.fullmatch(text.strip()) if text.strip() else None
     if match is None:
         return None if text.strip() else 0.0
@@ -18,7 +18,7 @@ def milliseconds(text: str) -> float | None:
 
 
 def duration(length: float) -> str:
-    """`20s`, `1.5s` or `500ms` of so many [ms]."""
+    """Return a duration as text, from a length in [ms]: `20s`, `1.5s` or `500ms`."""
     if length >= 1000 and length == round(length):
         return f"{_plain(length / 1000)}s"
     return f"{_plain(length)}ms"

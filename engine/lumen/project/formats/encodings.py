@@ -1,4 +1,4 @@
-"""The text of a file whose encoding is written nowhere: UTF-8, UTF-16 by its mark, else what its bytes look like."""
+"""Decode a file whose encoding is not declared: UTF-8, UTF-16 if it has a byte order mark, else a guess."""
 
 import re
 from codecs import BOM_UTF16_BE, BOM_UTF16_LE
@@ -11,7 +11,7 @@ _CYRILLIC_WORD = re.compile(rb"[\xc0-\xff\xa8\xb8]{2,}")
 
 
 def text_of(file: str, content: bytes, findings: ConversionFindings) -> str:
-    """The text; an encoding that was guessed is reported. Different bytes never become the same letters."""
+    """Return the text; a guessed encoding is reported. Different bytes never become the same letters."""
     if content.startswith((BOM_UTF16_LE, BOM_UTF16_BE)):
         return content.decode("utf-16", errors="replace")
     try:
@@ -25,5 +25,5 @@ def text_of(file: str, content: bytes, findings: ConversionFindings) -> str:
 
 
 def _is_cyrillic(content: bytes) -> bool:
-    """Whether letters of Windows-1251 occur next to each other, as in words, more often than next to Latin ones."""
+    """Return True if letters of Windows-1251 stand next to each other more often than next to Latin letters."""
     return len(_CYRILLIC_WORD.findall(content)) > len(_LATIN_WORD.findall(content))

@@ -1,4 +1,4 @@
-"""Curves brought within what a body can do beyond the range of each joint: coupled ranges, curved ways, speeds."""
+"""Fit curves to a body's limits beyond the range of each joint: coupled ranges, curved paths and speeds."""
 
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator
@@ -12,14 +12,14 @@ from lumen.project.formats.conversion_findings import ConversionFindings
 from lumen.project.formats.joint_curves import CurvePoint, JointCurves
 
 MAX_FITS = 50
-"""How often a change may make another one necessary; each comes nearer to what the body can do."""
+"""The maximum number of passes: one change may require another, but each pass comes nearer to the limits."""
 
 SAME_ANGLE = 1e-9
-"""[rad]"""
+"""The angle below which two angles count as equal [rad]."""
 
 
 def within_limits(curves: JointCurves, body: Body, findings: ConversionFindings) -> JointCurves:
-    """The curves, cut where a joint would go too far beside another one, or on a curved way between two keys."""
+    """Return the curves, cut if a joint would leave its coupled range, or its range on the path between two keys."""
     for _ in range(MAX_FITS):
         far = beyond_limits(_definition(curves), body)
         if not far:
@@ -32,12 +32,12 @@ def within_limits(curves: JointCurves, body: Body, findings: ConversionFindings)
 
 
 def too_fast(curves: JointCurves, body: Body) -> list[Excess]:
-    """Where a joint would have to move faster than it can, one for each key that it can't reach in time."""
+    """Return the keys that a joint can't reach in time at its maximum speed, one excess for each."""
     return overspeed(_definition(curves), body)
 
 
 def slowed(curves: JointCurves, body: Body) -> JointCurves:
-    """The curves with as much more time, where a joint needs it, for all joints at once: they stay together."""
+    """Return the curves with more time before keys that are too fast, for all joints alike to keep them in step."""
     for _ in range(MAX_FITS):
         fast = too_fast(curves, body)
         if not fast:
@@ -54,7 +54,7 @@ def slowed(curves: JointCurves, body: Body) -> JointCurves:
 
 
 def _cut(points: list[CurvePoint], excess: Excess, body: Body, findings: ConversionFindings) -> None:
-    """Take an excess away: bring the key to the limit, or where only the way to it goes too far, level its handles."""
+    """Remove an excess: move the key to the limit, or level its handles if only the path to it goes too far."""
     i = bisect_left([point.time for point in points], excess.key.time)
     unit, factor = ("", 1.0) if excess.joint in body.hands else (" deg", degrees(1.0))
     wanted, limit = (f"{round(angle * factor, 2):g}{unit}" for angle in (excess.value, excess.limit))
@@ -78,7 +78,7 @@ def _cut(points: list[CurvePoint], excess: Excess, body: Body, findings: Convers
 
 
 def _joint(excess: Excess) -> str:
-    """The joint that the key of an excess belongs to: in a coupled range it may be the other one's."""
+    """Return the joint that the key of an excess belongs to; in a coupled range, that may be the other joint."""
     return str(excess.key.where[0])
 
 

@@ -1,4 +1,4 @@
-"""JSON of other tools: numbers that no expression of ours can hold are refused, and not carried along."""
+"""Read JSON of other tools, refusing numbers that no expression of Lumen can hold."""
 
 import json
 from math import isinf
@@ -7,11 +7,11 @@ from typing import Any, NoReturn
 from lumen.expressions.scope import MAX_INT, MIN_INT
 
 _MAX_INTEGER_DIGITS = 20
-"""Characters of an integer of 64 bits; what is longer is a number with a point, as in JavaScript."""
+"""The digits of a 64-bit integer; a longer one is read as a floating-point number, as in JavaScript."""
 
 
 def foreign_json(text: str | bytes) -> Any:
-    """The data; raises ValueError for what is no JSON or holds too large a number, RecursionError where it nests."""
+    """Return the data. Raises ValueError for invalid JSON or too large a number, RecursionError for deep nesting."""
     return json.loads(text, parse_constant=_refuse, parse_int=_integer, parse_float=_number)
 
 

@@ -1,4 +1,4 @@
-"""Motions of other tools, as ours."""
+"""Import motions of other tools."""
 
 from pathlib import PurePath
 from typing import Any, Protocol
@@ -20,7 +20,7 @@ class MotionReader(Protocol):
 def read_gesture(
     file: str, content: bytes, body: Body, *, timeline: str = "", retime: bool = False
 ) -> tuple[dict[str, Any], list[Diagnostic]]:
-    """The data of a motion file for that body, and what could not be carried over; by the file's ending.
+    """Return the data of a motion file for that body, and the findings; the file's ending selects the format.
 
     `timeline` names the timeline of a .xar, or the function of a .py; with `retime` the motion lasts as long as its
     joints need. Raises ForeignFileError if the file holds no motion.

@@ -1,4 +1,4 @@
-"""Other tools' files that can be imported, by the ending of their names: rows of manifests."""
+"""The importers of other tools' files, by the ending of the file name; they are rows of manifests."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,14 +13,14 @@ from lumen.project.formats.known import FormatTable
 class FileReader(Protocol):
     """Converts a file to the data of one of our YAML files, and lists what can't be converted.
 
-    `title` is for formats whose files have no name of their own. Raises ForeignFileError.
+    `title` is for formats whose files contain no name. Raises ForeignFileError.
     """
 
     def __call__(self, file: str, content: bytes, title: str) -> tuple[dict[str, Any], list[Diagnostic]]: ...
 
 
 class RobotReader(Protocol):
-    """Converts a model of a robot to the text of a body file, findings about it, and files beside it.
+    """Converts a model of a robot to the text of a body file, findings about it, and further files by path.
 
     `output` is where the body file will be, None if it is printed; `title` names the robot. Raises ForeignFileError.
     """
@@ -40,7 +40,7 @@ def recognised(content: bytes) -> tuple[Importer, Any] | None:
 
 
 def importer(ending: str) -> Importer | None:
-    """Return the row for files whose names have that ending, in letters of any size."""
+    """Return the row for files with that ending, in upper or lower case; None if no importer reads them."""
     found: Importer | None = table("importers").get(ending.lower())
     return found
 
@@ -51,10 +51,10 @@ def endings(kind: str) -> tuple[str, ...]:
 
 
 def reader(ending: str) -> Any:
-    """Return the function that reads files with that ending, which has a row.
+    """Return the function that reads files with that ending, which must have a row.
 
-    Raises LumenError with the name of the package if that was installed beside Lumen and can't be imported; so does
-    the function if it returns something else.
+    Raises LumenError with the name of the package if that was installed beside Lumen and can't be imported; so does the
+    function if it returns something of another type.
     """
     name = ending.lower()
     feature, row = owner("importers", name), table("importers")[name]
@@ -74,5 +74,5 @@ def reader(ending: str) -> Any:
 
 
 def format_tables() -> Mapping[str, FormatTable]:
-    """Return the names of each format that are read, lost or without meaning, by the kind of place in a file."""
+    """Return the tables of names of each format: read, lost or meaningless names by the kind of place in a file."""
     return {name: resolved(owner("format_tables", name), where) for name, where in table("format_tables").items()}

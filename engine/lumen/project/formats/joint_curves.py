@@ -1,4 +1,4 @@
-"""Joint curves of any origin."""
+"""Joint curves that an importer has read."""
 
 from collections.abc import Collection, Mapping
 from typing import NamedTuple
@@ -6,21 +6,22 @@ from typing import NamedTuple
 from lumen.language.diagnostics import Place
 
 MAX_NUMBER = 1e12
-"""No time and no angle of a motion is as large."""
+"""An upper bound of all times and angles in a motion; larger numbers are refused."""
 BezierHandle = tuple[float, float]
 
 
 class CurvePoint(NamedTuple):
-    """At `time` [s] a joint stands at `angle` [rad; a hand 0..1]; come to along a line where it is `straight`.
-
-    Handles are (dt [s], da [rad]) as in `lumen.language.motions.Keyframe`; those with dt = 0 are to be chosen.
-    """
+    """A point of a joint's curve."""
 
     time: float
+    """When the joint is at `angle` [s]."""
     angle: float
+    """The joint's angle [rad]; the opening of a hand, 0 to 1."""
     place: Place
     straight: bool = False
+    """The curve to this point is a straight line."""
     handle_in: BezierHandle = (0.0, 0.0)
+    """A handle (dt [s], da [rad]) as in `lumen.language.motions.Keyframe`; if dt is 0, Lumen chooses it."""
     handle_out: BezierHandle = (0.0, 0.0)
 
 
@@ -38,7 +39,7 @@ JointCurves = Mapping[str, list[CurvePoint]]
 
 
 def number(text: str) -> float | None:
-    """The number that a text holds, None where it holds none, or none that a time or an angle could be."""
+    """Return the number that a text holds; None if it holds none, or one that is too large for a time or an angle."""
     try:
         value = float(text)
     except ValueError:

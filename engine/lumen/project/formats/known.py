@@ -1,7 +1,7 @@
-"""The names that an importer knows of a format: it reads them, lists them as lost, or ignores them as meaningless.
+"""The names of a format that an importer recognises: it reads them, lists them as lost, or ignores them as meaningless.
 
 Each importer has one table of these, by the place in a file (`<state>`, `[Input1]`, `machine`). A name that no table
-has is listed at its place, so that nothing of a file is lost silently. `docs/formats.md` prints the tables.
+has is listed at its place, so that nothing in a file is lost silently. `docs/formats.md` prints the tables.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -11,19 +11,19 @@ from difflib import get_close_matches
 
 @dataclass(frozen=True)
 class Known:
-    """The names that one kind of place in a file may hold: attributes, elements, keys, calls.
-
-    `read` are carried over; `lost` are listed, with the reason; `meaningless` change nothing of what a robot does, with
-    the reason. `lowercase` says that the format does not tell upper from lower case.
-    """
+    """The names that one kind of place in a file may hold: attributes, elements, keys, calls."""
 
     read: frozenset[str] = frozenset()
+    """The names that are carried over."""
     lost: Mapping[str, str] = field(default_factory=dict)
+    """The names that are listed as lost, with a hint."""
     meaningless: Mapping[str, str] = field(default_factory=dict)
+    """The names that have no effect on a robot, with the reason."""
     lowercase: bool = False
+    """True if the format ignores case."""
 
     def losses(self, names: Iterable[str]) -> Iterator[tuple[str, str]]:
-        """Of these names, each that is not carried over and has a meaning or may have one, with a hint."""
+        """Yield each of these names that is lost or unknown, with a hint."""
         for name in names:
             plain = name.lower() if self.lowercase else name
             if plain in self.lost:

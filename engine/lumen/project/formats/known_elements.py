@@ -1,4 +1,4 @@
-"""Attributes and elements of XML that are not carried over, found with the table of a format.
+"""Find attributes and elements of XML that are not carried over, with the table of a format.
 
 The key of an element in the table is `<Key>`; its entry names attributes, and elements as `<Tangent>`.
 """
@@ -16,9 +16,9 @@ def tell_losses(
     findings: ConversionFindings,
     within: Callable[[XmlElement], bool] = lambda _: True,
 ) -> None:
-    """List the parts of an element, and of the elements in it that the table has, that are not carried over.
+    """List the parts of an element that are not carried over, also inside those child elements that the table has.
 
-    Only the name of an element is checked if `within` is false for it.
+    If `within` returns False for an element, only its name is checked.
     """
     waiting = [element]
     while waiting:
@@ -36,5 +36,5 @@ def tell_losses(
 
 
 def local(element: XmlElement) -> str:
-    """The element's name without its namespace."""
+    """Return the element's name without its namespace."""
     return element.tag.rpartition("}")[2]

@@ -1,4 +1,4 @@
-"""The motion file with the movement of joint curves, as far as a body can do it."""
+"""Write joint curves as a motion file, as far as a body can follow them."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,17 +12,17 @@ from lumen.project.formats.fitting import slowed, too_fast, within_limits
 from lumen.project.formats.joint_curves import CurvePoint, JointCurves
 
 TIME_TO_FIRST_POSE = 1.0
-"""How long the robot takes to come to a pose that stands at 0 s [s]."""
+"""The time given to the robot to reach a first pose that the file sets at 0 s [s]."""
 
 MIN_KEY_DISTANCE = 1e-3
-"""Two times closer than this are one [s]."""
+"""The minimum time between two keys of a joint [s]; the second of two closer ones is left out."""
 
 
 @dataclass(frozen=True)
 class MotionWriter:
-    """Curves as the data of a motion file for a body; what that body can't do is reported to `findings`.
+    """Converts curves to the data of a motion file for a body; what that body can't do is reported to `findings`.
 
-    With `retime` a joint that would have to move faster than it can gets the time that it needs.
+    With `retime`, keys that a joint can't reach in time are delayed.
     """
 
     body: Body
@@ -30,7 +30,7 @@ class MotionWriter:
     retime: bool = False
 
     def data(self, curves: JointCurves, description: str) -> dict[str, Any]:
-        """The file's data. Nothing is added to the motion: it begins where the robot is, and stays where it ends."""
+        """Return the file's data. The motion begins at the robot's current pose, and the robot keeps the last one."""
         possible = {joint: self._possible(joint, points) for joint, points in self._known(curves).items()}
         known = self._later({joint: points for joint, points in possible.items() if points})
         lines = all(point.straight for points in known.values() for point in points)
@@ -56,7 +56,7 @@ class MotionWriter:
         }
 
     def _known(self, curves: JointCurves) -> JointCurves:
-        """The curves of joints that the body has, one for each drive."""
+        """Return the curves of joints that the body has, one for each motor."""
         found: dict[str, list[CurvePoint]] = {}
         for joint, points in curves.items():
             leader = self.body.shared.get(joint, "")
@@ -71,7 +71,7 @@ class MotionWriter:
         return found
 
     def _possible(self, joint: str, points: list[CurvePoint]) -> list[CurvePoint]:
-        """The points in the order of time, each within the joint's limits."""
+        """Return the points in the order of time, each within the joint's limits."""
         kept: list[CurvePoint] = []
         for point in points:
             if point.time < 0:
@@ -96,7 +96,7 @@ class MotionWriter:
         return angle
 
     def _later(self, curves: JointCurves) -> JointCurves:
-        """The curves, put off where they want the robot to be somewhere at once."""
+        """Return the curves; if the first pose is at 0 s, delay all keys so that the robot has time to reach it."""
         first = min((points[0] for points in curves.values()), key=lambda p: p.time, default=None)
         if first is None or first.time >= MIN_KEY_DISTANCE:
             return curves
@@ -108,7 +108,7 @@ class MotionWriter:
         }
 
     def _fitted(self, curves: JointCurves) -> JointCurves:
-        """The curves within the body's limits, and with `retime` within its speeds."""
+        """Return the curves within the body's limits, and with `retime` within its speeds."""
         curves = within_limits(curves, self.body, self.findings)
         fast = too_fast(curves, self.body) if self.retime else []
         if not fast:
@@ -130,13 +130,13 @@ class MotionWriter:
         return found
 
     def _angle(self, joint: str, value: float) -> float:
-        """In the file's unit: degrees, a hand from 0 to 1."""
+        """Return an angle in the file's unit: degrees, or 0 to 1 for a hand."""
         shown = round(value if joint in self.body.hands else degrees(value), 4)
         return int(shown) if shown == int(shown) else shown
 
 
 def _bent(points: Iterable[CurvePoint]) -> list[CurvePoint]:
-    """The points with handles on the chord, a third of it long, wherever the way to a point is straight."""
+    """Return the points with handles at a third of the chord, wherever the curve to a point is straight."""
     bent = list(points)
     for i, (one, two) in enumerate(pairwise(bent)):
         if two.straight:

@@ -1,4 +1,4 @@
-"""XML as a tree of elements that know their line; nothing of a hostile file is expanded, fetched or believed."""
+"""Parse XML into a tree of elements with line numbers; entities and document types of hostile files are refused."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -9,10 +9,10 @@ from lumen.language.diagnostics import Place
 from lumen.project.formats.conversion_findings import broken, check_size
 
 MAX_XML_LEVELS = 100
-"""Elements inside each other."""
+"""The maximum depth of elements inside each other."""
 
 MAX_XML_ELEMENTS = 50_000
-"""Elements in a file, where a format sets no other bound."""
+"""The maximum number of elements in a file, if a format sets no other limit."""
 
 _XML = "http://www.w3.org/XML/1998/namespace"
 _TAG = re.compile(rb"<[^\s/>]+")
@@ -21,9 +21,9 @@ _ATTRIBUTE = re.compile(rb"""\s+([^\s=>]+)\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 @dataclass(slots=True)
 class XmlElement:
-    """`tag` is `state` in the namespace given to `parse_xml`, `{namespace}name` in others, as are attributes' names.
+    """An element; its tag is `state` in the namespace given to `parse_xml`, `{namespace}name` in any other.
 
-    `text` holds the characters directly inside.
+    Names of attributes have the same form. `text` is the characters directly inside, without those of children.
     """
 
     tag: str
@@ -32,7 +32,7 @@ class XmlElement:
     children: list["XmlElement"] = field(default_factory=list)
     parts: list[str] = field(default_factory=list)
     source: bytes = field(default=b"", repr=False)
-    """The file, in UTF-8, from which `start` is the place of the tag; empty if it is not known."""
+    """The file in UTF-8, in which `start` is the offset of the tag; empty if it is unknown."""
     start: int = 0
 
     @property
@@ -40,11 +40,11 @@ class XmlElement:
         return "".join(self.parts)
 
     def get(self, name: str, otherwise: str = "") -> str:
-        """The attribute without blanks around it."""
+        """Return the value of an attribute without surrounding whitespace."""
         return self.attributes.get(name, otherwise).strip()
 
     def attribute_place(self, name: str) -> Place:
-        """The place of an attribute's name; that of the element if the file is in another encoding."""
+        """Return the place of an attribute's name; that of the element if the file is in another encoding."""
         tag = _TAG.match(self.source, self.start)
         local = name.rpartition("}")[2].encode()
         at = tag.end() if tag else len(self.source)
@@ -59,27 +59,28 @@ class XmlElement:
         return self.place
 
     def of(self, *tags: str) -> Iterator["XmlElement"]:
-        """The children with one of these tags."""
+        """Return the children with one of these tags."""
         return (child for child in self.children if child.tag in tags)
 
     def walk(self) -> Iterator["XmlElement"]:
-        """Itself and everything below, in document order."""
+        """Yield the element itself and all below it, in document order."""
         yield self
         for child in self.children:
             yield from child.walk()
 
 
 def parse_xml(file: str, content: bytes, namespace: str = "", *, most: int = MAX_XML_ELEMENTS) -> XmlElement:
-    """The root of at most `most` elements; raises ForeignFileError for no XML, or for more than a tree of elements.
+    """Return the root of a file with at most `most` elements.
 
-    Tags of `namespace`, and those of none, stand without it.
+    Raises ForeignFileError if the file is not XML, is too large, or has a document type or entities. Tags of
+    `namespace`, and those without a namespace, are written without one.
     """
     check_size(file, content)
     return _XmlReader(file, namespace, most).read(content)
 
 
 class _XmlReader:
-    """Expat's handlers, and the way from the root to the element that is open."""
+    """The handlers of Expat, with the elements that are open, from the root down."""
 
     def __init__(self, file: str, namespace: str, most: int) -> None:
         self.file, self.namespaces, self.most = file, ("", namespace), most
@@ -106,7 +107,7 @@ class _XmlReader:
         except (LookupError, ValueError, UnicodeError):
             hint = "save it as UTF-8"
             raise broken(Place(self.file), "not-xml", "the file's encoding is unknown", hint) from None
-        assert self.root is not None  # else expat would have complained
+        assert self.root is not None  # else expat would have raised an error
         return self.root
 
     def place(self, line: int, column: int) -> Place:

@@ -1,4 +1,4 @@
-"""The data of a behaviour, or of a file of another kind, as its text."""
+"""Write the data of a behaviour, or of another kind of file, as YAML text."""
 
 import json
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from lumen.project.yaml_scalars import resolve
 
 SCHEMA_COMMENT = "# yaml-language-server: $schema=../schemas/{kind}.schema.json\n"
 MAX_FLOW_WIDTH = 90
-"""Characters up to which a map or a list stands in one line."""
+"""The maximum number of characters of a map or a list that is written in one line."""
 
 _HARD, _SPECIAL = frozenset('"\\\n\t'), frozenset("'!&*#:,[]{}%@`|>")
 _TABLES = frozenset(
@@ -21,7 +21,7 @@ _TAGS = {type(None): "null", bool: "bool", int: "int", float: "float", str: "str
 
 
 class _Dumper(yaml.SafeDumper):
-    """Writes YAML 1.2: quotes stand where a text would be something else without, so `on` has none."""
+    """Writes YAML 1.2, with quotes only if a text would be read as another type without them; so `on` has none."""
 
     def resolve(self, kind: Any, value: Any, implicit: Any) -> str:
         if kind is yaml.ScalarNode and implicit[0]:
@@ -33,7 +33,10 @@ class _Dumper(yaml.SafeDumper):
 
 
 def document_yaml(data: Mapping[str, Any], kind: str = "behavior") -> str:
-    """The file: states as blocks, transitions and actions in one line where they fit; read again the same data."""
+    """Return the text of the file: states as blocks, transitions and actions in one line if they fit.
+
+    Read again, it yields the same data.
+    """
     text: str = yaml.serialize(_state(data), Dumper=_Dumper, width=116, allow_unicode=True)
     return SCHEMA_COMMENT.format(kind=kind) + text
 
@@ -43,7 +46,7 @@ def _state(data: Mapping[str, Any]) -> yaml.Node:
 
 
 def _part(key: str, value: Any) -> yaml.Node:
-    """What stands under a key of a state."""
+    """Return the node of the value under a key of a state."""
     if key == "states":
         return _mapping({name: _state(state or {}) for name, state in value.items()}, flow=False)
     if key in _TABLES and isinstance(value, Mapping):
@@ -54,7 +57,7 @@ def _part(key: str, value: Any) -> yaml.Node:
 
 
 def _compact(value: Any) -> yaml.Node:
-    """In one line where that is short, else one line for each of its parts."""
+    """Return the node of a value: in one line if it is short, else with one line for each of its parts."""
     flow = not isinstance(value, Mapping | list) or len(json.dumps(value, ensure_ascii=False)) <= MAX_FLOW_WIDTH
     match value:
         case Mapping():

@@ -1,4 +1,4 @@
-"""Pictures of controllers and motions: from a value to a drawing (`PlotSheet`), and from a drawing to an image."""
+"""Plots of controllers and motions: from a value to a drawing (`PlotSheet`), and from a drawing to an image."""
 
 from lumen.project.formats.plots.controller_plot import controller_sheet, curves_sheet
 from lumen.project.formats.plots.drawing import PLOT_ENDINGS, draw

@@ -1,4 +1,4 @@
-"""A controller as a sheet: the memberships of all variables, then what each output does over its inputs."""
+"""Plot a controller: the membership functions of all variables, then each output over its inputs."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -12,14 +12,17 @@ from lumen.language.controllers import VALUE_TERMS, ControllerDefinition, Variab
 from lumen.project.formats.plots.sheet import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet, PlotSurface
 
 POINTS, ACROSS = 321, 41
-"""Of a curve, and of each side of a surface."""
+"""The number of points of a curve, and along each side of a surface."""
 
 CURVE_RESOLUTION = 1000
-"""Steps in which an output's set is integrated."""
+"""The number of steps for the integration of an output's fuzzy set."""
 
 
 def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
-    """Memberships; then for each output a curve, a surface over two inputs, or a slice for each of several."""
+    """Return a sheet with the membership functions, then for each output a curve, a surface over two inputs, or slices.
+
+    There is one slice for each input, if an output depends on more than two.
+    """
     survey = Survey(controller, CURVE_RESOLUTION)
     panels = [memberships(variable) for variable in variables(controller)]
     answers = list(chain.from_iterable(_answers(survey, output) for output in controller.outputs.values()))
@@ -30,7 +33,10 @@ def controller_sheet(controller: ControllerDefinition) -> PlotSheet:
 
 
 def curves_sheet(title: str, controllers: Mapping[str, ControllerDefinition]) -> PlotSheet:
-    """The outputs of several versions of a controller, curve upon curve; the first has the inputs and outputs drawn."""
+    """Return a sheet with the outputs of several versions of a controller in the same panels.
+
+    The first version decides which inputs and outputs are drawn.
+    """
     first = next(iter(controllers.values()))
     panels = []
     for output in first.outputs.values():
@@ -46,13 +52,13 @@ def curves_sheet(title: str, controllers: Mapping[str, ControllerDefinition]) ->
 
 
 def variables(controller: ControllerDefinition) -> Iterator[Variable]:
-    """All of them, inputs first."""
+    """Yield the inputs, then the outputs."""
     yield from controller.inputs.values()
     yield from controller.outputs.values()
 
 
 def memberships(variable: Variable, marks: tuple[PlotMark, ...] = ()) -> PlotPanel:
-    """The terms of a variable over its range; values (constants) stand upright, formulas of inputs are left out."""
+    """Return a panel of a variable's terms over its range: constants as upright lines, formulas of inputs left out."""
     low, high = ends(variable)
     xs = tuple(low + (high - low) * i / (POINTS - 1) for i in range(POINTS))
     lines = []
@@ -69,12 +75,12 @@ def memberships(variable: Variable, marks: tuple[PlotMark, ...] = ()) -> PlotPan
 
 
 def axis(variable: Variable) -> PlotAxis:
-    """The variable's name, unit and direction, over its range."""
+    """Return an axis with the variable's name, unit and direction, over its range."""
     return PlotAxis(_label(variable), *ends(variable))
 
 
 def ends(variable: Variable) -> tuple[float, float]:
-    """The range; where it has no end, as far as the terms' own numbers go."""
+    """Return the ends of the range; an infinite end is replaced by one that covers the parameters of the terms."""
     if isfinite(variable.minimum) and isfinite(variable.maximum):
         return variable.minimum, variable.maximum
     said = [p for term in variable.terms.values() for p in term.parameters if isfinite(p)] or [-1.0, 1.0]
@@ -118,7 +124,7 @@ def _curve(survey: Survey, output: Variable, name: str) -> tuple[tuple[float, ..
 
 
 def _height(output: Variable) -> PlotAxis:
-    """An output as the upright axis; its ends are what the curve needs, not the range it may not use."""
+    """Return the upright axis of an output, scaled to the curve because the output may use only a part of its range."""
     return PlotAxis(_label(output))
 
 

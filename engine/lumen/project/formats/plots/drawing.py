@@ -1,4 +1,4 @@
-"""A sheet as an image: matplotlib, in greys and dashes that survive a black-and-white printer."""
+"""Draw a sheet as an image with matplotlib, in greys and dashes that survive a black-and-white printer."""
 
 import io
 import logging
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 PLOT_ENDINGS = (".png", ".svg")
 
 PANEL_WIDTH, PANEL_HEIGHT, DPI = 3.6, 2.6, 110
-"""Of a panel, in inches."""
+"""The size of a panel [inch], and the resolution [dots per inch]."""
 
 _DASHES = ("-", "--", "-.", ":", (0, (6, 1, 1, 1, 1, 1)), (0, (1, 3)))
 _GREYS = ("#000000", "#1f5a99", "#a8480f", "#3d3d3d", "#6a3d8a", "#5c7a1f")
 _STYLE: dict[Any, Any] = {
-    "text.parse_math": False,  # a name may hold a dollar
-    "svg.fonttype": "none",  # text stays text
-    "svg.hashsalt": "lumen",  # the same sheet is the same file
+    "text.parse_math": False,  # a name may contain a dollar
+    "svg.fonttype": "none",  # text stays searchable
+    "svg.hashsalt": "lumen",  # the same sheet gives the same file
     "font.size": 8,
     "axes.titlesize": 9,
     "axes.spines.top": False,
@@ -35,13 +35,13 @@ _STYLE: dict[Any, Any] = {
 
 
 def draw(sheet: PlotSheet, ending: str) -> bytes:
-    """The sheet as a PNG or SVG file, by the ending; the same sheet gives the same bytes.
+    """Return the sheet as a PNG or SVG file, depending on the ending; the same sheet gives the same bytes.
 
-    Raises MissingExtraError where matplotlib is not installed.
+    Raises MissingExtraError if matplotlib is not installed.
     """
     demand("plot", "a plot", "matplotlib")
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
-    os.environ["MPLBACKEND"] = "agg"  # no window is opened, and matplotlib refuses to be imported with a wrong name
+    os.environ["MPLBACKEND"] = "agg"  # opens no window; matplotlib can't be imported if the variable holds a wrong name
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 

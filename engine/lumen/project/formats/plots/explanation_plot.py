@@ -1,4 +1,4 @@
-"""One evaluation as a sheet: what the inputs belong to, how much each rule fires, and the sets that come of it."""
+"""Plot one evaluation: the memberships of the inputs, the degree of each rule, and the resulting fuzzy sets."""
 
 from lumen.fuzzy.explanation import Concluded, Explanation
 from lumen.language.controllers import ControllerDefinition, Variable
@@ -6,11 +6,14 @@ from lumen.project.formats.plots.controller_plot import axis, memberships
 from lumen.project.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet
 
 MAX_RULE_LENGTH = 60
-"""Characters of a rule beside its bar."""
+"""The maximum number of characters of a rule beside its bar."""
 
 
 def explained_sheet(controller: ControllerDefinition, said: Explanation) -> PlotSheet:
-    """Memberships with the inputs marked; the rules; each output's set with its value, or where nothing fired, that."""
+    """Return a sheet with the inputs marked in their memberships, the rules, and each output's set with its value.
+
+    The title of an output for which no rule fires is marked.
+    """
     panels = [
         memberships(variable, (PlotMark(said.inputs[name], f"{said.inputs[name]:g}", strong=True),))
         for name, variable in controller.inputs.items()

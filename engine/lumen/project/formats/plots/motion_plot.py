@@ -1,4 +1,4 @@
-"""A motion as a sheet: for each joint its angle by time, its keys, and the limits that it must keep."""
+"""Plot a motion: for each joint its angle over time, its keys and its limits."""
 
 from math import degrees
 
@@ -8,11 +8,11 @@ from lumen.motion.trajectories import JointTrack, Trajectory
 from lumen.project.formats.plots.sheet import PlotAxis, PlotLine, PlotMark, PlotPanel, PlotSheet
 
 POINTS_PER_CURVE = 201
-"""Of one joint, over the whole motion."""
+"""The number of points of a joint's curve, over the whole motion."""
 
 
 def motion_sheet(motion: MotionDefinition, body: Body) -> PlotSheet:
-    """A panel for each joint, in the body's order; angles in degrees, lengths in mm, hands from 0 to 1."""
+    """Return a sheet with a panel for each joint in the body's order: angles in degrees, lengths in mm, hands 0..1."""
     tracks = sorted(Trajectory(motion).tracks, key=lambda track: _place(body, track.joint))
     title = f"Motion {motion.name}, {motion.duration:g} s"
     panels = tuple(_panel(motion, body, track) for track in tracks)

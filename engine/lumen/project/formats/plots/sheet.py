@@ -1,11 +1,11 @@
-"""What has to be drawn, as values: panels with axes, lines, marks; nothing of how."""
+"""The content of a plot as values: panels with axes, lines and marks, independent of how they are drawn."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class PlotAxis:
-    """What an axis counts; both ends None where what is drawn decides."""
+    """An axis with its label; if both ends are None, the drawn lines decide them."""
 
     label: str
     low: float | None = None
@@ -14,7 +14,7 @@ class PlotAxis:
 
 @dataclass(frozen=True, slots=True)
 class PlotLine:
-    """A curve; NaN is a gap in it. `style` counts ways to look that stay apart in grey; `points`: only dots."""
+    """A curve; NaN is a gap in it. `style` numbers line styles that differ also in grey; `points` draws only dots."""
 
     xs: tuple[float, ...]
     ys: tuple[float, ...]
@@ -26,7 +26,7 @@ class PlotLine:
 
 @dataclass(frozen=True, slots=True)
 class PlotMark:
-    """A thin line across the panel at `at`: upright, or level; `strong` for a result."""
+    """A thin line across the panel at `at`: upright, or horizontal if `level`; `strong` marks a result."""
 
     at: float
     label: str = ""
@@ -36,7 +36,7 @@ class PlotMark:
 
 @dataclass(frozen=True, slots=True)
 class PlotBars:
-    """Level bars from above, each between 0 and 1."""
+    """Horizontal bars from top to bottom, each between 0 and 1."""
 
     labels: tuple[str, ...]
     values: tuple[float, ...]
@@ -54,7 +54,7 @@ class PlotSurface:
 
 @dataclass(frozen=True, slots=True)
 class PlotPanel:
-    """One pair of axes and what is in it."""
+    """One pair of axes and the lines, marks, bars and surface in it."""
 
     title: str
     x: PlotAxis
@@ -67,7 +67,7 @@ class PlotPanel:
 
 @dataclass(frozen=True, slots=True)
 class PlotSheet:
-    """Panels in rows of `columns`; `note` stands below them."""
+    """Panels in rows of `columns`; `note` is printed below them."""
 
     title: str
     panels: tuple[PlotPanel, ...]
