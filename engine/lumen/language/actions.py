@@ -42,12 +42,12 @@ class Template:
 
 
 ComputedValue = Union[Expression, None, bool, int, float, tuple["ComputedValue", ...], Mapping[str, "ComputedValue"]]  # noqa: UP007
-"""A value to be computed: every text in the YAML is an expression, everything else stands for itself."""
+"""A value to be computed: a text in the YAML is an expression; everything else is used as it is."""
 
 
 @dataclass(frozen=True, slots=True)
 class SayText:
-    """`say`: for each language (or `""` for any) the alternatives, of which one is drawn; maybe without gestures."""
+    """`say`: for each language (`""` for any) the alternatives, one of which is drawn at random."""
 
     texts: Mapping[str, tuple[Template, ...]]
     gestures: SaysGestures = ""
@@ -72,7 +72,7 @@ class Assign:
 
 
 def context_key(way: str) -> str:
-    """The key of the context that a key of `assign` is, or lies within."""
+    """Return the key of the context that a key of `assign` is, or lies within."""
     return way.partition(".")[0]
 
 
@@ -85,7 +85,7 @@ class Raise:
 
 
 PARENT = "parent"
-"""Who a `send` goes to that goes to the behaviour which invoked this one."""
+"""The `to` of a `send` to the behaviour that invoked this one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,14 +105,14 @@ class Send:
 
 @dataclass(frozen=True, slots=True)
 class CancelSend:
-    """`cancel`: take back the delayed `send` of that id."""
+    """`cancel`: withdraw the delayed `send` of that id."""
 
     id: str
 
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """`wait`, in `do` only: let [s] pass."""
+    """`wait`, in `do` only: pause for `seconds` [s]."""
 
     seconds: float
 
@@ -135,14 +135,14 @@ class If:
 
 @dataclass(frozen=True, slots=True)
 class Parallel:
-    """`parallel`, in `do` only: all of these at once; it ends with the last of them."""
+    """`parallel`, in `do` only: perform all of these at once, until the last of them ends."""
 
     branches: tuple["PlacedAction", ...]
 
 
 @dataclass(frozen=True, slots=True)
 class AskQuestion:
-    """`ask`, in `do` only: say what answers the question, and where nothing does `within` [s], do the `otherwise`."""
+    """`ask`, in `do` only: speak the answer to the question; without one `within` [s], perform `otherwise`."""
 
     question: Expression
     within: float
@@ -152,21 +152,21 @@ class AskQuestion:
 ComputedAction = (
     SayText | PublishBody | Assign | Raise | Send | CancelSend | Wait | LogText | If | Parallel | AskQuestion
 )
-"""What a step has to evaluate, or to decide."""
+"""The actions that a step must evaluate or decide."""
 
 Action = ComputedAction | VerbCommand
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedAction:
-    """One action and where it stands."""
+    """One action and its path in the document."""
 
     action: Action
     where: NodePath = field(default=(), compare=False)
 
 
 def nested(block: tuple[PlacedAction, ...]) -> Iterator[PlacedAction]:
-    """The actions of a block, those inside `if` and `parallel` too."""
+    """Yield the actions of a block, including those inside `if` and `parallel`."""
     for step in block:
         yield step
         match step.action:

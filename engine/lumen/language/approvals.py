@@ -3,4 +3,4 @@
 from typing import Literal
 
 Autonomy = Literal["ask", "alone"]
-"""`ask`: they wait for GO; `alone`: they go by themselves."""
+"""`ask`: they wait for GO; `alone`: they are performed without it."""

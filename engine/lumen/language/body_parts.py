@@ -16,12 +16,12 @@ WHOLE_BODY = frozenset((HEAD, ARMS, LEGS, BODY))
 
 
 def part_of(body: Body) -> dict[str, str]:
-    """For each joint the part that it belongs to."""
+    """Return the part that each joint belongs to."""
     return {joint: part for part, joints in body.parts.items() for joint in joints}
 
 
 def parts_of_motion(motion: MotionDefinition, body: Body) -> frozenset[str]:
-    """What its keys move, arms and legs for the posture that it begins in, and the lights that it sets."""
+    """Return the parts that a motion uses: those its keys move, arms and legs for its first posture, and its lights."""
     belongs = part_of(body)
     moved = {belongs[joint] for joint in motion.tracks if joint in belongs}
     standing = {ARMS, LEGS} if motion.start else set()
@@ -31,5 +31,5 @@ def parts_of_motion(motion: MotionDefinition, body: Body) -> frozenset[str]:
 
 
 def parts_of_lights(colours: object) -> frozenset[str]:
-    """The lights of these groups."""
+    """Return the lights of these groups, as parts."""
     return frozenset(f"light {name}" for name, _ in lights_of(colours if isinstance(colours, Mapping) else {}))

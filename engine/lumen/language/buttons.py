@@ -1,4 +1,4 @@
-"""What an operator may press while a state is active."""
+"""The buttons that an operator can press while a state is active."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,24 +11,23 @@ Confirmation = Literal["hold", "ask", ""]
 
 @dataclass(frozen=True, slots=True)
 class Button:
-    """A button that raises an event while its state, or one within, is active.
-
-    `label` has its texts by language; under the empty one stands what is the same in all. `confirm` is whether it has
-    to be held down or asked for again, `key` the one key that presses it.
-    """
+    """A button that raises an event while its state, or one within it, is active."""
 
     label: Mapping[str, str]
+    """Its texts by language; a text that serves all languages has the empty code."""
     event: str
     data: Any = None
     confirm: Confirmation = ""
+    """`hold`: it must be held down; `ask`: it must be confirmed; empty: neither."""
     key: str = ""
+    """The one key that presses it."""
     where: NodePath = field(default=(), compare=False)
 
     def named(self, name: str) -> bool:
-        """Whether it is called so in one of its languages, however that is written."""
+        """Return True if the button has this name in one of its languages, in upper or lower case."""
         return any(text.casefold() == name.strip().casefold() for text in self.label.values())
 
     def replaces(self, other: "Button") -> bool:
-        """Whether it stands for another one further out: of the same label or key, or for the same event and data."""
+        """Return True if it replaces another one further out: by its label or key, or by its event and data."""
         same = (self.event, self.data) == (other.event, other.data)
         return same or self.label == other.label or bool(self.key and self.key == other.key)

@@ -47,7 +47,7 @@ def _usual(field: Field[Any]) -> Any:
 
 
 def started(command: Any) -> tuple[str, str, Mapping[str, Any]] | None:
-    """The id, the kind (`Say`) and the fields of what a command begins, None where it begins nothing."""
+    """Return the id, the kind (`Say`) and the fields of a command that begins; None for any other."""
     match command:
         case {"Start": {"id": str(id), "command": Mapping() as body}} if body:
             kind, said = next(iter(body.items()))

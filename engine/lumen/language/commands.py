@@ -1,6 +1,6 @@
-"""What a behaviour asks of the world: values that a step returns and the edge performs.
+"""Commands of a behaviour: values that a step returns and the edge performs.
 
-Lengths in [m], angles in [rad], times in [s]; what a `Start` holds is answered by the robot with the events
+Lengths are in [m], angles in [rad], times in [s]. The robot answers each `Start` with one of the events
 `done.command.ID`, `error.command.ID` or `cancelled.command.ID`.
 """
 
@@ -15,12 +15,12 @@ Channel = Literal["all", "walk", "play", "say"]
 
 
 SaysGestures = Literal["none", ""]
-"""Whether a text is said without the gestures that would accompany it."""
+"""`none`: a text is spoken without the gestures that would accompany it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Say:
-    """Speak a text; `language` is one of the project's, or empty where it has none."""
+    """Speak a text; `language` is one of the project's, or empty if it has none."""
 
     text: str
     language: str = ""
@@ -29,10 +29,10 @@ class Say:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """Find out what answers a visitor's `question`, `within` so long [s]; names are not in it any more.
+    """Find an answer to a visitor's `question`, without names of people, `within` this time [s].
 
-    What is found comes as events `answer.command.ID`; `error.command.ID` says that nobody knows. `language` is what is
-    to be spoken, `place` where the robot is.
+    What is found arrives as events `answer.command.ID`; `error.command.ID` means that there is no answer. `language` is
+    the one to speak, `place` where the robot is.
     """
 
     question: str
@@ -69,7 +69,7 @@ class Walk:
 class GoTo:
     """Walk to the place of that name, one of `places` in lumen.yaml.
 
-    Where it stands in the YAML, `to` may hold `{{ expression }}`, which a step fills in.
+    In the YAML, `to` may contain `{{ expression }}`, which a step fills in.
     """
 
     to: str
@@ -77,9 +77,9 @@ class GoTo:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """Walk on: `vx` forward, `vy` to the left [m/s], `vtheta` to the left [rad/s].
+    """Keep walking: `vx` forward, `vy` to the left [m/s], `vtheta` to the left [rad/s].
 
-    It ends where something stops it, or where another command wants the legs; another `Move` goes on from it.
+    It ends with a stop, or when another command needs the legs; another `Move` continues it with new speeds.
     """
 
     vx: float = 0.0
@@ -97,7 +97,7 @@ class Look:
 
 @dataclass(frozen=True, slots=True)
 class Leds:
-    """Give groups of lights their colours, by name or `#rrggbb`, on an even way of `duration` [s]."""
+    """Set groups of lights to colours, by name or `#rrggbb`, with a linear transition of `duration` [s]."""
 
     colours: Mapping[str, str]
     duration: float = 0.0
@@ -105,7 +105,7 @@ class Leds:
 
 @dataclass(frozen=True, slots=True)
 class Volume:
-    """Speak with this volume from the next text on: 0 is silent, 1 the loudest; what is being said is said on."""
+    """Set the volume of speech, from the next text on: 0 is silent, 1 the loudest."""
 
     level: float
 
@@ -114,7 +114,7 @@ class Volume:
 class PlaySound:
     """Play a sound file of the project, named from its folder.
 
-    `length` is how long it takes [s], which whoever performs it reads from the file; no YAML says it.
+    `length` is its duration [s], which the performer reads from the file; it is never in the YAML.
     """
 
     file: str
@@ -123,7 +123,7 @@ class PlaySound:
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """Let a controller move its joints, or take them from it."""
+    """Start or end a controller's control of its joints."""
 
     controller: str
     on: bool = True
@@ -131,16 +131,16 @@ class Track:
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """End what is running, keeping balance."""
+    """Stop what is running, while keeping balance."""
 
     what: Channel = "all"
 
 
 @dataclass(frozen=True, slots=True)
 class Rest:
-    """Stop, go safely to Crouch, motors off.
+    """Stop, go safely to Crouch, and turn the motors off.
 
-    `by` is the person who wants that, empty where it is nobody's wish; no YAML says it.
+    `by` is the person who demanded it, empty if no person did; it is never in the YAML.
     """
 
     by: str = field(default="", metadata={"yaml": False})
@@ -148,7 +148,7 @@ class Rest:
 
 @dataclass(frozen=True, slots=True)
 class Wake:
-    """Motors on, stand."""
+    """Turn the motors on, and stand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +168,7 @@ class Publish:
 
 @dataclass(frozen=True, slots=True)
 class Tell:
-    """Let another robot of the house hear an event."""
+    """Raise an event for another robot of the house."""
 
     robot: str
     event: str
@@ -198,7 +198,7 @@ class Do:
 
 
 MotorCommand = Posture | Walk | Move | Look | Leds | Volume | PlaySound | Stop | Rest | Wake
-"""What stands in the YAML as the robot performs it. A new one goes here, and into `verbs.py`."""
+"""The verbs of the YAML that the robot itself performs. A new one is added here and in `verbs.py`."""
 
 VerbCommand = MotorCommand | Play | Track | Language | GoTo | Do
 """Verbs of the YAML that are their own commands: `GoTo` and `Do` alone can contain expressions, in texts.
@@ -207,7 +207,7 @@ VerbCommand = MotorCommand | Play | Track | Language | GoTo | Do
 """
 
 BodyCommand = VerbCommand | Say | Ask
-"""What a robot performs, or the parts of the runtime that move it, or answer it."""
+"""The commands of the robot, and of the parts of the runtime that move it or answer for it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,4 +226,4 @@ class Cancel:
 
 
 Command = Start | Cancel | Publish | Tell | Log
-"""Everything a step can ask for."""
+"""Every command that a step can return."""

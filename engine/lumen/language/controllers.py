@@ -1,4 +1,4 @@
-"""What a fuzzy controller file says: variables, terms, rules, operators, bindings, and how a head tracks with it."""
+"""A fuzzy controller file as values: variables, terms, rules, operators, bindings, and how a head tracks with it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -31,10 +31,10 @@ TERM_PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "linear": ("one coefficient for each input", "a constant"),
     "function": ("a formula",),
 }
-"""The kinds of term, and what their parameters are called, in order; `discrete` and `linear` take any number."""
+"""The kinds of term, and the names of their parameters, in order; `discrete` and `linear` have any number."""
 
 VALUE_TERMS = ("constant", "linear")
-"""The kinds of term that are a single value, for weighted defuzzifiers; `function` may be that as well as a set."""
+"""The kinds of term that are a single value, for weighted defuzzifiers; a `function` may be a value or a set."""
 
 HEDGES = ("any", "not", "extremely", "seldom", "somewhat", "very")
 
@@ -53,7 +53,7 @@ ACTIVATIONS: Mapping[str, tuple[str, ...]] = {
     "proportional": (),
     "threshold": ("comparison", "threshold"),
 }
-"""Which rules of a block take part, and the settings that each method reads."""
+"""The methods that select which rules of a block are applied, each with the settings that it reads."""
 
 COMPARISONS = ("<", "<=", "==", "!=", ">=", ">")
 
@@ -65,28 +65,21 @@ DEFUZZIFIERS = INTEGRAL_DEFUZZIFIERS + WEIGHTED_DEFUZZIFIERS
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A linguistic value: a membership function of `kind` with its parameters in the variable's unit.
-
-    `parameters` stand in the order of `TERMS`; `discrete` has x, membership, x, membership, … and `function` none, but
-    a `formula`.
-    """
+    """A linguistic value: a membership function of `kind`."""
 
     name: str
     kind: str
     parameters: tuple[float, ...]
+    """In the order of `TERM_PARAMETERS`, in the variable's unit; `discrete` has x, membership, x, …"""
     height: float = 1.0
     formula: str = ""
+    """The formula of a `function`, which has no parameters."""
     where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A linguistic variable over [`minimum`, `maximum`]; `default` is the output where no rule fires.
-
-    `lock_range` keeps the value within the range; `lock_previous` keeps an output as it was where no rule fires.
-    `aggregation`, `defuzzifier`, `resolution` (points of the sampled set) and `accuracy` (how far the value may be
-    from the integral) are an output's.
-    """
+    """A linguistic variable over [`minimum`, `maximum`]."""
 
     name: str
     minimum: float
@@ -95,18 +88,23 @@ class Variable:
     unit: str = ""
     direction: str = ""
     default: float | None = None
+    """The value of an output if no rule fires."""
     neutral: float | None = None
     lock_range: bool = False
+    """Keep the value within the range."""
     lock_previous: bool = False
+    """Keep the previous value of an output if no rule fires."""
     aggregation: str = "maximum"
     defuzzifier: str = "centroid"
     resolution: int = 1000
+    """The number of points of an output's sampled set."""
     accuracy: float | None = None
+    """The maximum distance of an output's value from the exact integral."""
     where: NodePath = field(default=(), compare=False)
 
     @property
     def weighted(self) -> bool:
-        """Whether an output is computed from the values of its terms, and not from a set."""
+        """True if an output is computed from the values of its terms instead of from a set."""
         return self.defuzzifier in WEIGHTED_DEFUZZIFIERS
 
 
@@ -158,7 +156,7 @@ class Rule:
 
 @dataclass(frozen=True, slots=True)
 class Activation:
-    """Which rules of a block take part: `method` is one of `ACTIVATIONS`, the rest its settings."""
+    """The selection of a block's rules that are applied: `method` is one of `ACTIVATIONS`, the rest its settings."""
 
     method: str = "general"
     rules: int = 1
@@ -178,7 +176,7 @@ class Operators:
 
 @dataclass(frozen=True, slots=True)
 class RuleBlock:
-    """Rules that are activated together; a later block may ask for what an earlier one concluded."""
+    """Rules that are activated together; a later block may use the conclusions of an earlier one."""
 
     rules: tuple[Rule, ...]
     operators: Operators = Operators()
@@ -187,7 +185,7 @@ class RuleBlock:
 
 @dataclass(frozen=True, slots=True)
 class InputBinding:
-    """Where an input comes from: `face.x` is the field `x` of the bodies of the route `face`."""
+    """The source of an input: `face.x` is the field `x` of messages on the route `face`."""
 
     variable: str
     route: str
@@ -197,9 +195,9 @@ class InputBinding:
 
 @dataclass(frozen=True, slots=True)
 class OutputBinding:
-    """What an output moves: `joint` by `gain` times the output (the sign in it), within limits [rad].
+    """The joint that an output moves: by `gain` times the output (with its sign), within limits [rad].
 
-    `angle` [rad] is what one unit of the output is.
+    `angle` [rad] is one unit of the output.
     """
 
     variable: str
@@ -222,7 +220,7 @@ class ContextInput:
 
 @dataclass(frozen=True, slots=True)
 class VolumeBinding:
-    """An output that is how loud the robot speaks, from 0 to 1; told anew when it has changed by `step`."""
+    """An output that sets the robot's volume, from 0 to 1; sent again when it has changed by `step`."""
 
     variable: str
     step: float
@@ -231,7 +229,7 @@ class VolumeBinding:
 
 @dataclass(frozen=True, slots=True)
 class MessageBinding:
-    """An output that is a field of a message on `route`, beside what `body` says, sent when it has changed by `step`.
+    """An output that is a field of a message on `route`, added to `body`; sent when it has changed by `step`.
 
     Outputs that are fields of the same route make one message.
     """
@@ -246,7 +244,7 @@ class MessageBinding:
 
 @dataclass(frozen=True, slots=True)
 class ContextBinding:
-    """An output that the context's `key` becomes when it has changed by `step`."""
+    """An output whose value the context's `key` gets when it has changed by `step`."""
 
     variable: str
     key: str
@@ -256,9 +254,9 @@ class ContextBinding:
 
 @dataclass(frozen=True, slots=True)
 class ThresholdBinding:
-    """An output that raises `event` once as it goes beyond `threshold`, upwards if `rising`, else downwards.
+    """An output that raises `event` once when it passes `threshold`, upwards if `rising`, else downwards.
 
-    It can be raised again after the output has come back by `hysteresis`.
+    The event can be raised again after the output has returned by `hysteresis`.
     """
 
     variable: str
@@ -270,33 +268,36 @@ class ThresholdBinding:
 
 
 SignalBinding = VolumeBinding | MessageBinding | ContextBinding | ThresholdBinding
-"""What an output does that moves no joint."""
+"""The targets of an output that moves no joint."""
 
 CONTROLLER_EVENT = "controller."
-"""How the event begins, followed by the controller's name, by which a behaviour's context becomes what one says."""
+"""The prefix of the events, followed by the controller's name, with which a controller sets the context."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrackingSettings:
-    """How joints follow what is seen, and what they do when it is lost.
-
-    For `hold` [s] they stay; for `search` [s] they swing by `sweep` [rad] to either side, once in `period` [s]; then
-    they go to `ahead` [rad]. `speed` is the fraction of the joints' greatest. A sight older than `stale` [s] does not
-    count. For each sight the controller is asked `looks` times, each time about the image as the head would see it
-    after the turn before, and at most `zoom` times magnified. What moves no joint is worked out once in `every` [s] at
-    most.
-    """
+    """How joints follow a face, and what they do when it is lost."""
 
     speed: float = 0.3
+    """The fraction of the joints' maximum speed."""
     looks: int = 1
+    """How often the controller is evaluated for each image, each time as seen after the turn before."""
     zoom: float = 1.0
+    """The maximum magnification of these evaluations."""
     hold: float = 2.0
+    """How long the joints stay after a loss [s]."""
     search: float = 8.0
+    """How long they then swing to search [s]."""
     period: float = 4.0
+    """The period of the swing [s]."""
     stale: float = 1.0
+    """The age above which a face is ignored [s]."""
     every: float = 0.2
+    """The minimum time between two evaluations of outputs that move no joint [s]."""
     sweep: Mapping[str, float] = field(default_factory=dict)
+    """The amplitude of the swing to either side, by joint [rad]."""
     ahead: Mapping[str, float] = field(default_factory=dict)
+    """The angles after the search, by joint [rad]."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""A picture as the text that JSON has room for, which still knows its bytes."""
+"""A picture as a text for JSON that still holds its bytes."""
 
 import base64
 from typing import Self
@@ -9,14 +9,14 @@ JPEG_URL = f"data:{JPEG_TYPE};base64,"
 
 
 class DataUrl(str):
-    """`data:image/jpeg;base64,…` of a JPEG: a text like any other; who needs the bytes has them in `data`."""
+    """`data:image/jpeg;base64,…` of a JPEG: a text whose bytes are in `data`."""
 
     __slots__ = ("data",)
 
     data: bytes
 
     def __new__(cls, data: bytes) -> Self:
-        """The text of these bytes."""
+        """Return the text of these bytes."""
         text = super().__new__(cls, JPEG_URL + base64.b64encode(data).decode("ascii"))
         text.data = data
         return text

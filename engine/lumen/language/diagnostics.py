@@ -1,4 +1,4 @@
-"""What is wrong in somebody's file, where, and what would be right."""
+"""Findings about a user's files: what is wrong, where, and what would be right."""
 
 import re
 from collections import Counter
@@ -12,22 +12,22 @@ from lumen.language.counts import counted
 from lumen.language.lookalikes import difference, typed
 
 MIN_FINDINGS_FOR_ROOT = 8
-"""Findings from which on what they have in common is wrong, and not each of them."""
+"""The number of findings with a common root from which on the root is reported instead of each."""
 
 MAX_TEXT_CHARACTERS = 1_000
-"""Of a message, and of a hint; of a longer one both ends are told."""
+"""The maximum length of a message or hint [characters]; the middle of a longer one is left out."""
 
 MAX_RELATED = 5
-"""How many places of one cause are shown beside the first."""
+"""The number of places with the same cause that are shown besides the first."""
 
 MAX_COMPARED_NAMES = 200
-"""Names that a misspelt one is compared with, letter by letter."""
+"""The number of names that a misspelt one is compared with, letter by letter."""
 
 MAX_CHANGED_LETTERS = 0.4
 """The share of a name's letters by which a misspelt one may differ."""
 
 NodePath = tuple[str | int, ...]
-"""Where something stands in a document: keys and indices from its root, as in `("states", "idle", "on", 0)`."""
+"""The path of a node in a document: keys and indices from its root, as in `("states", "idle", "on", 0)`."""
 
 
 class Severity(StrEnum):
@@ -53,10 +53,10 @@ class Place(NamedTuple):
 
 
 class Places(Protocol):
-    """A document that knows where its nodes stand."""
+    """A document with the places of its nodes."""
 
     def place(self, path: NodePath, *, key: bool = False) -> Place:
-        """The place of the node at `path`, or of its key."""
+        """Return the place of the node at `path`, or of its key."""
         ...
 
 
@@ -69,11 +69,7 @@ class Related(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding: a stable code, a message in the user's words, the place, and a hint at what would be right.
-
-    `cause` names the one mistake that several findings come from, where there can be several, and `root` what is
-    wrong in their place where there are many: see `gathered`.
-    """
+    """One finding: a stable code, a message in the user's words, the place, and a hint at what would be right."""
 
     code: str
     message: str
@@ -82,7 +78,9 @@ class Diagnostic:
     severity: Severity = Severity.ERROR
     related: tuple[Related, ...] = ()
     cause: str = field(default="", compare=False, repr=False)
+    """The one mistake behind several findings; these become one: see `gathered`."""
     root: str = field(default="", compare=False, repr=False)
+    """The likely mistake behind many findings: see `gathered`."""
 
     def __post_init__(self) -> None:
         for name, text in (("message", self.message), ("hint", self.hint)):
@@ -139,7 +137,7 @@ class Code(str):
 
 
 def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
-    """Whether any of them keeps the project from running."""
+    """Return True if any of them prevents the project from running."""
     return any(d.severity is Severity.ERROR for d in diagnostics)
 
 
@@ -180,7 +178,7 @@ def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
 
 
 def nearest(word: object, candidates: Iterable[str]) -> str:
-    """The candidate that was probably meant, empty where none is near."""
+    """Return the candidate that was probably meant; empty if none is similar."""
     names = set(candidates)
     meant = typed(str(word))
     if meant != word and (equal := next((name for name in sorted(names) if typed(name) == meant), "")):
@@ -221,13 +219,13 @@ def _alike(word: str, names: set[str]) -> set[str]:
 
 
 def mean(word: object, near: str) -> str:
-    """The hint with the word that was probably meant; if the two look equal, also how they differ."""
+    """Return the hint with the word that was probably meant; if the two look equal, also how they differ."""
     said = difference(str(word), near)
     return f"did you mean `{near}`?" + (f" {said}" if said else "")
 
 
 def did_you_mean(word: object, candidates: Iterable[str], what: str = "") -> str:
-    """The hint for an unknown name: the nearest candidate, then the list of all (`what`: "motions/ has")."""
+    """Return the hint for an unknown name: the nearest candidate, then all of them (`what`: "motions/ has")."""
     names: Sequence[str] = sorted(set(candidates))
     near = nearest(word, names)
     shown = ", ".join(f"`{n}`" for n in names[:8]) + (", …" if len(names) > 8 else "")

@@ -1,4 +1,4 @@
-"""Lengths of time as one writes them: `500ms`, `20s`, `2min`."""
+"""Parse durations as people write them: `500ms`, `20s`, `2min`."""
 
 import re
 from collections.abc import Mapping
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from lumen.language.lookalikes import other_sign, typed
 
 MAX_DURATION = 1e9
-"""A third of a century [s]: what is longer is a slip."""
+"""The longest duration [s], a third of a century: a longer one is a mistake."""
 
 _DURATION = re.compile(r"(\d+(?:\.\d+)?) ?(ms|s|min|h)")
 _SECONDS: Mapping[str, float] = {"ms": 0.001, "s": 1.0, "min": 60.0, "h": 3600.0}
@@ -26,7 +26,7 @@ _LIKE_DURATION = re.compile(r"(\d+)(?:[.,](\d+))? ?([A-Za-z]*)\.?")
 
 
 def meant_duration(text: object) -> str:
-    """The duration that was probably meant by `30`, `4 Sekunden` or `1,5s`; empty where nothing is like it."""
+    """Return the duration that was probably meant by `30`, `4 Sekunden` or `1,5s`; empty if there is no similar one."""
     match = _LIKE_DURATION.fullmatch(f"{text:g}" if isinstance(text, float) else str(text).strip())
     if match is None or (unit := _WORDS.get(match[3].lower())) is None:
         return ""
@@ -34,7 +34,7 @@ def meant_duration(text: object) -> str:
 
 
 def duration_hint(text: object) -> str:
-    """What to write in place of what is no duration."""
+    """Return what to write in place of a text that is no duration."""
     if (sign := other_sign(str(text))) and seconds(plain := typed(str(text)).replace(",", ".")) is not None:
         return f"write `{plain}`: {sign}"
     if meant := meant_duration(text):
@@ -46,7 +46,7 @@ def duration_hint(text: object) -> str:
 
 
 def seconds(text: object) -> float | None:
-    """The duration in [s] of `500ms`, `20s`, `1.5s`, `2min` or `1h`; None where it is not one, or longer than any."""
+    """Return the duration of `500ms`, `20s`, `1.5s`, `2min` or `1h` [s]; None if it is none or too long."""
     match = _DURATION.fullmatch(text) if isinstance(text, str) else None
     duration = float(match[1]) * _SECONDS[match[2]] if match else None
     return duration if duration is not None and duration <= MAX_DURATION else None

@@ -1,4 +1,4 @@
-"""What happened: the only input of a behaviour."""
+"""Events: the only input of a behaviour."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -27,7 +27,7 @@ def _object(**fields: object) -> dict[str, object]:
 
 
 def _said_by() -> dict[str, object]:
-    """`by` whom, where that is known."""
+    """Return the schema of data with `by`, the person, which may be absent."""
     return {"type": "object", "properties": {"by": {"type": "string"}}}
 
 

@@ -48,7 +48,7 @@ NO_GESTURES = GestureLibrary()
 
 
 def merged(libraries: Mapping[str, GestureLibrary]) -> GestureLibrary:
-    """All libraries of a project as one; what several say of a tag holds together."""
+    """Return all libraries of a project as one, with the phrases of each tag combined."""
     phrases: dict[str, dict[str, tuple[str, ...]]] = {}
     for library in libraries.values():
         for tag, table in library.phrases.items():

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 DEFAULT_WITHIN = 0.25
-"""How near a robot has to be to count as being at a place [m], where the place does not say."""
+"""How near a robot must be to count as being at a place, if the place does not say [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +23,6 @@ class HallPlace:
 
 @dataclass(frozen=True, slots=True)
 class HallPlaces:
-    """The places of the hall that the robot knows by name."""
+    """The places of the hall that the robot can go to, by name."""
 
     by_name: Mapping[str, HallPlace] = field(default_factory=dict)

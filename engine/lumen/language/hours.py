@@ -21,5 +21,5 @@ class Schedule:
     text: str = field(default="", compare=False)
 
     def holds(self, day: date) -> bool:
-        """Whether that is one of its days."""
+        """Return True if that is one of its days."""
         return not (self.weekdays or self.dates) or day.weekday() in self.weekdays or day in self.dates

@@ -1,14 +1,14 @@
-"""Who performs in a house: one robot or several, each with what differs from what lumen.yaml says of all."""
+"""The robots that perform in a house, each with what differs from the common settings in lumen.yaml."""
 
 from dataclasses import dataclass
 
 DEFAULT_SPACING = 0.6
-"""How far robots are from each other, in a row, where lumen.yaml does not say where they stand [m]."""
+"""The distance between robots in a row, if lumen.yaml does not place them [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class StartPose:
-    """Where a robot stands in the hall at its start: `x`, `y` [m], and how far to the left it faces [rad]."""
+    """The pose of a robot in the hall at its start: `x`, `y` [m], and how far to the left it faces [rad]."""
 
     x: float = 0.0
     y: float = 0.0

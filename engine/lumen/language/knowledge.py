@@ -24,11 +24,11 @@ class Passage:
     file: str = ""
 
     def is_said_by(self, robot: str) -> bool:
-        """Whether that robot may say it."""
+        """Return True if that robot may use it in an answer."""
         return not self.who or robot in self.who
 
     def is_past(self, today: date) -> bool:
-        """Whether the last day on which it is true is over."""
+        """Return True if the last day on which it is true is over."""
         return self.until is not None and self.until < today
 
 

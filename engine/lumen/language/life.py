@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from lumen.language.diagnostics import NodePath
 
 STILL = "still"
-"""The style in which a robot does nothing of its own accord: it needs no file."""
+"""The style in which a robot never moves by itself; it needs no file."""
 
 
 NAOQI_SPEECH, NAOQI_BREATHING, NAOQI_BLINKING, OWN_LEGS = "speech", "breathing", "blinking", "legs"
@@ -65,7 +65,7 @@ class Asides:
 
 @dataclass(frozen=True, slots=True)
 class Settles:
-    """Where `joints` [rad; hands 0..1] sink to beside their posture once nothing moves them, within `takes` [s]."""
+    """The angles `joints` [rad; hands 0..1] to which joints settle beside their posture, within `takes` [s]."""
 
     joints: Mapping[str, float]
     takes: float = 1.5
@@ -104,7 +104,7 @@ class LifeStyle:
 
     @property
     def amplitudes(self) -> Mapping[str, float]:
-        """How far each joint sways at most, where it has settled [rad; hands 0..1]."""
+        """The maximum sway of each joint, including where it has settled [rad; hands 0..1]."""
         settles = self.settles.joints if self.settles else {}
         found = {joint: abs(angle) for joint, angle in settles.items()}
         for sway in self.sways:

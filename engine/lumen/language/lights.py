@@ -64,19 +64,19 @@ _DIGITS = re.compile(r"#[0-9a-fA-F]{6}")
 
 
 def rgb(colour: object) -> int | None:
-    """0xRRGGBB of a colour's name or `#rrggbb`, None for what is neither."""
+    """Return 0xRRGGBB of a colour's name or `#rrggbb`; None for any other value."""
     if not isinstance(colour, str):
         return None
     return int(colour[1:], 16) if _DIGITS.fullmatch(colour) else COLOURS.get(colour)
 
 
 def lights_of(groups: Mapping[str, object]) -> Iterator[tuple[str, object]]:
-    """Each light of these groups with its group's colour; what is no group is left out."""
+    """Yield each light of these groups with its group's colour; unknown groups are left out."""
     return ((light, colour) for group, colour in groups.items() for light in LIGHT_GROUPS.get(group, ()))
 
 
 def light_fault(group: str, colour: object) -> str:
-    """What is wrong with such a group or colour, and what would be right; empty where nothing is."""
+    """Return what is wrong with a group or colour, and what would be right; empty if it is valid."""
     if group not in LIGHT_GROUPS:
         return f"there is no light `{group}`: {did_you_mean(group, LIGHT_GROUPS)}"
     if rgb(colour) is not None:

@@ -1,6 +1,6 @@
-"""What a behaviour file says: a statechart as frozen values, its targets resolved.
+"""A behaviour file as values: a statechart whose targets are resolved.
 
-The words are XState v5's with UML's `entry`/`do`/`exit`; what they mean is W3C SCXML (Appendix D).
+The words are XState v5's with UML's `entry`/`do`/`exit`; their meaning is that of W3C SCXML (Appendix D).
 """
 
 from collections.abc import Mapping
@@ -27,7 +27,7 @@ class StateKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Approval:
-    """A person has to approve a transition, `within` so long [s] where that is said; else it goes or stays."""
+    """A person must approve a transition, `within` this time [s] if it is set; after that, `otherwise` applies."""
 
     within: float | None = None
     otherwise: Literal["go", "stay"] = "stay"
@@ -55,39 +55,39 @@ class Hears:
 
 @dataclass(frozen=True, slots=True)
 class Transition:
-    """A candidate: taken on `event` where its guard holds.
-
-    `event` is a descriptor (`heard`, `error.*`, `*`), empty for `always`; `delay` is set for `after` ([s], or what says
-    how long when its state is entered), `schedule` for `at`. `targets` are the paths of existing states, empty for a
-    targetless transition. `reenter` is SCXML's `type="external"`. Where `exact`, the event's name has to be the whole
-    descriptor, not begin with it: `onDone` of `talk` has nothing to do with `done.state.talk.ask`. Where it waits for
-    somebody to `approve` it, the event waits: no step knows of that.
-    An `offer` is for a language model, too, which may raise its event.
-    A row of `hears` waits for `heard`, and `hears` is the row.
-    """
+    """A candidate: the transition that is taken on `event` if its guard holds."""
 
     source: str
     event: str = ""
+    """A descriptor (`heard`, `error.*`, `*`); empty for `always`."""
     targets: tuple[str, ...] = ()
+    """The paths of existing states; empty for a targetless transition."""
     guard: Expression | None = None
     actions: tuple[PlacedAction, ...] = ()
     reenter: bool = False
+    """SCXML's `type="external"`."""
     delay: float | Template | None = None
+    """The delay of `after` [s], or a template that gives it when the state is entered."""
     exact: bool = False
+    """The event's name must equal the descriptor: `onDone` of `talk` ignores `done.state.talk.ask`."""
     where: NodePath = field(default=(), compare=False)
     schedule: Schedule | None = None
+    """The times of `at`."""
     approve: Approval | None = None
+    """The approval of a person for which the event waits; steps ignore it."""
     offer: bool = False
+    """A language model may also raise its event."""
     hears: Hears | None = None
+    """The row of `hears`; its event is `heard`."""
 
     @property
     def timed(self) -> bool:
-        """Whether a timer of its state selects it, and no event's name."""
+        """True if a timer of its state selects it instead of an event's name."""
         return self.delay is not None or self.schedule is not None
 
     @property
     def awaited_time(self) -> str:
-        """`after 20 s` or `at 18:00`, empty where no timer selects it."""
+        """`after 20 s` or `at 18:00`; empty if no timer selects it."""
         if self.schedule:
             return f"at {self.schedule.text}"
         if isinstance(self.delay, Template):
@@ -95,7 +95,7 @@ class Transition:
         return "" if self.delay is None else f"after {self.delay:g} s"
 
     def caption(self, failed: str) -> str:
-        """The trigger in words: the key of its row of `hears`, its time, its event; `done` or `failed` for an end."""
+        """Return the trigger in words: its row of `hears`, its time, its event; `done` or `failed` for an end."""
         if self.hears:
             return self.hears.title
         if self.exact and not self.timed:
@@ -168,7 +168,7 @@ class State:
 
     @property
     def name(self) -> str:
-        """What `configuration` calls it: the alias where there is one, else the path."""
+        """Its name in `configuration`: the alias if it has one, else the path."""
         return self.alias or self.path
 
 
@@ -210,7 +210,7 @@ class MachineDefinition:
     anyhow: frozenset[str] = frozenset()
 
     def __getstate__(self) -> dict[str, Any]:
-        """What it says, for another process: what was made of it here is none of its fields."""
+        """Return its fields for another process, without values that were derived from them here."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @property
@@ -218,6 +218,6 @@ class MachineDefinition:
         return self.states[""]
 
     def invoked_behavior(self, path: str, id: str) -> str:
-        """The behaviour that the state at that path invokes under that id; empty for none."""
+        """Return the behaviour that the state at that path invokes under that id; empty if it does not."""
         invokes = self.states[path].invoke if path in self.states else ()
         return next((invoke.behavior for invoke in invokes if invoke.id == id), "")

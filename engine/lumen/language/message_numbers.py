@@ -1,4 +1,4 @@
-"""Numbers in the bodies of messages, which anybody may have sent."""
+"""Numbers in the bodies of messages, which any program may have sent."""
 
 from collections.abc import Sequence
 
@@ -7,10 +7,10 @@ from lumen.language.numbers import is_finite_number
 
 
 def number(value: object) -> float | None:
-    """A finite number from somebody's message; None for anything else, and for an integer beyond all floats."""
+    """Return a finite number from a message; None for anything else, and for an integer beyond the range of floats."""
     return float(value) if is_finite_number(value) else None
 
 
 def number_at(body: object, path: Sequence[str]) -> float | None:
-    """The finite number in that field of a body, None where there is none."""
+    """Return the finite number in that field of a body; None if the field holds no such number."""
     return number(value_at(body, path))

@@ -6,16 +6,16 @@ from lumen.language.robots import Body
 from lumen.language.roles import LEFT, RIGHT, JointRole
 
 Mirror = Mapping[str, tuple[str, float]]
-"""For joints the one on the other side, empty where the body has none there, and the sign that the angle takes.
+"""For a joint the one on the other side, empty if the body has none there, and the sign of the mirrored angle.
 
-A joint that is not in it stays as it is.
+A joint that is absent stays as it is.
 """
 
 _OTHER = {LEFT: RIGHT, RIGHT: LEFT}
 
 
 def mirror_of(body: Body) -> Mirror:
-    """The mirror of a body: its roles say which joints are each other's image."""
+    """Return the mirror of a body; its roles define which joints are each other's image."""
     found = {}
     for path, role in body.roles.paths.items():
         other = body.roles.joint(".".join(_OTHER.get(part, part) for part in path.split(".")))

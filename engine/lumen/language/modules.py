@@ -28,7 +28,7 @@ class ModuleSettings:
 
     @property
     def own(self) -> bool:
-        """Whether it is a program of the project's own."""
+        """True if it is a program of the project's own."""
         return bool(self.command)
 
 

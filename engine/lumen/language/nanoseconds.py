@@ -9,7 +9,7 @@ HALF = 0.5 / NANOSECONDS
 
 
 def nanoseconds(seconds: float) -> int:
-    """A time or a length of time [s] in whole nanoseconds, the nearest; one beyond all measure is NEVER."""
+    """Return a time or a length of time [s] in whole nanoseconds, rounded; NEVER if it is infinite or NaN."""
     try:
         return round(seconds * NANOSECONDS)
     except (OverflowError, ValueError):  # infinite, NaN
@@ -17,10 +17,10 @@ def nanoseconds(seconds: float) -> int:
 
 
 def in_seconds(nanoseconds: int) -> float:
-    """That time [s]; `nanoseconds` gives it back for the first hundred days."""
+    """Return that time [s]; `nanoseconds` is its exact inverse for the first hundred days."""
     return nanoseconds / NANOSECONDS
 
 
 def to_the_nanosecond(seconds: float) -> float:
-    """The time [s] of the nearest whole nanosecond: what a clock shows that adds up short lengths of time."""
+    """Return the time of the nearest whole nanosecond [s], as a clock shows it that adds up short times."""
     return in_seconds(nanoseconds(seconds))

@@ -19,10 +19,10 @@ def name_key(name: str) -> str:
 
 
 class PersonName:
-    """Somebody's name, to be found in texts as whole words, however it is written.
+    """A person's name, found in texts as whole words, in any spelling.
 
-    `others` are keys of names that hold it, as `ana maria` holds `ana`: what names those does not name this one. An
-    empty name is in no text.
+    `others` are keys of names that contain it, as `ana maria` contains `ana`: a text that has those does not name this
+    person. An empty name is in no text.
     """
 
     def __init__(self, name: str, others: Iterable[str] = ()) -> None:
@@ -35,7 +35,7 @@ class PersonName:
         return bool(self._spans(name_key(text)))
 
     def taken_from(self, text: str) -> str:
-        """The text without the name; what is left is in NFC where there was something to take."""
+        """Return the text without the name; it is in NFC if the name was removed."""
         while self.is_named_in(text):
             shorter = self._cut(unicodedata.normalize("NFC", text))
             if shorter == text:
@@ -44,7 +44,7 @@ class PersonName:
         return text
 
     def scrubbed(self, data: Any) -> Any:
-        """JSON data without the name; the data itself where it is nowhere in it."""
+        """Return JSON data without the name; the same object if the name is not in it."""
         scrubbed: Any
         match data:
             case str():
@@ -58,7 +58,7 @@ class PersonName:
         return data if scrubbed == data else scrubbed
 
     def is_in(self, data: Any) -> bool:
-        """Whether JSON data names the person anywhere."""
+        """Return True if JSON data names the person anywhere."""
         match data:
             case str():
                 return self.is_named_in(data)

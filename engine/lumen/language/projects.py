@@ -23,14 +23,14 @@ from lumen.language.sections import Sections, section_of
 from lumen.language.stories import Story
 
 DEFAULT_PATIENCE = 60.0
-"""How long saved files wait for what is under way [s] where the project does not say."""
+"""How long saved files wait for running commands if the project does not say [s]."""
 
 T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """Where feet may go: a rectangle around the robot's start, in its frame [m]."""
+    """The area in which the robot may walk: a rectangle around its start, in its frame [m]."""
 
     x: tuple[float, float]
     y: tuple[float, float]
@@ -92,7 +92,7 @@ class Project:
 
     @property
     def one_of_several(self) -> str:
-        """The robot's name where it needs one to be told from others of the house, on the disk as well; else empty."""
+        """The robot's name if it must be distinguished from others of the house, also on the disk; else empty."""
         return self.robot if self.told_apart else ""
 
     @property
@@ -110,11 +110,11 @@ class Project:
         return replace(self, sections={**self.sections, key: settings})
 
     def key_of(self, route: str) -> str:
-        """The routing key of a route, which the project need not list if it is one of Lumen's own."""
+        """Return the routing key of a route, which the project need not list if it is one of Lumen's own."""
         row = self.routes.get(route)
         return row.key_for(self.robot) if row else default_key(route, self.robot)
 
     def place(self, file: str, where: NodePath) -> Place:
-        """Where in a file stands what a state, transition, action or scene calls its `where`."""
+        """Return the place of a node in a file, by the `where` of a state, transition, action or scene."""
         document = self.documents.get(file)
         return document.place(where) if document else Place(file)

@@ -1,4 +1,4 @@
-"""What has to be so whatever happens: `properties` of a behaviour and of a story."""
+"""Conditions that must hold whatever happens: `properties` of a behaviour and of a story."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -23,6 +23,6 @@ class Property:
 
 
 def conditions_of(properties: Iterable[Property]) -> Iterator[Expression]:
-    """The conditions that stand in properties."""
+    """Yield the conditions in properties."""
     for one in properties:
         yield from filter(None, (one.always, one.whenever, one.eventually))

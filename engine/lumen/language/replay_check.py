@@ -1,4 +1,4 @@
-"""Whether saved files are tried on the visits that were recorded, before they are taken."""
+"""How saved files are checked against recorded visits before they are used."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -7,12 +7,12 @@ CheckMode = Literal["", "warn", "refuse"]
 
 DEFAULT_BUDGET = 5.0
 MAX_BUDGET = 30.0
-"""Nobody waits longer for a saved file [s]."""
+"""The longest that a saved file may wait for the check [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReplayCheck:
-    """`warn` says what would be different, `refuse` takes no such files; empty looks at nothing.
+    """`warn` reports what would differ, `refuse` also rejects such files; empty checks nothing.
 
     The newest visits are played first, for at most `budget` [s].
     """

@@ -44,7 +44,7 @@ class JointRole:
 
     @property
     def sign(self) -> float:
-        """What an angle of the role is multiplied by to be one of the joint."""
+        """The factor that converts an angle of the role to one of the joint: 1 or -1."""
         return -1.0 if self.reversed else 1.0
 
 
@@ -117,20 +117,20 @@ class Roles:
         object.__setattr__(self, "paths", {path: found[path] for path in JOINT_PATHS if path in found})
 
     def joint(self, path: str) -> JointRole | None:
-        """The joint of a role such as `head.yaw`, None where this body lacks it."""
+        """Return the joint of a role such as `head.yaw`; None if this body lacks it."""
         return self.paths.get(path)
 
     def path(self, joint: str) -> str:
-        """The role of the joint of that name, empty where it has none."""
+        """Return the role of the joint of that name; empty if it has no role."""
         return next((path for path, role in self.paths.items() if role.joint == joint), "")
 
     def head_joints(self, yaw: float, pitch: float) -> dict[str, float]:
-        """Angles of the joints that turn the head [rad], as many as this body has."""
+        """Return the angles of the joints that turn the head [rad], as many as this body has."""
         wanted = ((self.joint(HEAD_YAW), yaw), (self.joint(HEAD_PITCH), pitch))
         return {role.joint: role.sign * angle for role, angle in wanted if role}
 
     def head_angles(self, angles: Mapping[str, float]) -> tuple[float, float]:
-        """Yaw and pitch of the head [rad] where joints stand at these angles; 0 where it does not turn that way."""
+        """Return yaw and pitch of the head [rad] at these joint angles; 0 for a joint that the body lacks."""
         yaw, pitch = (self.joint(path) for path in (HEAD_YAW, HEAD_PITCH))
         return (
             yaw.sign * angles.get(yaw.joint, 0.0) if yaw else 0.0,
@@ -138,6 +138,6 @@ class Roles:
         )
 
     def name(self, path: str) -> str:
-        """The name of that joint, empty where this body lacks it."""
+        """Return the name of that joint; empty if this body lacks it."""
         role = self.paths.get(path)
         return role.joint if role else ""

@@ -1,4 +1,4 @@
-"""Which messages the exhibition knows, and how each is carried."""
+"""The messages that the exhibition uses, and how each is carried."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -49,19 +49,19 @@ class Carried(StrEnum):
 
 
 DEFAULT_COMMAND_TTL = 5.0
-"""How long a command may wait [s] where its route does not say."""
+"""How long a command may wait if its route does not say [s]."""
 LONGEST_COMMAND_TTL = 10.0
-"""How long no command should wait [s]: the people around the robot have moved by then."""
+"""How long a command should wait at most [s]: later, the people around the robot have moved."""
 
 
 MAX_RATE = 2_000.0
-"""How many messages a second are taken of what a route does not limit; a fault in a loop sends thousands [1/s]."""
+"""How many messages are accepted of a route without a limit [1/s]; a fault in a loop sends thousands."""
 USUAL_RATE = 50.0
-"""How many a second are taken where a route that comes in does not say [1/s]: as many as the exhibition has ticks."""
+"""How many are accepted of an incoming route that does not say [1/s]: as many as the exhibition has ticks."""
 
 
 STOP_RATE = 200.0
-"""How many stops a second are taken where their route does not say [1/s]: nobody's may be lost among others'."""
+"""How many stops are accepted if their route does not say [1/s]; none may be lost among others."""
 
 
 class Size(NamedTuple):
@@ -124,22 +124,22 @@ class Route:
     uses: tuple[RouteUse, ...] = field(default=(), compare=False)
 
     def key_for(self, robot: str) -> str:
-        """The routing key with the robot's name in it."""
+        """Return the routing key with the robot's name in it."""
         return self.key.replace("{robot}", robot)
 
     @property
     def sense(self) -> str:
-        """The sense that it carries, if it does."""
+        """The sense that the route carries, if it carries one."""
         return self.of or self.name
 
     @property
     def lifetime(self) -> float | None:
-        """How long a message may wait [s], None for as long as it takes."""
+        """How long a message may wait [s]; None if it does not matter."""
         return DEFAULT_COMMAND_TTL if self.ttl is None and self.carried in (Carried.COMMAND, Carried.STOP) else self.ttl
 
     @property
     def rate(self) -> float:
-        """How many messages a second are taken [1/s]; 0 for all of them, as of a journal, of which nothing is lost."""
+        """How many messages are accepted [1/s]; 0 for all of them, as for a journal, of which none may be lost."""
         if self.carried is Carried.JOURNAL:
             return 0.0
         usual = STOP_RATE if self.carried is Carried.STOP else USUAL_RATE

@@ -1,4 +1,4 @@
-"""What the robots of a house have in common: values that all of them read, each written by one of them."""
+"""Values that all robots of a house can read, each written by one of them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,11 +27,11 @@ class SharedKeys:
 
 
 def shared_schema(keys: Mapping[str, SharedKey]) -> dict[str, Any]:
-    """The JSON Schema of all of them together."""
+    """Return the JSON Schema of all of them together."""
     properties = {name: {"type": key.type} for name, key in keys.items()}
     return {"type": "object", "properties": properties, "required": list(keys), "additionalProperties": False}
 
 
 def first_values(keys: Mapping[str, SharedKey]) -> dict[str, Any]:
-    """What they hold before any robot has assigned one."""
+    """Return the values before any robot has assigned one."""
     return {name: key.initial for name, key in keys.items()}

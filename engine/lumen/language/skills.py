@@ -19,7 +19,7 @@ class Lack(NamedTuple):
 
 
 def lack_of(command: object, body: Body) -> Lack | None:
-    """What that body lacks to perform a command at all, None where it can."""
+    """Return what that body lacks to perform a command at all; None if it can."""
     roles = body.roles
     match command:
         case Walk() | Move() | GoTo() if not roles.base.row.moves:
@@ -43,7 +43,7 @@ def _needed(command: Do) -> tuple[str, ...]:
 
 
 def tracking_lack(controller: ControllerDefinition, body: Body) -> Lack | None:
-    """What that body lacks for `track` of a controller that moves joints by role: all of them."""
+    """Return what that body lacks for `track`, if a controller moves joints by role and the body has none of them."""
     wanted = [binding.joint for binding in controller.output_bindings]
     if not wanted or any(name in body.joints for name in wanted) or not all(name in JOINT_PATHS for name in wanted):
         return None
@@ -52,5 +52,5 @@ def tracking_lack(controller: ControllerDefinition, body: Body) -> Lack | None:
 
 
 def tracked(command: object) -> str:
-    """The controller that a command switches on, empty for any other."""
+    """Return the controller that a command switches on; empty for any other."""
     return command.controller if isinstance(command, Track) and command.on else ""

@@ -1,4 +1,4 @@
-"""What a story file says: a scripted visitor, and what must happen."""
+"""A story file as values: a scripted visitor, and what must happen."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from lumen.language.properties import Property
 
 @dataclass(frozen=True, slots=True)
 class Visitor:
-    """Somebody in the hall: where they stand in the robot's frame at its start, [m], and how tall they are [m]."""
+    """A person in the hall: their place in the robot's frame at its start, and their height [m]."""
 
     x: float = 1.5
     y: float = 0.0
@@ -21,7 +21,7 @@ class Visitor:
 
 @dataclass(frozen=True, slots=True)
 class Arrive:
-    """`visitor: {x, y, height}` or `visitor: arrives`: somebody walks up."""
+    """`visitor: {x, y, height}` or `visitor: arrives`: a visitor walks up."""
 
     visitor: Visitor
 
@@ -64,7 +64,7 @@ class Press:
 
 @dataclass(frozen=True, slots=True)
 class Approve:
-    """`operator: {approve: go}` or `stay`: an operator decides what waits longest."""
+    """`operator: {approve: go}` or `stay`: an operator decides the request that has waited longest."""
 
     go: bool
 
@@ -86,7 +86,7 @@ class SendMessage:
 
 @dataclass(frozen=True, slots=True)
 class AnswerQuestion:
-    """`answers: TEXT` or `answers: {raise, data}`: what the module `answers` says to the last question."""
+    """`answers: TEXT` or `answers: {raise, data}`: the reply of the module `answers` to the last question."""
 
     text: str = ""
     event: str = ""

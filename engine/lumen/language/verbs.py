@@ -211,7 +211,7 @@ _LANGUAGE = Verb(
 VERBS: tuple[Verb[Any], ...] = (
     _PLAY, _POSTURE, _GO_TO, _MOVE, _WALK, _LOOK, _LEDS, _VOLUME, _SOUND, _TRACK, _STOP, _REST, _WAKE, _LANGUAGE,
 )  # fmt: skip
-"""Of those that share a name the last is meant where no field says which."""
+"""Of rows that share a name, the last one is used if no field decides."""
 
 COMPUTED: Mapping[type[ComputedAction], str] = {
     SayText: "say", PublishBody: "publish", Assign: "assign", Raise: "raise", Send: "send", CancelSend: "cancel",
@@ -224,7 +224,7 @@ _BY_COMMAND: Mapping[type, Verb[Any]] = {verb.command: verb for verb in VERBS}
 
 
 def verb_of(command: VerbCommand) -> Verb[Any]:
-    """The row of a command; one for each verb that a feature adds."""
+    """Return the row of a command; for a command of a feature, one for its verb."""
     return _added(command.skill) if isinstance(command, Do) else _BY_COMMAND[type(command)]
 
 
@@ -251,13 +251,13 @@ def is_built_in(name: str) -> bool:
 
 
 def names_in(action: Action, kind: str) -> Iterator[str]:
-    """The names of that kind of thing (`motion`, `posture`, …) that an action holds in fields of its own."""
+    """Yield the names of that kind of thing (`motion`, `posture`, …) in the fields of an action."""
     verb = _BY_COMMAND.get(type(action))
     yield from (getattr(action, field.name) for field in verb.fields if field.names == kind) if verb else ()
 
 
 def verb_named(name: str, data: Any) -> Verb[Any] | None:
-    """The row that is meant by a verb of the YAML and the data behind it; None for a name that is no command's."""
+    """Return the row for a verb of the YAML and its data; None for a name that is no command's."""
     rows = [verb for verb in VERBS if verb.name == name]
     said = data.keys() if isinstance(data, Mapping) else ()
     meant = (verb for verb in rows if any(field.name in said for field in verb.fields))

@@ -1,8 +1,8 @@
-"""The words of the YAML as a whole, by a number: what `lumen:` in lumen.yaml says its files were written for."""
+"""The version of the YAML's words, a number: `lumen:` in lumen.yaml names the one that its files use."""
 
 VOCABULARY = 1
-"""The one that this Lumen reads. It grows only where a file that was right would mean something else, or nothing."""
+"""The version that this Lumen reads. It grows only if a valid file would get another meaning, or none."""
 FIRST_VOCABULARY = 1
-"""That of files which do not say."""
+"""The version of files that do not name one."""
 VOCABULARY_KEY = "lumen"
-"""The key of lumen.yaml that says it."""
+"""The key of lumen.yaml that names it."""

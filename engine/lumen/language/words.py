@@ -1,4 +1,4 @@
-"""What a words file says: texts that staff edit without seeing states."""
+"""A words file as values: texts that staff can edit without seeing states."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from lumen.language.machines import Answer
 
 @dataclass(frozen=True)
 class Words:
-    """What `behaviors/words/NAME.yaml` holds, for every behaviour that names it under `words`."""
+    """The content of `behaviors/words/NAME.yaml`, for every behaviour that names it under `words`."""
 
     name: str
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
