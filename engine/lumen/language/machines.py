@@ -115,9 +115,10 @@ class Invoke:
 
 @dataclass(frozen=True, slots=True)
 class ForEach:
-    """`for` of a state: what is in it runs once for each entry of the list `each`, which is `variable` meanwhile.
+    """`for` of a state: its content runs once for each entry of the list `each`, under the name `variable`.
 
-    `shuffle` draws an order, `most` ends it earlier. `key` is that of the context which holds the entry and those left.
+    `shuffle` draws an order, `most` limits the number of entries. `key` is the context key that holds the entry and
+    those that are left.
     """
 
     each: Expression
@@ -134,35 +135,36 @@ RESUME_WORDS = ("again", "after", "never")
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """A state; `path` is its identity, dotted from the root, whose own path is empty.
-
-    `initial` holds the paths entered by default (of a compound state, or of a history state without history).
-    `children` are paths in document order, `transitions` candidates in document order. `output` is the data of
-    `done.state.*` for a final state. `resume` says how its `do` goes on where a history leads back into it, or where
-    the engine was away: the step that it was at `again`, the one `after` it, or `never`; empty for all of it anew.
-    `buttons` are for the operator, also while a state within is active. `life` names the style in which the robot is
-    alive meanwhile, empty where the state around it decides;
-    with `gestures` none it speaks without them.
-    """
+    """A state; `path` is its identity, dotted from the root, whose own path is empty."""
 
     path: str
     kind: StateKind = StateKind.ATOMIC
     parent: str | None = None
     alias: str = ""
     children: tuple[str, ...] = ()
+    """Paths in document order."""
     initial: tuple[str, ...] = ()
+    """The paths that are entered by default; for a history state, those without a history."""
     deep: bool = False
     entry: tuple[PlacedAction, ...] = ()
     do: tuple[PlacedAction, ...] = ()
     exit: tuple[PlacedAction, ...] = ()
     transitions: tuple[Transition, ...] = ()
+    """The candidates in document order."""
     invoke: tuple[Invoke, ...] = ()
     output: ComputedValue = None
+    """The data of `done.state.*` for a final state."""
     on_reload: str = ""
     resume: Resume = ""
+    """How `do` continues after a history or a restart of the engine: with the same step (`again`), the one `after` it,
+    or `never`; empty to begin anew.
+    """
     life: str = ""
+    """The style of life meanwhile; empty to keep that of the surrounding state."""
     gestures: Literal["none", ""] = ""
+    """`none`: the robot speaks without gestures."""
     buttons: tuple[Button, ...] = ()
+    """Buttons for the operator, also while a state within is active."""
     for_each: ForEach | None = None
     where: NodePath = field(default=(), compare=False)
 
@@ -182,14 +184,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class MachineDefinition:
-    """A whole statechart; `states` maps paths to states in document order, the root under the empty path.
-
-    `phrases`, `answers` and `lists` are its own and those of its `words` files; `borrowed` says of those from which
-    file each comes: `("answers", "faq")` from `museum`. `invoked` holds the machines that its states invoke, by the
-    names of their behaviours. `robots` are those of the house, where it has several: events can be sent to them.
-    `shared` are the keys that these have in common, in the context under the key of that name. Phrases named in
-    `anyhow` count even if they are negated.
-    """
+    """A whole statechart; `states` maps paths to states in document order, the root under the empty path."""
 
     id: str
     states: Mapping[str, State]
@@ -197,17 +192,23 @@ class MachineDefinition:
     types: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     events: Mapping[str, Any] = field(default_factory=dict)
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
+    """Its own phrases and those of its `words` files, like `answers` and `lists`."""
     answers: Mapping[str, tuple[Answer, ...]] = field(default_factory=dict)
     lists: Mapping[str, tuple[Mapping[str, Any], ...]] = field(default_factory=dict)
     properties: tuple[Property, ...] = ()
     words: tuple[str, ...] = ()
     borrowed: Mapping[tuple[str, str], str] = field(default_factory=dict)
+    """The words file of a table's entry: `("answers", "faq")` from `museum`."""
     renamed: Mapping[str, str] = field(default_factory=dict)
     hash: str = ""
     invoked: Mapping[str, "MachineDefinition"] = field(default_factory=dict, repr=False)
+    """The machines that its states invoke, by behaviour."""
     robots: tuple[str, ...] = ()
+    """The robots of the house, if it has several: events can be sent to them."""
     shared: tuple[str, ...] = ()
+    """The keys that these robots share, in the context under the key `shared`."""
     anyhow: frozenset[str] = frozenset()
+    """The phrases that match even if they are negated."""
 
     def __getstate__(self) -> dict[str, Any]:
         """Return its fields for another process, without values that were derived from them here."""

@@ -1,4 +1,4 @@
-"""What a motion file says, flattened: for every joint its keys in time, and the cues beside them."""
+"""A motion file as values, flattened: the keys of each joint over time, and the cues beside them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ class Interpolation(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Keyframe:
-    """At `time` [s] the joint stands at `angle` [rad; a hand 0..1], come to by `interpolation`.
+    """A key of a joint: at `time` [s] it reaches `angle` [rad; a hand 0..1] by `interpolation`.
 
     Handles are (dt [s], da [rad]) for Bezier, `handle_in` with dt < 0, `handle_out` with dt > 0, as in NAOqi's
     `angleInterpolationBezier`; one with dt = 0 is chosen so that the curve is smooth and does not overshoot.
@@ -44,17 +44,20 @@ class Cue:
 
 @dataclass(frozen=True)
 class MotionDefinition:
-    """A gesture: for every joint that it moves its keys in time, and the cues beside them.
+    """A motion: the keys over time of each joint that it moves, and the cues beside them.
 
-    `duration` [s]. `start` is the posture that it begins in, `end` the one that it returns to; each is empty where the
-    file names none. `origin` holds the angles of `start` [rad], for the joints of `tracks`. Keys of one track have
-    increasing times above 0: where a joint comes from is known only when the motion is played.
+    Keys of one track have increasing times above 0: the angle of a joint at time 0 is known only when the motion is
+    played.
     """
 
     name: str
     duration: float
+    """[s]"""
     tracks: Mapping[str, tuple[Keyframe, ...]]
     cues: tuple[Cue, ...] = ()
     start: str = ""
+    """The posture in which it begins; empty if the file names none."""
     end: str = ""
+    """The posture to which it returns; empty if the file names none."""
     origin: Mapping[str, float] = field(default_factory=dict)
+    """The angles of `start` [rad], for the joints of `tracks`."""

@@ -23,7 +23,7 @@ from lumen.language.sections import Sections, section_of
 from lumen.language.stories import Story
 
 DEFAULT_PATIENCE = 60.0
-"""How long saved files wait for running commands if the project does not say [s]."""
+"""The default time that saved files wait for running commands [s]."""
 
 T = TypeVar("T")
 
@@ -38,28 +38,21 @@ class Stage:
 
 @dataclass(frozen=True)
 class Project:
-    """Everything the YAML of a project says. `root` is its folder, `hash` of all its files' contents.
-
-    `robot` is the robot's name in routing keys; `robots` are all of the house, `told_apart` where lumen.yaml has
-    `robots:`; each has a project of its own, of the same files. `house` is the name that they have in common.
-    `behavior` names the one of `behaviors` that runs; `languages` has the default first; `messages` maps a message's
-    name to its JSON Schema; `documents` know where in each file what stands. `timezone` is where it is, empty for
-    wherever it runs. `patience` [s] is how long saved files wait for what is under way. `aliases` is whether routes
-    have their aliases: None for as long as no other robot is seen on the bus. `knowledge` are the passages by name,
-    `questions` what they are tried with, `sayings` what `hears` is tried with, `functions` those of functions/.
-    `sections` are the settings of features by the keys of their sections; `section` returns those of one.
-    `verbs` are those that files of the project declare.
-    """
+    """The content of a project's YAML."""
 
     root: str
+    """The project's folder."""
     name: str
     robot: str
+    """The robot's name in routing keys."""
     body: Body
     hall: str
     behavior: str
+    """The one of `behaviors` that runs."""
     behaviors: Mapping[str, MachineDefinition]
     knowledge: Mapping[str, Passage] = field(default_factory=dict)
     questions: Mapping[str, QuestionSet] = field(default_factory=dict)
+    """The questions with which `knowledge` is tested."""
     controllers: Mapping[str, ControllerDefinition] = field(default_factory=dict)
     motions: Mapping[str, MotionDefinition] = field(default_factory=dict)
     life: Mapping[str, LifeStyle] = field(default_factory=dict)
@@ -67,23 +60,36 @@ class Project:
     routes: Mapping[str, Route] = field(default_factory=dict)
     stories: Mapping[str, Story] = field(default_factory=dict)
     sayings: Mapping[str, SayingSet] = field(default_factory=dict)
+    """The sentences with which `hears` is tested."""
     functions: Mapping[str, FunctionDefinition] = field(default_factory=dict)
     messages: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    """The JSON Schema of each message, by name."""
     languages: tuple[str, ...] = ("en",)
+    """The default language first."""
     timezone: str = ""
+    """The time zone; empty for that of the machine."""
     story: str = ""
     stage: Stage | None = None
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
+    """How long saved files wait for running commands [s]."""
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     aliases: bool | None = None
+    """Whether routes have their aliases: None as long as no other robot is seen on the bus."""
     hash: str = ""
+    """The hash of all files' contents."""
     robots: Mapping[str, RobotSpec] = field(default_factory=dict)
+    """All robots of the house; each has a project of its own, built from the same files."""
     told_apart: bool = False
+    """True if lumen.yaml has `robots:`."""
     house: str = ""
+    """The name of the house that the robots share."""
     sections: Sections = field(default_factory=dict)
+    """The settings of features by the keys of their sections; `section` returns those of one."""
     verbs: Mapping[str, VerbRow] = field(default_factory=dict)
+    """The verbs that files of the project declare."""
     documents: Mapping[str, Places] = field(default_factory=dict, repr=False, compare=False)
+    """The documents, which have the places of nodes, by file."""
 
     @property
     def machine(self) -> MachineDefinition:

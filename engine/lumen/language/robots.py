@@ -1,4 +1,4 @@
-"""What is known of a robot's body without simulating it: joints, limits, parts, postures, camera."""
+"""A robot's body as far as it is known without a simulation: joints, limits, parts, postures, camera."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -24,7 +24,9 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class CoupledLimit:
-    """Limits of `joint` by where `on` stands: rows (angle of `on`, minimum, maximum) [rad], linear in between."""
+    """Limits of `joint` that depend on the angle of `on`: rows (angle of `on`, minimum, maximum) [rad], linear in
+    between.
+    """
 
     joint: str
     on: str
@@ -49,7 +51,7 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Ultrasound:
-    """What the sonars hear: echoes from `minimum` to `maximum` [m] inside a cone of that full angle [rad]."""
+    """The range of the sonars: echoes from `minimum` to `maximum` [m] inside a cone of that full angle [rad]."""
 
     minimum: float
     maximum: float
@@ -67,32 +69,35 @@ class LinkInertia:
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A robot model: `models/NAME.yaml` beside its MJCF.
-
-    `joints` keeps the robot's own order of names. `parts` maps head, arms, legs and body to joint names.
-    `postures` maps a posture to angles [rad] of every joint. `shared` maps a joint to the one whose motor moves it too;
-    `hands` are the joints that open (0..1) rather than turn, `slides` those that move by a length [m]. `passages` are
-    the motions from one posture (`start`) to another (`end`) where a straight way would fall. `links` are those that
-    differ from the MJCF. `roles` say what its parts are; one whose eyes have a camera has a `camera`. `gait` maps the
-    name of a pace to what of it does not follow from the legs, in SI units. `mjcf` is a file beside it, or
-    `PACKAGE:PATH`; empty for a body that is never simulated. `give` is how far off [rad] the servos give all their
-    torque that joints get which have none in the MJCF; 0 where none is added.
-    """
+    """A robot model, `models/NAME.yaml`."""
 
     name: str
     mjcf: str
+    """A file in the same folder, or `PACKAGE:PATH`; empty for a body that is never simulated."""
     joints: Mapping[str, Joint]
+    """The joints by name, in the robot's own order."""
     parts: Mapping[str, tuple[str, ...]]
+    """The joints of head, arms, legs and body."""
     postures: Mapping[str, Mapping[str, float]]
+    """The angles of every joint, by posture [rad]."""
     coupled: tuple[CoupledLimit, ...]
     camera: Camera | None
+    """The camera; a body whose eyes have a camera must have one."""
     tactile: tuple[str, ...]
     shared: Mapping[str, str] = field(default_factory=dict)
+    """For a joint, the one whose motor also moves it."""
     hands: tuple[str, ...] = ()
+    """The joints with an opening (0..1) instead of an angle."""
     slides: tuple[str, ...] = ()
+    """The joints that move by a length [m]."""
     sonar: Ultrasound | None = None
     passages: tuple[MotionDefinition, ...] = ()
+    """Motions from one posture (`start`) to another (`end`) between which a direct movement would fall."""
     links: Mapping[str, LinkInertia] = field(default_factory=dict)
+    """The links that differ from the MJCF."""
     roles: Roles = field(default_factory=Roles)
+    """The parts of the body by function."""
     gait: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    """For each pace, the parameters that do not follow from the legs, in SI units."""
     give: float = 0.0
+    """The error at which the servos of joints without one in the MJCF give their full torque [rad]; 0 adds none."""

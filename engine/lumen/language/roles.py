@@ -1,4 +1,4 @@
-"""What the parts of a body are: `roles` of `models/NAME.yaml`. Skills, motions and life ask for these, not for names.
+"""The functions of a body's parts: `roles` of `models/NAME.yaml`, which skills, motions and life use instead of names.
 
 Directions are those of NAO for every body: a yaw grows to the left, a pitch down or forward, a roll to the left. A roll
 of the head grows to the right, about the axis that points ahead.
@@ -89,7 +89,7 @@ class SensorRoles:
 
 @dataclass(frozen=True)
 class Roles:
-    """The parts of a body by what they are. All may be missing; what is missing the body can't do.
+    """The parts of a body by function. All may be absent; the body can't do what needs an absent part.
 
     `torso` is a link of the MJCF (x ahead, y left, z up), `soles` are sites (x ahead, z up). `lights` maps a group of
     lights to the materials of the MJCF that show it.

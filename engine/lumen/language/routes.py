@@ -25,7 +25,7 @@ def route_meanings() -> Mapping[str, str]:
 
 
 JSON_TYPE, JPEG_TYPE, FLOATS_TYPE = "application/json", "image/jpeg", "application/vnd.lumen.float32"
-"""In which forms a body may cross a broker: as JSON, an image as it is, joints as numbers of 32 bits."""
+"""The forms in which a body may be sent to a broker: JSON, an image as it is, joints as 32-bit numbers."""
 
 
 class Direction(StrEnum):
@@ -36,10 +36,10 @@ class Direction(StrEnum):
 
 
 class Carried(StrEnum):
-    """As what a message travels, which decides what becomes of it when the way is slow, full or cut.
+    """The kind of a message, which decides its fate if the connection is slow, full or cut.
 
-    `telemetry` says how things are: the newest wins. A `command` is done soon or not at all. A `stop` is a command that
-    waits behind nothing. Of a `journal` nothing is lost.
+    Of `telemetry` the newest message wins. A `command` is performed soon or not at all. A `stop` is a command that
+    waits for nothing else. Of a `journal` no message is lost.
     """
 
     TELEMETRY = "telemetry"
@@ -49,19 +49,19 @@ class Carried(StrEnum):
 
 
 DEFAULT_COMMAND_TTL = 5.0
-"""How long a command may wait if its route does not say [s]."""
+"""The lifetime of a command if its route does not set one [s]."""
 LONGEST_COMMAND_TTL = 10.0
-"""How long a command should wait at most [s]: later, the people around the robot have moved."""
+"""The longest sensible lifetime of a command [s]: later, the people around the robot have moved."""
 
 
 MAX_RATE = 2_000.0
-"""How many messages are accepted of a route without a limit [1/s]; a fault in a loop sends thousands."""
+"""The maximum rate of a route without a limit [1/s]; a fault in a loop sends thousands."""
 USUAL_RATE = 50.0
-"""How many are accepted of an incoming route that does not say [1/s]: as many as the exhibition has ticks."""
+"""The maximum rate of an incoming route that sets none [1/s]: that of the exhibition's ticks."""
 
 
 STOP_RATE = 200.0
-"""How many stops are accepted if their route does not say [1/s]; none may be lost among others."""
+"""The maximum rate of stops if their route sets none [1/s]; none may be lost among others."""
 
 
 class Size(NamedTuple):
@@ -75,7 +75,7 @@ class Size(NamedTuple):
 
 
 SIZES = tuple(Size(320 * n // 2, 240 * n // 2) for n in (1, 2, 4, 8))
-"""What NAO's cameras give: NAOqi's kQQVGA to k4VGA."""
+"""The sizes of NAO's camera images: NAOqi's kQQVGA to k4VGA."""
 
 SHORTEST_IMAGE_INTERVAL = 0.033
 """The time between two images of NAO's cameras [s]: 30 a second."""
@@ -91,34 +91,37 @@ class RouteUse(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Route:
-    """A row of the route table in `lumen.yaml`.
-
-    `of` names the sense that it carries besides the route of that name, for who wants it at another pace, in another
-    size, or as another `content_type`, which is its form on a broker. `key` may hold `{robot}`; `alias` is what it is
-    called besides while one robot is on the bus: what goes out goes out under both, what comes in may come under
-    either. `schema` names a file of `schemas/messages/`. `event` is the event that a message becomes for the behaviour.
-    `every` [s] is the period of a sense, `size` that of its images, None for the camera's own; `ttl` [s] the time to
-    live, `keep` how many messages wait at most, `most` how many are taken a second, `latency` [s] how old a body
-    without a `time` is taken to be. `must_arrive`: who sends it keeps it until the broker has it, who takes it gives it
-    back unless it was handled.
-    """
+    """A row of the route table in `lumen.yaml`."""
 
     name: str
     key: str
+    """The routing key, which may contain `{robot}`."""
     direction: Direction
     schema: str = ""
+    """The name of a file of `schemas/messages/`."""
     event: str = ""
+    """The event that a message becomes for the behaviour."""
     every: float | None = None
+    """The period of a sense [s]."""
     size: Size | None = None
+    """The size of a sense's images; None for that of the camera."""
     ttl: float | None = None
+    """The time to live [s]."""
     keep: int | None = None
+    """The maximum number of waiting messages."""
     carried: Carried = Carried.TELEMETRY
     must_arrive: bool = False
+    """The sender keeps a message until the broker has it; the receiver returns it unless it was handled."""
     latency: float = 0.15
+    """The assumed age of a body without a `time` [s]."""
     most: float | None = None
+    """The maximum rate of accepted messages [1/s]."""
     alias: str = ""
+    """A second key while one robot is on the bus: messages are sent under both and received under either."""
     of: str = ""
+    """The sense that it carries in addition to that sense's own route, at another period or size or in another form."""
     content_type: str = JSON_TYPE
+    """The form of a body on a broker."""
     where: NodePath = field(default=(), compare=False)
     built_in: bool = field(default=False, compare=False)
     uses: tuple[RouteUse, ...] = field(default=(), compare=False)
@@ -134,12 +137,12 @@ class Route:
 
     @property
     def lifetime(self) -> float | None:
-        """How long a message may wait [s]; None if it does not matter."""
+        """The lifetime of a message [s]; None if it is unlimited."""
         return DEFAULT_COMMAND_TTL if self.ttl is None and self.carried in (Carried.COMMAND, Carried.STOP) else self.ttl
 
     @property
     def rate(self) -> float:
-        """How many messages are accepted [1/s]; 0 for all of them, as for a journal, of which none may be lost."""
+        """The maximum rate of accepted messages [1/s]; 0 for no limit, as for a journal, of which none may be lost."""
         if self.carried is Carried.JOURNAL:
             return 0.0
         usual = STOP_RATE if self.carried is Carried.STOP else USUAL_RATE

@@ -1,4 +1,4 @@
-"""Sayings as tests: what visitors say in a state, and the row of `hears` that should take it."""
+"""Sayings as tests: the sentences of visitors in a state, and the row of `hears` that should match each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,9 +9,9 @@ from lumen.language.diagnostics import NodePath
 
 @dataclass(frozen=True)
 class Saying:
-    """A sentence of a visitor in a `state` (its id or path), and the key of the row of `hears` that should take it.
+    """A sentence of a visitor in a `state` (its id or path), and the key of the row of `hears` that should match it.
 
-    `slots` are what that row should catch; a slot that is not among them may catch anything.
+    `slots` are the values that the row should catch; other slots may catch anything.
     """
 
     behavior: str

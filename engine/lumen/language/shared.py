@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 SHARED = "shared"
-"""What expressions call all of them, and the key of the context that holds them."""
+"""The name of all of them in expressions, and the key of the context that holds them."""
 SHARED_EVENT = "shared.changed"
-"""What a behaviour hears of values that another robot has given them: its data are these, by name."""
+"""The event for values that another robot has assigned; its data are these values, by name."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""What commands ask of a body: the roles without which it can't perform them. Lint, runtime and robots ask here."""
+"""The roles that a body needs to perform a command, for lint, runtime and robots."""
 
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ _ADD = "add {} under `roles` of its body"
 
 
 class Lack(NamedTuple):
-    """What a body lacks for a command, `NAO has neither legs nor wheels`, and which roles would give it that."""
+    """The message that a body lacks parts for a command, `NAO has neither legs nor wheels`, and the roles to add."""
 
     message: str
     hint: str

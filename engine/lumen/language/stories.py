@@ -116,25 +116,32 @@ class AwaitTime:
 
 @dataclass(frozen=True, slots=True)
 class Expect:
-    """`expect:`: all of this holds, or comes to hold `within` [s], else the story fails.
+    """`expect:`: all of this holds, or comes to hold `within` this time, else the story fails.
 
-    `states` are active together; `said` is part of a text said and `said_exactly` the whole of one, `played` a motion
-    finished, `did` a verb of a feature finished that had at least these `arguments`, `published` a route on which a
-    message was sent whose body has at least what `body` has (None: any), all since the last `expect` that held;
-    `context` maps keys to values, `place` is the robot's, by its odometry.
+    Texts, motions, verbs and messages count since the last `expect` that held.
     """
 
     states: tuple[str, ...] = ()
+    """States that are active together."""
     said: str | None = None
+    """A part of a text that was spoken."""
     said_exactly: str | None = None
+    """The whole of a text that was spoken."""
     played: str | None = None
+    """A motion that has finished."""
     did: str | None = None
+    """A verb of a feature that has finished, with at least these `arguments`."""
     arguments: Mapping[str, Any] = field(default_factory=dict)
     published: str | None = None
+    """A route on which a message was sent."""
     body: Any = None
+    """The least content of that message's body; None for any."""
     context: Mapping[str, Any] = field(default_factory=dict)
+    """The values of context keys."""
     place: str | None = None
+    """The robot's place, by its odometry."""
     within: float = 30.0
+    """[s]"""
 
 
 VisitorAction = (
@@ -157,7 +164,7 @@ VisitorAction = (
 
 @dataclass(frozen=True, slots=True)
 class StoryStep:
-    """One step of a story and where it stands."""
+    """One step of a story and its path in the document."""
 
     action: VisitorAction
     where: NodePath = field(default=(), compare=False)
@@ -165,12 +172,7 @@ class StoryStep:
 
 @dataclass(frozen=True)
 class Story:
-    """A story, and how the world is while it plays.
-
-    `robot` maps a verb to `fails`, `hangs` or its duration [s], `results` a verb of a feature to its result; `clock` is
-    the time of day at its start; the states in `never` must never be entered, and its `properties` hold beside those of
-    the behaviour.
-    """
+    """A story, and the state of the world while it plays."""
 
     name: str
     title: str
@@ -178,8 +180,13 @@ class Story:
     behavior: str = ""
     language: str = ""
     clock: Schedule | None = None
+    """The time of day at its start."""
     context: Mapping[str, Any] = field(default_factory=dict)
     robot: Mapping[str, str | float] = field(default_factory=dict)
+    """`fails`, `hangs` or a duration [s], by verb."""
     results: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """The result of a feature's verb, by verb."""
     never: tuple[str, ...] = ()
+    """States that must never be entered."""
     properties: tuple[Property, ...] = ()
+    """Properties that must hold in addition to those of the behaviour."""

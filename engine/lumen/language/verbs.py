@@ -50,7 +50,7 @@ C = TypeVar("C")
 
 
 class Quantity(Enum):
-    """What a value of the YAML counts, and so how it becomes the command's."""
+    """The kind of a value in the YAML, which decides how it is converted for the command."""
 
     PLAIN = "used as written: a text, a number without a unit, true or false"
     LENGTH = "in the file's unit of length, [m] in the command; per second, [m/s]"
@@ -93,7 +93,7 @@ class Verb(Generic[C]):
     instant: bool = False
 
     def arguments(self, data: Any) -> Iterator[tuple[VerbField, tuple[str, ...], Any]]:
-        """Each field that stands in the data of the YAML, where it stands below the verb, and its value."""
+        """Yield each field in the data of the YAML, its path below the verb, and its value."""
         if not self.fields:
             return
         if not isinstance(data, Mapping):
@@ -111,7 +111,7 @@ class Verb(Generic[C]):
                     yield field, (field.name,), data[field.name]
 
     def data(self, command: C, written: Callable[[Quantity, Any], Any]) -> Any:
-        """What stands behind the verb in the YAML for this command; `written` makes data of a field's value."""
+        """Return the data after the verb in the YAML for this command; `written` converts a field's value."""
         values = {field.name: written(field.quantity, getattr(command, field.name)) for field in self.fields}
         if len(values) < 2 and not self.mapped:
             given = next(iter(values.values()), True)
