@@ -1,7 +1,7 @@
-"""Activation methods: which rules of a block take part, and with what degree.
+"""Activation methods: they select the rules of a block that are applied, and change their degrees.
 
-Each takes the rules' degrees in order and returns them with NaN for a rule that does not take part. (Not with 0: a
-consequent such as `not Near` makes something of 0.)
+Each method accepts the rules' degrees in order and returns them, with NaN for a rule that is not applied. (Not with 0:
+a consequent such as `not Near` turns a 0 into another degree.)
 """
 
 from collections.abc import Callable, Mapping
@@ -25,12 +25,12 @@ COMPARISON_FUNCTIONS: Mapping[str, Callable[[Any, Any], Any]] = {
 
 
 def general(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """All of them."""
+    """Return all degrees unchanged."""
     return degrees
 
 
 def first(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """The first `rules` that reach `threshold`, in the order written."""
+    """Return the degrees of the first `rules` rules that reach `threshold`, in the order written."""
     taken: Number = 0.0
     chosen = []
     for degree in degrees:
@@ -41,18 +41,18 @@ def first(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
 
 
 def last(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """The last `rules` that reach `threshold`."""
+    """Return the degrees of the last `rules` rules that reach `threshold`."""
     return first(m, activation, degrees[::-1])[::-1]
 
 
 def lowest(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """The `rules` that fire least; of equals those written first."""
+    """Return the `rules` lowest degrees above 0; of equal ones, those written first."""
     ranks = m.rank([m.where(degree > 0.0, degree, inf) for degree in degrees])
     return _ranked(m, activation, ranks, degrees)
 
 
 def highest(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """The `rules` that fire most; of equals those written first."""
+    """Return the `rules` highest degrees; of equal ones, those written first."""
     ranks = m.rank([-degree for degree in degrees])
     return _ranked(m, activation, ranks, degrees)
 
@@ -65,13 +65,13 @@ def _ranked(m: Arithmetic, activation: Activation, ranks: Degrees, degrees: Degr
 
 
 def proportional(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """All that fire, scaled so that their degrees add up to 1."""
+    """Return the degrees above 0, scaled so that they add up to 1."""
     whole = m.maximum(total(degrees), 1e-300)
     return [m.where(degree > 0.0, degree / whole, nan) for degree in degrees]
 
 
 def threshold(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """Those whose degree compares with `threshold` as `comparison` says."""
+    """Return the degrees that compare with `threshold` by the operator `comparison`."""
     compare = COMPARISON_FUNCTIONS[activation.comparison]
     return [m.where(compare(degree, activation.threshold), degree, nan) for degree in degrees]
 

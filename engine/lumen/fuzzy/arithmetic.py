@@ -1,4 +1,4 @@
-"""One arithmetic for numbers and one for arrays, so that every formula of the inference stands once.
+"""One arithmetic for numbers and one for arrays, so that every formula of the inference is written once.
 
 `NUMBERS` works on Python floats and imports nothing; `arrays()` is the same on NumPy arrays. Both sides of `where` are
 evaluated, so a formula keeps its denominators and roots in their domain on either side.
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
-    """What a batch is worked on in: a float for each of its rows."""
+    """The values of a batch: a float for each of its rows."""
 
 Number = Any
-"""A float, or an array of floats: what one of the two arithmetics works on."""
+"""A float, or an array of floats, depending on the arithmetic."""
 
 
 @dataclass(frozen=True, slots=True)
 class Arithmetic:
-    """The operations that memberships, hedges, norms and activations are made of."""
+    """The operations that memberships, hedges, norms and activations consist of."""
 
     exp: Callable[[Number], Number]
     log: Callable[[Number], Number]
@@ -37,7 +37,7 @@ class Arithmetic:
     rank: Callable[[list[Number]], list[Number]]
 
     def clamp(self, x: Number, low: float, high: float) -> Number:
-        """`x`, or the end of [low, high] that it is beyond."""
+        """Return `x`, or the nearer end of [low, high] if it is outside."""
         return self.minimum(self.maximum(x, low), high)
 
 
@@ -74,7 +74,7 @@ NUMBERS = Arithmetic(
 
 @cache
 def arrays() -> Arithmetic:
-    """The arithmetic of NumPy, which is imported when it is first asked for."""
+    """Return the arithmetic of NumPy, which is imported by the first call."""
     import numpy as np
 
     def rank(values: list[Number]) -> list[Number]:
@@ -96,5 +96,5 @@ def arrays() -> Arithmetic:
 
 
 def total(values: list[Number]) -> Number:
-    """The sum of numbers or of arrays; 0 of none."""
+    """Return the sum of numbers or of arrays; 0 of an empty list."""
     return reduce(lambda a, b: a + b, values, 0.0)

@@ -1,4 +1,4 @@
-"""A controller whose outputs and searches name joints by role, with the joints of a body in their place."""
+"""Replace the roles of joints in a controller's outputs and searches by the joints of a body."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -9,7 +9,7 @@ from lumen.language.roles import JointRole
 
 
 def by_role(controller: ControllerDefinition, body: Body) -> ControllerDefinition:
-    """The controller with the joints of this body in place of their roles; what it lacks stays a role."""
+    """Return the controller with the joints of this body in place of their roles; roles that it lacks stay."""
     bindings = tuple(_bound(binding, body) for binding in controller.output_bindings)
     tracking = controller.tracking
     sweep, ahead = (_placed(angles, body) for angles in (tracking.sweep, tracking.ahead))

@@ -1,4 +1,4 @@
-"""From the degrees of an output's conclusions to its value, by the cheapest way that is exact."""
+"""Defuzzify the degrees of an output's conclusions by the cheapest method that is exact."""
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Defuzzifier(Protocol):
-    """Degrees of an output's conclusions to its value; NaN where nothing fires."""
+    """Converts the degrees of an output's conclusions to its value; NaN if no rule fires."""
 
     def crisp(self, degrees: list[float], values: list[float]) -> float: ...
 
@@ -27,9 +27,9 @@ class Defuzzifier(Protocol):
 def defuzzifier(
     variable: Variable, conclusions: list[Conclusion], known: Sequence[str] = (), inputs: int = 0
 ) -> Defuzzifier:
-    """The cheapest defuzzifier that is exact for what the rules conclude about an output.
+    """Return the cheapest defuzzifier that is exact for the rules' conclusions about an output.
 
-    It is handed, beside the degrees, the values of the variables called `known`; the first `inputs` are the inputs.
+    Besides the degrees, it gets the values of the variables called `known`, the first `inputs` of which are inputs.
     """
     names = list(dict.fromkeys(conclusion.term for conclusion in conclusions))
     which = [names.index(conclusion.term) for conclusion in conclusions]
@@ -47,9 +47,9 @@ def defuzzifier(
 
 
 def midpoints(variable: Variable) -> list[float]:
-    """The points at which an output's set is sampled: the middles of `resolution` equal parts of its range.
+    """Return the points at which an output's set is sampled: the middles of `resolution` equal parts of its range.
 
-    The top of a set that lies between two of them, such as a single point, is added.
+    If the top of a set lies between two of them, as that of a single point may, it is added.
     """
     step = (variable.maximum - variable.minimum) / variable.resolution
     points = [variable.minimum + (i + 0.5) * step for i in range(variable.resolution)]
@@ -70,6 +70,6 @@ def _between(term: Term, points: list[float], variable: Variable) -> Iterator[fl
 
 
 def sampled(term: Term, points: list[float]) -> list[float]:
-    """A term's memberships at these points."""
+    """Return a term's memberships at these points."""
     shape = membership(NUMBERS, term)
     return [float(shape(y)) for y in points]

@@ -1,4 +1,4 @@
-"""Evaluates a controller: compiled once, then inputs to outputs, one by one or by the hundred thousand."""
+"""Evaluate a controller, which is compiled once, for single inputs or for hundreds of thousands."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -21,7 +21,7 @@ _CHUNK = 1 << 13  # rows of a batch that are worked on together: they stay in th
 
 
 class Evaluator:
-    """A compiled controller. Pure: it keeps nothing between evaluations but what it has precomputed."""
+    """A compiled controller. It is pure: between evaluations it keeps nothing but precomputed values."""
 
     def __init__(self, controller: ControllerDefinition) -> None:
         self.controller = controller
@@ -34,9 +34,9 @@ class Evaluator:
         ]
 
     def evaluate(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> dict[str, float]:
-        """The outputs in their own units; `previous` outputs serve those that lock them.
+        """Return the outputs in their own units; `previous` outputs are used by those with `lock_previous`.
 
-        Raises UsageError for a missing, unknown or NaN input, LumenError where no rule fires and there is no default.
+        Raises UsageError for a missing, unknown or NaN input, LumenError if no rule fires and there is no default.
         """
         values = self._values(inputs)
         tape = self.program.run(values)
@@ -54,7 +54,7 @@ class Evaluator:
     def evaluate_batch(
         self, inputs: "Mapping[str, ArrayLike]", previous: Mapping[str, float] | None = None
     ) -> "dict[str, Array]":
-        """The outputs for inputs of Shape (n,) each: arrays of Shape (n,). Raises as `evaluate` does."""
+        """Return arrays of outputs, Shape (n,), for inputs of Shape (n,) each. Raises as `evaluate`."""
         import numpy as np
 
         columns = self._columns(inputs)
@@ -132,7 +132,7 @@ class Evaluator:
     def _filled(
         self, variable: Variable, values: "Array", columns: "list[Array]", previous: Mapping[str, float]
     ) -> "Array":
-        """The values with their gaps filled: by the value before where the output locks it, else by the default."""
+        """Return the values with gaps filled: by the previous value if the output locks it, else by the default."""
         import numpy as np
 
         if variable.lock_range:
@@ -151,7 +151,7 @@ class Evaluator:
 
 
 def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping[str, float] | None) -> float:
-    """The output where no rule fires, or none that fires has a value."""
+    """Return the output if no rule fires, or if no rule that fires has a value. Raises LumenError without a default."""
     if variable.lock_previous and previous and not isnan(previous.get(variable.name, float("nan"))):
         return previous[variable.name]
     if variable.default is not None:
@@ -163,5 +163,5 @@ def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping
 def infer(
     controller: ControllerDefinition, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None
 ) -> dict[str, float]:
-    """The outputs of a controller, once; whoever asks again keeps an `Evaluator`, which is compiled."""
+    """Return the outputs of a controller, once; for repeated evaluations, keep an `Evaluator`, which is compiled."""
     return Evaluator(controller).evaluate(inputs, previous)

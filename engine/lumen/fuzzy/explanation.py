@@ -1,4 +1,4 @@
-"""Why a controller says what it says: every number between the inputs and the outputs."""
+"""Explain a controller's outputs by every number between them and the inputs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,10 +14,10 @@ from lumen.language.controllers import Rule, Variable
 
 @dataclass(frozen=True)
 class Concluded:
-    """What the rules say of an output: the degree of each term, and (not for weighted defuzzifiers) the set.
+    """The rules' conclusions about an output: the degree of each term, and (not for weighted defuzzifiers) the set.
 
-    `points` are in the output's unit, `memberships` are the aggregated set's there; `fired` is false where `value` is
-    the default or the previous value, because no rule fired.
+    `points` are in the output's unit, and `memberships` are those of the aggregated set at these points; `fired` is
+    false if `value` is the default or the previous value, because no rule fired.
     """
 
     degrees: Mapping[str, float]
@@ -29,7 +29,7 @@ class Concluded:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Memberships by input and term, each rule with its degree, and what came of it for each output."""
+    """Memberships by input and term, each rule with its degree, and the conclusions about each output."""
 
     inputs: Mapping[str, float]
     memberships: Mapping[str, Mapping[str, float]]
@@ -40,7 +40,7 @@ class Explanation:
 def explain(
     evaluator: Evaluator, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None
 ) -> Explanation:
-    """Everything between these inputs and the outputs; raises as `evaluate` does."""
+    """Return every value between these inputs and the outputs. Raises as `evaluate`."""
     controller, program = evaluator.controller, evaluator.program
     values = evaluator.evaluate(inputs, previous)
     tape = program.run([float(inputs[name]) for name in controller.inputs])

@@ -1,7 +1,7 @@
-"""Formulas of `function` terms: our expression language over real numbers.
+"""Formulas of `function` terms: Lumen's expressions over real numbers.
 
-`x` and the names of variables stand for numbers, `/` always divides, a comparison is 1 or 0 where a number is wanted. A
-formula has no value (NaN) where one of its parts has none or an infinite one: behind a division by zero, a root of -1.
+`x` and the names of variables are numbers, `/` is a division of reals, and a comparison counts as 1 or 0. A formula has
+no value (NaN) if one of its parts has none or an infinite one: after a division by zero, or a root of -1.
 """
 
 import math
@@ -15,7 +15,7 @@ from lumen.expressions.tree import Binary, Conditional, FunctionCall, Identifier
 from lumen.fuzzy.arithmetic import NUMBERS, Arithmetic, Number
 
 Formula = Callable[[Number, Sequence[Number]], Number]
-"""The value at x, the named variables being as they are."""
+"""Returns the value of a formula at x, given the values of the named variables."""
 
 FormulaPart = Callable[[Number, Sequence[Number]], Any]
 
@@ -24,7 +24,7 @@ FORMULA_FUNCTIONS: Mapping[str, int] = {
     **dict.fromkeys(("asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh"), 1),
     **dict.fromkeys(("min", "max", "pow", "atan2", "fmod"), 2),
 }
-"""The functions of formulas and how many arguments each takes."""
+"""The functions of formulas and the number of arguments of each."""
 
 _NUMPY = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "asinh": "arcsinh", "acosh": "arccosh",
           "atanh": "arctanh", "atan2": "arctan2", "pow": "float_power", "min": "minimum", "max": "maximum"}  # fmt: skip
@@ -34,7 +34,7 @@ _ARITHMETIC: Mapping[str, Callable[[Any, Any], Any]] = {"+": add, "-": sub, "*":
 
 
 def formula(m: Arithmetic, text: str, names: Sequence[str]) -> Formula:
-    """The compiled formula; `names` tells the order of the variables. Raises ExpressionError for what is no formula."""
+    """Return the compiled formula; `names` is the order of the variables. Raises ExpressionError for an invalid one."""
     part = _Compiler(m, names).part(parse_expression(text))
     return _on_numbers(part) if m is NUMBERS else _on_arrays(part)
 
@@ -68,7 +68,7 @@ def _on_arrays(part: FormulaPart) -> Formula:
 
 
 class _Compiler:
-    """Turns the tree of a checked formula into functions, lazy on numbers, whole arrays at once on arrays."""
+    """Compiles the tree of a checked formula to functions, lazy for numbers, on whole arrays for arrays."""
 
     def __init__(self, m: Arithmetic, names: Sequence[str]) -> None:
         self._m, self._names = m, {name: i for i, name in enumerate(names)}
@@ -118,7 +118,7 @@ class _Compiler:
         return getattr(np, _NUMPY.get(name, name))  # type: ignore[no-any-return]
 
     def _degree(self, holds: Any, *compared: Any) -> Any:
-        """1 or 0; NaN where one of those compared has no value."""
+        """Return 1 or 0; NaN if one of the compared values is NaN."""
         known = reduce(and_, [a == a for a in compared])
         return self._m.where(known, self._m.where(holds, 1.0, 0.0), math.nan)
 
@@ -129,7 +129,7 @@ class _Compiler:
         end = 0.0 if sign == "&&" else 1.0
 
         def value(x: Any, values: Sequence[Any]) -> Any:
-            """From the left as on numbers: what stands behind the part that decides does not count."""
+            """Evaluate from the left, as for numbers: the parts after the deciding one have no influence."""
             found = parts[-1](x, values)
             found = self._degree(found != 0.0, found)
             for part in reversed(parts[:-1]):

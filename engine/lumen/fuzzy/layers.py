@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from lumen.fuzzy.arithmetic import Array
 
 MAX_LAYERED_TERMS = 6
-"""Layers are kept for every union of terms that occurs: at most 2^6."""
+"""The maximum number of terms: a layer is kept for every union of terms that occurs, so at most 2^6."""
 
-_BINS = 1 << 14  # of the degrees' range, in which a batch looks for the corner before it searches
+_BINS = 1 << 14  # bins of the degrees' range, by which a batch locates corners before it searches
 
 
 class Layer:
@@ -37,13 +37,13 @@ class Layer:
         self.above = [*accumulate((offset for _, offset in reversed(pairs)), initial=0.0)][::-1]
 
     def measure(self, t: float) -> tuple[float, float]:
-        """Area and moment under the level `t`."""
+        """Return area and moment under the level `t`."""
         i = bisect_left(self.levels, t)
         return self.area[i] + t * self.count[i], self.moment[i] + t * self.above[i]
 
 
 class LayeredCentroid:
-    """Defuzzifies by centroid; `terms` says for each degree handed in which term it clips."""
+    """Defuzzifies by centroid; `terms` is the term that each of the given degrees clips."""
 
     def __init__(self, points: Sequence[float], memberships: Sequence[Sequence[float]], terms: Sequence[int]) -> None:
         self._middle = (points[0] + points[-1]) / 2
@@ -54,7 +54,7 @@ class LayeredCentroid:
         self._tables: dict[int, _Table] = {}
 
     def crisp(self, degrees: Sequence[float], values: Sequence[float] = ()) -> float:
-        """The centroid; NaN where no term is clipped above zero."""
+        """Return the centroid; NaN if no term is clipped above zero."""
         area = moment = 0.0
         ordered = sorted(zip(degrees, self._terms, strict=True), reverse=True)
         last, union = len(ordered), 0
@@ -72,7 +72,7 @@ class LayeredCentroid:
         return self._middle + moment / area if area > 0.0 else nan
 
     def crisp_batch(self, degrees: "Sequence[Array]", values: "Sequence[Array]" = ()) -> "Array":
-        """The centroids, Shape (n,), of degrees of Shape (n,) each; NaN where no term is clipped above zero."""
+        """Return the centroids, Shape (n,), of degrees of Shape (n,) each; NaN if no term is clipped above zero."""
         import numpy as np
 
         clips = self._by_term(degrees)
@@ -124,7 +124,7 @@ class _Table:
         self.sure = np.append(edges[:-1] == edges[1:], False)  # a sum without bound may be above 1
 
     def measure(self, t: "Array") -> "tuple[Array, Array]":
-        """Area and moment under each level. A bin without a corner tells the piece at once; others are searched."""
+        """Return area and moment under each level. A bin with a corner needs a search; others do not."""
         import numpy as np
 
         bins = np.minimum(t * _BINS, _BINS).astype(np.intp)

@@ -1,9 +1,9 @@
-"""What a controller says of an image, looked at as closely as makes the answer greatest.
+"""Evaluate a controller for an image at the magnification that gives the greatest output.
 
-The answer to a magnified image is made as much smaller; of the magnifications (1, and each half an octave further) the
-one counts that brings the sight to where the controller's surface, seen from the neutral points, is steepest. Where
-each output depends on an input of its own, that is told by how far the input is from its neutral point: looked up once,
-it makes one evaluation for each image. Else all magnifications are tried.
+The output for a magnified image is divided by the magnification. Of the magnifications (1, and each half an octave
+more), the one is used that brings the face to the point at which the controller's surface, seen from the neutral
+points, is steepest. If each output depends on an input of its own, the distance of the input from its neutral point
+decides that: then each image needs only one evaluation. Else all magnifications are tried.
 """
 
 from collections.abc import Mapping
@@ -18,18 +18,18 @@ from lumen.fuzzy.survey import Survey, asked
 from lumen.language.controllers import ControllerDefinition
 
 ZOOM_STEP = 2**0.5
-"""From one magnification to the next."""
+"""The ratio of a magnification to the one before."""
 HALVINGS = 20
-"""How often the interval is halved in which the next magnification begins to be the better one."""
+"""The number of bisections in the search of the distance from which the next magnification is better."""
 ONE_BY_ONE = frozenset(("general", "threshold"))
-"""How rules are activated where none of a block changes what another one does."""
+"""The activation methods with which the rules of a block do not affect each other."""
 
 InputSide = tuple[str, bool]
 """An input, and whether it is above its neutral point."""
 
 
 class Magnifier:
-    """Answers images, magnified about the inputs' neutral points as the controller's `track:` lets it."""
+    """Evaluates images, magnified about the inputs' neutral points within the limits of the controller's `track:`."""
 
     def __init__(self, controller: ControllerDefinition) -> None:
         self._controller = controller
@@ -43,7 +43,7 @@ class Magnifier:
         self._own = _own_inputs(controller)
 
     def answer(self, inputs: Mapping[str, float], previous: Mapping[str, float]) -> dict[str, float]:
-        """The outputs for an image; `previous` ones serve those that lock them. Raises as `Evaluator.evaluate` does."""
+        """Return the outputs for an image; `previous` ones serve those with `lock_previous`. Raises as `evaluate`."""
         if self._own is None or len(self._zooms) == 1:
             return self._tried(inputs, previous)
         zooms = {name: self._best(name, value) for name, value in inputs.items()}
@@ -51,7 +51,7 @@ class Magnifier:
         return {name: value / zooms.get(self._own.get(name, ""), 1.0) for name, value in said.items()}
 
     def _tried(self, inputs: Mapping[str, float], previous: Mapping[str, float]) -> dict[str, float]:
-        """For each output the greatest answer of all magnifications."""
+        """Return for each output its greatest value at all magnifications."""
         outputs: dict[str, float] = {}
         for zoom in self._zooms:
             said = self._evaluator.evaluate(self._magnified(inputs, dict.fromkeys(inputs, zoom)), previous)
@@ -61,7 +61,7 @@ class Magnifier:
         return outputs
 
     def _magnified(self, inputs: Mapping[str, float], zooms: Mapping[str, float]) -> dict[str, float]:
-        """What is magnified stays within its range."""
+        """Return the magnified inputs, clipped to their ranges."""
         magnified = dict(inputs)
         for name, zoom in zooms.items():
             if zoom > 1.0:
@@ -70,14 +70,14 @@ class Magnifier:
         return magnified
 
     def _best(self, name: str, value: float) -> float:
-        """The least magnification that brings a value far enough from its neutral point, else the greatest."""
+        """Return the least magnification that brings a value far enough from its neutral point, else the greatest."""
         off = value - self._neutral[name]
         enough = self._far_enough.get((name, off > 0.0), 0.0) if off else 0.0
         return next((zoom for zoom in self._zooms if zoom * abs(off) >= enough), self._zooms[-1])
 
     @cached_property
     def _far_enough(self) -> dict[InputSide, float]:
-        """How far beside its neutral point an input has to be so that it is not better looked at one step nearer."""
+        """The distance of each input from its neutral point beyond which a closer look gives no greater output."""
         steepest: dict[InputSide, tuple[float, float, str]] = {}
         for output, name, xs, ys in Survey(self._controller).slices():
             for x, y in zip(xs, ys, strict=True):
@@ -88,7 +88,7 @@ class Magnifier:
         return {side: self._turn(side, *found[1:]) for side, found in steepest.items()}
 
     def _turn(self, side: InputSide, steepest: float, output: str) -> float:
-        """Where a look from one step nearer begins to say less: somewhat below where the surface is steepest."""
+        """Return the distance from which a closer look gives less, somewhat below the steepest point of the surface."""
         name, above = side
 
         def steepness(off: float) -> float:
@@ -111,9 +111,9 @@ class Magnifier:
 
 
 def _own_inputs(controller: ControllerDefinition) -> dict[str, str] | None:
-    """The one input that each output depends on; None where one depends on several, or several on one.
+    """Return the one input that each output depends on; None if one depends on several, or several on one.
 
-    Nor where rules compete, or the range of an input has no ends.
+    It is also None if rules compete, or if the range of an input is infinite.
     """
     if any(block.operators.activation.method not in ONE_BY_ONE for block in controller.blocks):
         return None

@@ -1,7 +1,8 @@
 """Membership functions: for each kind of term its formula, prepared once for its parameters.
 
 The shapes and their edges are FuzzyLite's (Rada-Vilela, fuzzylite.com), with every vertical edge allowed. A prepared
-function takes x (a float or an array, as its arithmetic has it) and returns the membership, before the term's height.
+function accepts x (a float or an array, depending on its arithmetic) and returns the membership before scaling with the
+term's height.
 """
 
 from collections.abc import Callable, Mapping
@@ -21,7 +22,7 @@ MAX_EXPONENT = 700.0
 
 
 def membership(m: Arithmetic, term: Term) -> Membership:
-    """The membership function of a term, its height included; not for `constant` and `linear`, which have none."""
+    """Return the membership function of a term, scaled to its height; `constant` and `linear` have none."""
     shape = (
         function(m, term.formula) if term.kind == "function" else MEMBERSHIP_FUNCTIONS[term.kind](m, *term.parameters)
     )
@@ -31,7 +32,7 @@ def membership(m: Arithmetic, term: Term) -> Membership:
 
 
 def function(m: Arithmetic, text: str) -> Membership:
-    """A formula of x, kept within 0 and 1, and 0 where it has no value."""
+    """Return a formula of x as a membership, clipped to 0 and 1, and 0 if it has no value."""
     value = formula(m, text, ())
 
     def shape(x: Number) -> Number:
@@ -42,7 +43,7 @@ def function(m: Arithmetic, text: str) -> Membership:
 
 
 def _rising(m: Arithmetic, start: float, end: float) -> Membership:
-    """0 before `start`, 1 from `end` on, a line between; a step where they are equal, 1 where `start` is infinite."""
+    """Return a ramp from 0 at `start` to 1 at `end`; a step if they are equal, 1 if `start` is infinite."""
     if start == -inf:
         return lambda x: 1.0
     if end <= start:
@@ -52,7 +53,7 @@ def _rising(m: Arithmetic, start: float, end: float) -> Membership:
 
 
 def _falling(m: Arithmetic, start: float, end: float) -> Membership:
-    """1 until `start`, 0 after `end`, a line between; a step where they are equal, 1 where `end` is infinite."""
+    """Return a ramp from 1 at `start` to 0 at `end`; a step if they are equal, 1 if `end` is infinite."""
     mirrored = _rising(m, -end, -start)
     return lambda x: mirrored(-x)
 
@@ -94,7 +95,7 @@ def sigmoid(m: Arithmetic, inflection: float, slope: float) -> Membership:
 
 
 def _half(x: Number) -> Number:
-    """What has no slope is one half everywhere, at infinity too."""
+    """Return one half, the value of a sigmoid without slope, also at infinity."""
     return 0.5
 
 

@@ -1,6 +1,6 @@
 """T-norms and S-norms: how `and`, `or`, implication and aggregation combine two degrees.
 
-A sum without bound may hand more than 1 on to another norm: then too no denominator is zero.
+A sum without bound may pass more than 1 to another norm; even then no denominator is zero.
 """
 
 from collections.abc import Callable, Mapping
@@ -9,7 +9,7 @@ from lumen.fuzzy.arithmetic import Arithmetic, Number
 
 Norm = Callable[[Arithmetic, Number, Number], Number]
 
-_TINY = 1e-300  # what keeps a denominator from being zero where the other side of `where` counts
+_TINY = 1e-300  # keeps a denominator from being zero if the other side of `where` is the result
 
 
 def _drastic_product(m: Arithmetic, a: Number, b: Number) -> Number:
@@ -62,7 +62,7 @@ NORM_FUNCTIONS: Mapping[str, Norm] = {
 
 
 def norm(m: Arithmetic, name: str) -> Callable[[Number, Number], Number]:
-    """The norm of that name on numbers or arrays."""
+    """Return the norm of that name on numbers or arrays."""
     if name == "minimum":
         return m.minimum
     if name == "maximum":

@@ -1,8 +1,8 @@
-"""Compiles a controller's rules into a straight line of operations on a tape.
+"""Compile a controller's rules into a sequence of operations on a tape.
 
-The tape begins with the inputs, in the controller's order; every operation reads what stands before it and appends
-one value. What is asked for twice is computed once, and a rule that merely passes a membership on costs nothing.
-Outputs read only their own slots, so groups of outputs that have nothing in common never meet.
+The tape begins with the inputs, in the controller's order; every operation reads earlier values and appends one. A
+value that is needed twice is computed once, and a rule that merely passes a membership on costs nothing. Outputs read
+only their own slots, so groups of outputs that have nothing in common never meet.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -46,7 +46,7 @@ HEDGE_FUNCTIONS: Mapping[str, Callable[[Arithmetic, Number], Number]] = {
 
 
 def hedged(m: Arithmetic, hedges: tuple[str, ...], degree: Number) -> Number:
-    """The degree after its hedges; the one next to the term acts first."""
+    """Return the degree after its hedges; the one next to the term is applied first."""
     for hedge in reversed(hedges):
         degree = HEDGE_FUNCTIONS[hedge](m, degree)
     return degree
@@ -57,7 +57,7 @@ Operation = Callable[[Tape], Any]
 
 
 class Conclusion(NamedTuple):
-    """A rule concludes `term` of an output: its degree stands in `slot` and cuts the term by `implication`."""
+    """A rule's conclusion of a `term` of an output: its degree is in `slot`, and cuts the term by `implication`."""
 
     term: str
     slot: int
@@ -80,7 +80,7 @@ class InferenceProgram:
         self.rules = [slot for block in controller.blocks for slot in self._block(block)]
 
     def run(self, inputs: Sequence[Any]) -> Tape:
-        """The tape for these inputs: numbers or arrays, as the arithmetic has them."""
+        """Return the tape for these inputs: numbers or arrays, depending on the arithmetic."""
         tape = list(inputs)
         append = tape.append
         for operation in self._operations:
@@ -95,7 +95,7 @@ class InferenceProgram:
         return slot
 
     def _block(self, block: RuleBlock) -> list[int]:
-        """The slots of the rules' degrees. Only where all rules take part may one read what another concludes."""
+        """Return the slots of the rules' degrees. A rule may use another's conclusion only if all rules are applied."""
         operators = block.operators
         if operators.activation.method in ("general", "threshold"):
             return [self._conclude(rule, self._activated([rule], operators)[0], operators) for rule in block.rules]
@@ -111,7 +111,7 @@ class InferenceProgram:
         return [self._part(whole, i) for i in range(len(slots))]
 
     def _part(self, whole: int, i: int) -> int:
-        """The degree of one rule after activation: 0 where it does not take part (there the method says NaN)."""
+        """Return the slot of a rule's degree after activation: 0 if it is not applied, where the method gives NaN."""
         m = self._m
         part = self._add(lambda tape: tape[whole][i])
         slot = self._add(lambda tape: m.where(tape[part] == tape[part], tape[part], 0.0))
@@ -123,7 +123,7 @@ class InferenceProgram:
         return slot if weight == 1.0 else self._add(lambda tape: weight * tape[slot])
 
     def _conclude(self, rule: Rule, slot: int, operators: Operators) -> int:
-        """A hedge in a consequent changes the degree with which the rule concludes from there on, as in FuzzyLite."""
+        """Add a rule's conclusions. A hedge in a consequent also changes the degrees of later ones, as in FuzzyLite."""
         degree = slot
         for proposition in rule.consequents:
             if proposition.hedges:

@@ -24,9 +24,7 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class CoupledLimit:
-    """Limits of `joint` that depend on the angle of `on`: rows (angle of `on`, minimum, maximum) [rad], linear in
-    between.
-    """
+    """Limits of `joint` by the angle of `on`: rows (angle of `on`, minimum, maximum) [rad], linear in between."""
 
     joint: str
     on: str
