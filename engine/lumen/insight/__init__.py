@@ -1,1 +1,1 @@
-"""Why and why not, replay, exploration, differences and migration, all of it pure."""
+"""Pure analyses of steps and bundles: why and why not, replay, exploration, differences and migration."""

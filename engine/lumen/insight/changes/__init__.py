@@ -1,4 +1,4 @@
-"""The semantic diff of two bundles: what a reload would change, as sentences with a risk each."""
+"""The semantic diff of two bundles: the changes of a reload as sentences, each with a risk."""
 
 from lumen.insight.changes.change import Change, Risk
 from lumen.insight.changes.projects import change_data, changes, risk, summary

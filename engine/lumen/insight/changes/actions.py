@@ -1,4 +1,4 @@
-"""What differs between two blocks of actions: texts, and what is done."""
+"""The differences between two blocks of actions: their texts, and everything else that they do."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -34,7 +34,11 @@ Pair = tuple[T | None, T | None]
 def block_changes(
     old: Sequence[PlacedAction], new: Sequence[PlacedAction], title: str, when: str, file: str
 ) -> Iterator[Change]:
-    """The changes of a block of actions; `title` is whose it is, `when` when it is done (` on entering`)."""
+    """Yield the changes between two versions of a block of actions.
+
+    `title` names the owner of the block, `when` is when it runs (` on entering`, or empty). Each change has in `where`
+    the path of the new action; of the old one if the action was removed.
+    """
     places = {id(step.action): step.where for step in (*old, *new)}
     for one, other in paired([s.action for s in old], [s.action for s in new], lambda action: type(action).__name__):
         where = places[id(one if other is None else other)]
@@ -52,7 +56,11 @@ def _pair(old: Action | None, new: Action | None, title: str, when: str, file: s
 
 
 def paired(old: Sequence[T], new: Sequence[T], sort: Callable[[T], object]) -> Iterator[Pair[T]]:
-    """What became of what, where something differs: None stands for what was not, or is no longer, there."""
+    """Yield the differences between two sequences as pairs (before, after); None is a missing item.
+
+    Items that are equal and in place are not yielded. Where the sequences differ, items are paired in order; if one
+    side is longer, an item whose `sort` differs from its partner's is yielded as removed or added instead.
+    """
     pool: list[T] = []
     before_tags, after_tags = _tags(old, pool), _tags(new, pool)
     for tag, a, b, c, d in SequenceMatcher(None, before_tags, after_tags, autojunk=False).get_opcodes():
@@ -72,7 +80,7 @@ def paired(old: Sequence[T], new: Sequence[T], sort: Callable[[T], object]) -> I
 
 
 def _tags(items: Sequence[T], pool: list[T]) -> list[int]:
-    """For each item the place of its like in the pool; what is not in it yet is added."""
+    """Return for each item the index of its equal in `pool`; an item that is not there yet is appended."""
     found = []
     for item in items:
         if item not in pool:
@@ -120,12 +128,12 @@ def _text(language: str, texts: Sequence[object] | None, title: str, when: str, 
 
 
 def _whole(texts: Sequence[object] | None) -> str:
-    """All alternatives of a text, a line each."""
+    """Return all alternatives of a text, one per line."""
     return "\n".join(str(getattr(one, "text", "")) for one in texts or ())
 
 
 def described(action: Action) -> str:
-    """What an action does, as the end of a sentence."""
+    """Return what an action does, as the end of a sentence."""
     match action:
         case SayText(texts):
             return f"says {quoted(next(iter(texts.values()))[0].shown)}"

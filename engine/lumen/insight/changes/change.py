@@ -1,4 +1,4 @@
-"""A difference between two bundles, in the words of whoever edits the files."""
+"""A difference between two bundles, in words for the people who edit the files."""
 
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -7,7 +7,7 @@ from lumen.language.diagnostics import NodePath
 
 
 class Risk(IntEnum):
-    """How much of a running exhibition a change can touch; a greater one may do all that a smaller one does."""
+    """The reach of a change in a running exhibition; a greater risk includes the effects of the smaller ones."""
 
     COSMETIC = 0
     """Texts, stories, names: the same things happen."""
@@ -18,7 +18,7 @@ class Risk(IntEnum):
     WIRING = 3
     """Routes and message schemas: other modules have to fit."""
     RESTART = 4
-    """The robot's model, the hall, the stage, the broker: active only when the exhibition is started anew."""
+    """The robot's model, the hall, the stage, the broker: takes effect only at the next start."""
 
     def __str__(self) -> str:
         return self.name.lower()
@@ -26,20 +26,24 @@ class Risk(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One difference: what `kind` it is (`text`, `state`, `route`, …), what it is `about`, a sentence, and its risk.
-
-    `file` is its file, relative to the project, `where` the place in it; `was` and `now` are a text that
-    changed, whole. Two changes are equal if their sentences, files and risks are.
-    """
+    """One difference; two changes are equal if their kinds, subjects, sentences, risks and files are."""
 
     kind: str
+    """The kind of part that changed: `text`, `state`, `route`, …"""
     about: str
+    """The name of what changed."""
     sentence: str
+    """The change in words."""
     risk: Risk
+    """Its reach in a running exhibition."""
     file: str = ""
+    """Its file, relative to the project."""
     where: NodePath = field(default=(), compare=False)
+    """The path of the node in that file; empty if unknown."""
     was: str = field(default="", compare=False)
+    """The whole text before the change; empty if the change is not about a text."""
     now: str = field(default="", compare=False)
+    """The whole text after the change."""
 
     def __str__(self) -> str:
         return self.sentence

@@ -1,4 +1,4 @@
-"""The changes in a mapping from names to values."""
+"""The changes between two mappings from names to values."""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import TypeVar
@@ -17,9 +17,10 @@ def entry_changes(
     new: Mapping[str, T],
     inside: Callable[[T, T], Iterator[Change]] | None = None,
 ) -> Iterator[Change]:
-    """Yield each value that was added or removed, and the changes inside of those that are in both.
+    """Yield each value that was added or removed, and the changes that `inside` finds in each value that differs.
 
-    `title` names a value, as in `place`; `{}` in `file` is replaced by the value's name.
+    `title` names the kind of value, as in `place`; `{}` in `file` is replaced by the value's name. Without `inside`, a
+    value that differs is one change.
     """
     for name in dict.fromkeys((*old, *new)):
         if name in old and name in new:

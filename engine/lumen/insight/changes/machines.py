@@ -1,4 +1,4 @@
-"""What differs between two versions of a behaviour: its states, and what it knows."""
+"""The differences between two versions of a behaviour: its states, context, phrases, answers, lists and events."""
 
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
@@ -13,7 +13,7 @@ from lumen.language.machines import MachineDefinition, State
 
 
 def machine_changes(name: str, old: MachineDefinition, new: MachineDefinition) -> Iterator[Change]:
-    """The changes of behaviors/NAME.yaml; a renamed state is the same one."""
+    """Yield the changes of behaviors/NAME.yaml; a renamed state counts as the same state."""
     return _Comparison(name, old, new).all()
 
 
@@ -24,7 +24,7 @@ class _Comparison:
         self.images = {path: identity.state(path) if path else "" for path in old.states}
 
     def change(self, kind: str, about: str, sentence: str, risk: Risk = Risk.BEHAVIOR, part: str = "") -> Change:
-        """A change; of what a words file holds under the key `part`, in that file."""
+        """Return a change of the behaviour's file, or of the words file that provides `about` under the key `part`."""
         words = self.new.borrowed.get((part, about)) or self.old.borrowed.get((part, about))
         return Change(kind, about, sentence, risk, f"behaviors/words/{words}.yaml" if words else self.file)
 
@@ -45,7 +45,7 @@ class _Comparison:
         yield from self.named("event", self.old.events, self.new.events)
 
     def presence(self) -> Iterator[Change]:
-        """States that are gone, new, or called otherwise; of those within another only the outermost."""
+        """Yield states that were removed, added or renamed; of nested ones only the outermost."""
         known = set(self.images.values())
         gone = {path: None for path, image in self.images.items() if image is None}
         fresh = {path: None for path in self.new.states if path not in known}
@@ -59,7 +59,7 @@ class _Comparison:
                 yield self.change("state", path, sentence)
 
     def outermost(self, machine: MachineDefinition, paths: Collection[str], how: str) -> Iterator[Change]:
-        """A sentence for each of these states that lies in no other of them."""
+        """Yield a change for each of these states that is not inside another one, with the number inside it."""
         within = Counter(around for path in paths for around in _around(path) if around in paths)
         for path in paths:
             if machine.states[path].parent not in paths:
@@ -104,7 +104,9 @@ class _Comparison:
             yield self.change("state", title, f"{title} now returns different data")
 
     def buttons(self, old: State, new: State, title: str) -> Iterator[Change]:
-        """Buttons by their labels: people press them, the behaviour does nothing else for them."""
+        """Yield the buttons that were added, removed or changed, matched by their labels: nothing else identifies a
+        button.
+        """
         before, after = ({next(iter(b.label.values())): b for b in one.buttons} for one in (old, new))
         for label in dict.fromkeys((*before, *after)):
             if before.get(label) != after.get(label):
@@ -112,11 +114,11 @@ class _Comparison:
                 yield self.change("button", title, f"the button {quoted(label)} of {title} {how}")
 
     def named_now(self, path: str) -> str:
-        """What a state is called; one that is gone, what it was called."""
+        """Return the name of the state at a path; if it was removed, its old name."""
         return (self.new.states.get(path) or self.old.states[path]).name
 
     def mapped(self, paths: tuple[str, ...]) -> tuple[str, ...]:
-        """Old paths as they are called now."""
+        """Return old paths as they are in the new machine; the path of a removed state stays as it was."""
         return tuple(self.images.get(path) or path for path in paths)
 
     def invokes(self, old: State, new: State, title: str) -> Iterator[Change]:
@@ -159,7 +161,7 @@ class _Comparison:
             yield self.change("phrases", name, f"phrases `{name}` {how}", part="phrases")
 
     def answers(self) -> Iterator[Change]:
-        """Answers: what is said to the same phrases is a text, all else is behaviour."""
+        """Yield the changes of answers: another text for the same phrases is cosmetic, everything else is behaviour."""
         old, new = self.old.answers, self.new.answers
         for table in dict.fromkeys((*old, *new)):
             before, after = old.get(table, ()), new.get(table, ())
@@ -185,7 +187,7 @@ def _below(parent: str | None, path: str) -> str:
 
 
 def _around(path: str) -> Iterator[str]:
-    """The paths of the states around it."""
+    """Yield the paths of the states around a state, innermost first."""
     while path := path.rpartition(".")[0]:
         yield path
 

@@ -13,13 +13,13 @@ from lumen.language.routes import Route
 
 
 def controller_changes(old: ControllerDefinition, new: ControllerDefinition) -> Iterator[Change]:
-    """Rules, variables and terms one by one, everything else by its name."""
+    """Yield the changes of rules, variables and terms one by one, of everything else by its name."""
     for sentence in _controller(old, new):
         yield Change("controller", new.name, sentence, Risk.MOTION, f"fuzzy/{new.name}.yaml")
 
 
 def function_changes(old: FunctionDefinition, new: FunctionDefinition) -> Iterator[Change]:
-    """Its arguments and its expression, with both versions; the rest changes nothing that runs."""
+    """Yield the changes of arguments and expression, with both versions; descriptions and examples are cosmetic."""
     title, file = f"function `{new.name}`", f"functions/{new.name}.yaml"
     if list(old.parameters.items()) != list(new.parameters.items()):
         sentence = f"{title} is now called as {code(new.signature)}, not {code(old.signature)}"
@@ -38,13 +38,13 @@ def function_changes(old: FunctionDefinition, new: FunctionDefinition) -> Iterat
 
 
 def motion_changes(old: MotionDefinition, new: MotionDefinition) -> Iterator[Change]:
-    """How much longer it is, which joints it moves, and whether otherwise."""
+    """Yield the changes of duration, joints, tracks, cues and postures."""
     for sentence in _motion(old, new):
         yield Change("motion", new.name, f"motion `{new.name}` {sentence}", Risk.MOTION, f"motions/{new.name}.yaml")
 
 
 def route_changes(old: Route, new: Route) -> Iterator[Change]:
-    """`route `say` ttl 5 s → 3 s`, for each of its settings."""
+    """Yield a change for each setting that differs: `route `say` ttl 5 s → 3 s`."""
     for field, shown in _ROUTE.items():
         before, after = getattr(old, field), getattr(new, field)
         if before != after:

@@ -1,4 +1,4 @@
-"""The changes between two projects, part by part, and all of them in one line."""
+"""The changes between two projects, part by part, and a summary in one line."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace
@@ -16,15 +16,15 @@ from lumen.insight.changes.sections import AT_NEXT_START, section_changes
 from lumen.language.projects import Project
 
 MAX_SUMMARY_CHANGES = 4
-"""Changes that a summary names; of what there is more of, it gives the number."""
+"""Up to this number of changes, a summary names each; above it, kinds with more than two changes are counted."""
 
 _SELF = ("root", "hash", "documents")
 
 
 def changes(old: Project, new: Project) -> tuple[Change, ...]:
-    """What differs in meaning, in the order of the files; nothing where only comments or the layout do.
+    """Return the differences in meaning, in the order of the files; empty if only comments or the layout differ.
 
-    What several behaviours have from one words file is told once.
+    A change of a words file is returned once, however many behaviours use it.
     """
     return tuple(dict.fromkeys(_changes(old, new)))
 
@@ -37,12 +37,12 @@ def change_data(change: Change, new: Project) -> dict[str, Any]:
 
 
 def risk(found: Sequence[Change]) -> Risk:
-    """The greatest risk among the changes."""
+    """Return the greatest risk among the changes; COSMETIC if there are none."""
     return max((change.risk for change in found), default=Risk.COSMETIC)
 
 
 def summary(found: Sequence[Change]) -> str:
-    """All changes in one line: texts are counted, and so is what there are many changes of."""
+    """Return all changes as one line; texts are counted, and so are kinds with many changes."""
     parts: list[str] = []
     for kind, group in groupby(sorted(found, key=lambda change: change.kind), lambda change: change.kind):
         rows = list(group)
@@ -94,12 +94,14 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
 
 
 def _manifests(project: Project) -> dict[str, VerbRow]:
-    """The verbs that the files of a project declare, wherever it lies and whichever robot performs them."""
+    """Return the verbs that a project's files declare, without their folder and robot, which are no part of their
+    meaning.
+    """
     return {name: row._replace(root="", robot="") for name, row in project.verbs.items()}
 
 
 def _settings(old: Project, new: Project) -> Iterator[Change]:
-    """What else lumen.yaml says."""
+    """Yield the changes of the other settings in lumen.yaml."""
     for name, title in RESTART_FIELDS.items():
         if getattr(old, name) != getattr(new, name):
             yield Change("fixed", name, f"{title} changed: {AT_NEXT_START}", Risk.RESTART, "lumen.yaml")

@@ -1,4 +1,4 @@
-"""What of a project can't change while it runs."""
+"""The settings of a project that can't change while it runs."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -14,10 +14,10 @@ RESTART_FIELDS: Mapping[str, str] = {
     "bus": "the broker's address",
     "modules": "the settings of the modules",
 }
-"""Fields of `Project` that are active only from the next start on, and what they are called."""
+"""Fields of `Project` that take effect only at the next start, with their names for people."""
 
 
 def live(old: Project, new: Project) -> Project:
-    """The new bundle as far as it can be active at once: the rest, such as `RESTART_FIELDS`, is as in the old one."""
+    """Return the new bundle, but with the old values of everything that needs a restart, such as `RESTART_FIELDS`."""
     fixed = {name: getattr(old, name) for name in RESTART_FIELDS}
     return replace(new, **fixed, sections=live_sections(old, new))

@@ -15,7 +15,7 @@ MAIN_FILE = "lumen.yaml"
 
 
 def section_changes(old: Project, new: Project, among: Callable[[Section], bool]) -> Iterator[Change]:
-    """Yield the changes of sections, among those of certain rows."""
+    """Yield the changes of the sections whose rows `among` accepts."""
     for key, row in table("sections").items():
         before, after = _both(old, new, key)
         if before == after or not among(row):
@@ -35,14 +35,14 @@ def section_changes(old: Project, new: Project, among: Callable[[Section], bool]
 
 
 def live_sections(old: Project, new: Project) -> dict[str, object]:
-    """Return the new sections, but those that take effect at the next start as they were."""
+    """Return the new sections, but with the old values of those that take effect only at the next start."""
     fixed = {key for key, row in table("sections").items() if row.fixed}
     kept = {key: settings for key, settings in old.sections.items() if key in fixed}
     return {**{key: settings for key, settings in new.sections.items() if key not in fixed}, **kept}
 
 
 def _both(old: Project, new: Project, key: str) -> tuple[object, object]:
-    """Return a section before and after; its defaults for the project that lacks it, None twice if both do."""
+    """Return a section before and after; a project that lacks it has its defaults; None twice if both lack it."""
     before, after = old.sections.get(key), new.sections.get(key)
     if before is None and after is not None:
         before = type(after)()

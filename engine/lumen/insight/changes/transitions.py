@@ -1,4 +1,4 @@
-"""What differs between the transitions of two versions of a state."""
+"""The differences between the transitions of two versions of a state."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
@@ -12,7 +12,7 @@ from lumen.language.actions import Expression, Template
 from lumen.language.machines import State, Transition
 
 _ROW = "on `hears "
-"""How the trigger of a row of `hears` begins."""
+"""The beginning of the trigger of a row of `hears`."""
 
 PathMapping = Callable[[tuple[str, ...]], tuple[str, ...]]
 StateNaming = Callable[[str], str]
@@ -21,7 +21,7 @@ StateNaming = Callable[[str], str]
 def transition_changes(
     old: State, new: State, title: str, file: str, mapped: PathMapping, name: StateNaming
 ) -> Iterator[Change]:
-    """The changes, trigger by trigger; `mapped` gives old paths their new names, `name` what a state is called."""
+    """Yield the changes, trigger by trigger; `mapped` converts old paths to new ones, `name` returns a state's name."""
     comparison = _TransitionComparison(title, file, name)
     before = _by_trigger([replace(t, targets=mapped(t.targets), source=new.path) for t in old.transitions])
     after = _by_trigger(list(new.transitions))
@@ -99,7 +99,9 @@ def _by_trigger(transitions: list[Transition]) -> dict[str, list[Transition]]:
 
 
 def _comparable(value: Any) -> Any:
-    """A value with expressions as they were written: the number of a row of `hears` depends on those above it."""
+    """Return a value with its expressions as written: compiled ones contain the number of a row, which other rows
+    change.
+    """
     match value:
         case Expression(source):
             return replace(value, source=as_written(source))
@@ -115,7 +117,7 @@ def _comparable(value: Any) -> Any:
 
 
 def _moved(was: str, now: str) -> str:
-    """Return how a trigger changed: `waits 15 s, not 12 s`; empty if the two are not of one kind."""
+    """Return how a trigger changed, such as `waits 15 s, not 12 s`; empty if the two are of different kinds."""
     for begin, verb, quote in (("after ", "waits", ""), (_ROW, "hears", "`")):
         if was.startswith(begin) and now.startswith(begin):
             return f"{verb} {quote}{now.removeprefix(begin)}, not {quote}{was.removeprefix(begin)}"
@@ -123,7 +125,7 @@ def _moved(was: str, now: str) -> str:
 
 
 def _trigger(transition: Transition) -> str:
-    """When it is taken, in words that do not depend on what the state is called."""
+    """Return when a transition is taken, in words that do not depend on the state's name."""
     event = transition.event
     if transition.hears:
         return f"on `{transition.hears.title}`"

@@ -1,7 +1,7 @@
-"""Why something happened, and why something else did not: asked of what was recorded, by taking steps again.
+"""Explanations of why something happened or did not, found by taking recorded steps again.
 
-Nothing here runs while an exhibition does; a step taken again is the same step, and what is not kept is computed anew.
-The questions are in `answers`, which is loaded when somebody asks one.
+The engine traces nothing while an exhibition runs. A step taken again has the same result, so details that were not
+recorded are computed anew. The questions are in `answers`, which is imported only when one is asked.
 """
 
 from lumen.insight.explaining.history import RecordedStep, StepHistory

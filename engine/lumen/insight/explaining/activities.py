@@ -1,4 +1,4 @@
-"""Why an action of a `do` was not done though its state is active: where that `do` stands instead."""
+"""Why an action of a `do` has not run though its state is active: the action that the `do` has reached instead."""
 
 from collections.abc import Iterator
 
@@ -17,7 +17,7 @@ from lumen.statechart.values import Snapshot, awaited
 
 
 def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
-    """Why an action of a `do` was not reached; None where its state is not active, or it was done."""
+    """Return why an action of a `do` was not reached; None if its state is inactive or nothing prevented it."""
     last = history.steps[-1]
     inner = within(last.step.snapshot, deed.owner)
     state = deed.state
@@ -46,7 +46,7 @@ def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
 
 
 def _conditions(block: tuple[PlacedAction, ...], where: NodePath) -> Iterator[tuple[If, bool]]:
-    """Each `if` around what stands there, and which way leads to it."""
+    """Yield each `if` around the action at `where`, and the value of its guard that leads to the action."""
     for placed in block:
         if where[: len(placed.where)] != placed.where:
             continue

@@ -1,4 +1,4 @@
-"""The two questions, asked of a history: `why` and `why_not`."""
+"""The two questions about a history: `why` and `why_not`."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -19,46 +19,48 @@ from lumen.language.iso_time import iso_time
 from lumen.statechart.nesting import active_names
 
 LOOKED_BACK = 60.0
-"""How long before the moment asked about something may have been decided against what is asked for [s]."""
+"""How long before the moment in question `why_not` searches for decisions [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class WhyAnswer:
-    """Why something happened: the effect first, its cause last. `at` is when it happened [s since 1970, in UTC].
-
-    `needs` are the earlier steps on which it rests beside that: those that entered the states that were active, and
-    that gave what was read its value. What is none of them, or of theirs, made no difference.
-    """
+    """Why something happened."""
 
     what: str
+    """The effect in words."""
     at: float
+    """When it happened [s since 1970, in UTC]."""
     links: tuple[Link, ...]
+    """The chain of causes: the effect first, its cause last."""
     needs: tuple[Link, ...] = ()
+    """Earlier steps without which it would not have happened, beside those of the chain: steps that entered the states
+    that were active, or set the values that were read. No other step made a difference.
+    """
 
     def to_json(self) -> dict[str, Any]:
-        """The object of `lumen why --format json`."""
+        """Return the object that `lumen why --format json` prints."""
         chain, needs = ([link.to_json() for link in links] for links in (self.links, self.needs))
         return {"what": self.what, "at": iso_time(self.at), "chain": chain, "needs": needs}
 
 
 @dataclass(frozen=True, slots=True)
 class WhyNotAnswer:
-    """Why something did not happen by `at` [s since 1970, in UTC]: what came nearest to it first."""
+    """Why something did not happen by `at` [s since 1970, in UTC]; the reason nearest to success comes first."""
 
     what: str
     at: float
     reasons: tuple[Reason, ...]
 
     def to_json(self) -> dict[str, Any]:
-        """The object of `lumen why-not --format json`."""
+        """Return the object that `lumen why-not --format json` prints."""
         return {"what": self.what, "at": iso_time(self.at), "reasons": [reason.to_json() for reason in self.reasons]}
 
 
 def why(steps: Iterable[RecordedStep], what: str = "", until: float | None = None) -> WhyAnswer:
-    """Why `what` happened, the last time until `until` [s, on the exhibition's clock]; without it, ever.
+    """Return why `what` happened, the last time up to `until` [s, on the exhibition's clock]; None means the end.
 
-    `what` is a text that was said (or words of it), a state, a motion, the id of a command, or nothing: the last thing
-    that happened. Raises UsageError, saying what to do, where it did not happen.
+    `what` is a text that was said (or words of it), a state, a motion, the id of a command, or empty for the last thing
+    that happened. Raises UsageError, with a hint, if it did not happen.
     """
     history = _history(steps, until)
     found = effect(history, what)
@@ -68,7 +70,7 @@ def why(steps: Iterable[RecordedStep], what: str = "", until: float | None = Non
 
 
 def _needs(history: StepHistory, number: int, links: tuple[Link, ...]) -> Iterator[Link]:
-    """The newest first, but for what the chain names, and for the start."""
+    """Yield the steps that were needed, newest first, without the first step and those that the chain names."""
     named = {link.number for link in links}
     for earlier in sorted(set(directly_needed(history, number)) - named - {0}, reverse=True):
         step = history.steps[earlier].step
@@ -80,10 +82,10 @@ def _needs(history: StepHistory, number: int, links: tuple[Link, ...]) -> Iterat
 def why_not(
     steps: Iterable[RecordedStep], what: str, until: float | None = None, back: float = LOOKED_BACK
 ) -> WhyNotAnswer:
-    """Why `what`, a state, a motion or a text, did not happen: a reason for each way that would have led there.
+    """Return why `what`, a state, a motion or a text, did not happen: a reason for each way that would have led there.
 
-    It is about the moment `until` [s, on the exhibition's clock] and the `back` [s] before it; without, about now.
-    Raises UsageError, saying what to do, where there is nothing of that name, or it is so.
+    The period is the `back` [s] before `until` [s, on the exhibition's clock]; None means the time of the last step.
+    Raises UsageError, with a hint, if nothing has that name, or if the state is active at that time.
     """
     history = _history(steps, until)
     if not history.steps:

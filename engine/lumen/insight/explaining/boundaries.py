@@ -1,4 +1,4 @@
-"""Values at which a guard changes its mind, found from the guard itself."""
+"""Values at which the result of a guard changes, derived from the guard itself."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -18,15 +18,17 @@ from lumen.insight.exploration.samples import SAMPLE_TEXT, phrases_at, texts_for
 from lumen.language.machines import MachineDefinition
 
 ValuePath = tuple[str, ...]
+"""The keys that lead to a value: `("context", "tries")`, `("event", "data", "result")`."""
 ABSENT = object()
+"""The value at a path that leads nowhere."""
 MAX_VALUES = 24
-"""How many values of one path are tried."""
+"""The most values that are tried for one path."""
 FIRST = 6
-"""How many of those that are mentioned come before plain ones: a text may be compared with a hundred phrases."""
+"""Values from the guard that are tried before plain ones: a text may be compared with a hundred phrases."""
 
 
 def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope) -> dict[ValuePath, list[Any]]:
-    """For each path of the context and of the event's data other values that may decide, the nearest first."""
+    """Return other values that may decide, for each path of the context and of the event's data; the nearest first."""
     found: dict[ValuePath, list[Any]] = {}
     trees = [parse_expression(source) for source in sources]
     for tree in trees:
@@ -40,7 +42,7 @@ def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope)
 
 
 def value_at(path: ValuePath, scope: Scope) -> Any:
-    """What a path leads to; ABSENT where it leads to nothing."""
+    """Return the value at a path; ABSENT if there is none."""
     value: Any = {"context": scope.context, "event": scope.event}
     for key in path:
         if not isinstance(value, Mapping) or key not in value:
@@ -50,7 +52,7 @@ def value_at(path: ValuePath, scope: Scope) -> Any:
 
 
 def _nearest(path: ValuePath, values: Iterable[Any], scope: Scope) -> list[Any]:
-    """Those of the kind that is there now, each once; numbers by how far they are from it."""
+    """Return the values of the kind that is there now, each once; numbers by their distance from the present one."""
     now = value_at(path, scope)
     fitting = [v for v in values if v is not ABSENT and (now is ABSENT or now is None or _kind(v) == _kind(now))]
     unique = list({repr(v): v for v in fitting if now is ABSENT or not _same(v, now)}.values())
@@ -70,7 +72,7 @@ def _kind(value: Any) -> str:
 
 
 def _plain(now: Any) -> list[Any]:
-    """A few values like the present one."""
+    """Return a few values of the same kind as the present one."""
     match now:
         case bool():
             return [not now]
@@ -99,7 +101,7 @@ def _mentioned(machine: MachineDefinition, tree: ExpressionNode, scope: Scope) -
 
 
 def _compared(sign: str, one: ExpressionNode, other: ExpressionNode, scope: Scope) -> Iterator[tuple[ValuePath, Any]]:
-    """Values of the paths in `one` at which it is `other`, or just beside it."""
+    """Yield values of the paths in `one` at which `one` equals `other`, or nearly does."""
     paths = list(_paths(one))
     if not paths:
         return

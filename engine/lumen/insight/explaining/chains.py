@@ -1,4 +1,4 @@
-"""Why something happened: from the effect back to a person, a message, a sensor, a file or the start."""
+"""The chain of causes from an effect back to a person, a message, a sensor, a file or the start."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -30,15 +30,18 @@ from lumen.statechart.command_ids import CommandAnswer, answer_of, inner_id
 from lumen.statechart.values import Timer
 
 LinkWalk: TypeAlias = Iterator["Link | partial[LinkWalk]"]
-"""Links, and last, perhaps, how it goes on: chains are longer than Python's stack is high."""
+"""Links, and at the end a continuation if there is one: a chain may be longer than Python's stack allows."""
 
 MAX_LINKS = 2_000
+"""The number of links at which the search stops."""
 SHOWN_FIRST, SHOWN_LAST = 60, 20
-"""Behaviours that set a timer again and again have chains without end: of a long one both ends are told."""
+"""Links that are shown at each end of a long chain: behaviours that set a timer again and again have endless ones."""
 
 
 def chain(history: StepHistory, effect: Effect) -> list[Link]:
-    """The links, the effect first, the cause last."""
+    """Return the links, the effect first and the cause last; a link that counts the rest replaces the middle of a long
+    chain.
+    """
     found: list[Link] = []
     ways: list[partial[LinkWalk]] = [partial(Chain(history).of, effect)]
     while ways and len(found) < MAX_LINKS:
@@ -55,12 +58,16 @@ def chain(history: StepHistory, effect: Effect) -> list[Link]:
 
 
 class Chain:
-    """Goes back from link to link; each looks at an earlier step, or at something earlier in the same one."""
+    """The search from an effect back to its cause; each method yields links and the method that continues.
+
+    Every link lies in an earlier step, or earlier in the same one.
+    """
 
     def __init__(self, history: StepHistory) -> None:
         self.history = history
 
     def of(self, effect: Effect) -> LinkWalk:
+        """Yield the continuation that explains an effect."""
         if effect.command is not None:
             yield partial(self.command, effect.number, effect.command)
         else:
@@ -68,6 +75,7 @@ class Chain:
             yield partial(self.doing, effect.number, "@".join(reversed(ids)), name)
 
     def command(self, number: int, command: Command) -> LinkWalk:
+        """Yield a command, the action that issued it, and the search for what triggered the action."""
         deed = self.history.deed(number, command)
         text = of_command(command) + self._refusal(number, _id(command))
         if deed is None:
@@ -80,7 +88,7 @@ class Chain:
         yield partial(self.because, number, deed)
 
     def because(self, number: int, deed: Deed) -> LinkWalk:
-        """What made an action be done."""
+        """Yield the search for what made an action run."""
         if deed.block == "do" and deed.microstep:
             yield partial(self.doing, number, deed.owner, deed.machine.states[deed.state].name, deed.microstep)
         elif deed.microstep:
@@ -89,7 +97,7 @@ class Chain:
             yield partial(self.trigger, number, deed.owner)
 
     def doing(self, number: int, owner: str, state: str, until: TracedMicrostep | None = None) -> LinkWalk:
-        """What made a state be entered, or its `do` go on, in that step."""
+        """Yield the search for what entered a state, or made its `do` continue, in that step."""
         entered = self.history.trace(number).entering(owner, state, until)
         if entered:
             yield partial(self.microstep, number, entered, state=state)
@@ -97,6 +105,7 @@ class Chain:
             yield partial(self.trigger, number, owner)
 
     def microstep(self, number: int, step: TracedMicrostep, deed: Deed | None = None, state: str = "") -> LinkWalk:
+        """Yield the transition of a microstep that led to an action or a state, and the search for its event."""
         machine, owner = step.moment.machine.chart.definition, step.moment.owner
         taken = _responsible(machine, step, deed, state)
         if taken is None:
@@ -123,7 +132,7 @@ class Chain:
             yield partial(self.trigger, number, owner)
 
     def event(self, number: int, event: Event | None, owner: str) -> LinkWalk:
-        """What raised an event, or brought it from outside."""
+        """Yield the action that raised an event, or the search for its origin outside."""
         deeds = self.history.trace(number).deeds
         raised = next((deed for deed in deeds if deed.what is event), None) if event else None
         if raised is None or event is None:
@@ -136,7 +145,7 @@ class Chain:
             yield self._link(
                 number, "activity", f"the `do` of {prefix_of(owner)}{name} {_ended(kind)}", values=brought(event)
             )
-            until = raised.microstep  # None where the `do` has run since an earlier step
+            until = raised.microstep  # None if the `do` has run since an earlier step
             go_on = partial(self.doing, number, owner, name, until)
             yield go_on if until else partial(self.trigger, number, owner)
         elif thing == "invoke" and not raised.where:
@@ -150,7 +159,7 @@ class Chain:
             yield partial(self.because, number, raised)
 
     def trigger(self, number: int, owner: str) -> LinkWalk:
-        """What came from outside, and what caused that."""
+        """Yield the input from outside that caused a step, and the cause of that input."""
         one = self.history.steps[number]
         event = one.step.event
         if event is None:
@@ -180,7 +189,7 @@ class Chain:
                 yield self._link(number, found.kind, found.text, id=found.id, values=found.values)
 
     def timer(self, number: int, event: Event, timer: Timer) -> LinkWalk:
-        """The end of a timer, and what set it."""
+        """Yield the end of a timer, and the search for what set it."""
         id, owner = inner_id(event.sendid)
         machine = machine_within(self.history.steps[number], owner)
         text, place = f"{event.name}, {timer.delay:g} s after it was sent", None
@@ -205,7 +214,7 @@ class Chain:
             yield partial(self.doing, when, owner, machine.states[timer.state].name)
 
     def _beginning(self, number: int, step: TracedMicrostep) -> LinkWalk:
-        """A machine that begins: for an invoked one that is what its host did."""
+        """Yield the search for what started a machine; for an invoked one, that is its host's `invoke`."""
         owner = step.moment.owner
         if not owner:
             yield partial(self.trigger, number, owner)
@@ -223,7 +232,7 @@ class Chain:
                 return
 
     def _activity(self, number: int, deed: Deed) -> Link:
-        """Where an action stands: `2nd of the do of greet`."""
+        """Return the link that gives the position of an action: `2nd of 3 in the `do` of greet`."""
         state = deed.machine.states[deed.state]
         name = prefix_of(deed.owner) + (state.name or deed.machine.id)
         if not deed.block:
@@ -252,7 +261,7 @@ class Chain:
         return Link(kind, text, one.step.snapshot.epoch + one.at, place, id, values or {}, number)
 
     def _refusal(self, number: int, id: str) -> str:
-        """The reason why a command was refused, as the end of a text; empty if the robot began it."""
+        """Return the reason why a command was refused, as the end of a text; empty if it was not refused."""
         for one in self.history.steps[number + 1 :] if id else ():
             answer = answer_of(one.step.event) if one.step.event and not one.step.event.sendid else None
             if answer and answer.id == id:
@@ -264,7 +273,7 @@ class Chain:
 
 
 def _responsible(machine: MachineDefinition, step: TracedMicrostep, deed: Deed | None, state: str) -> Transition | None:
-    """Of the transitions of a microstep the one that did something, or led into a state."""
+    """Return the transition of a microstep that ran an action or led into a state; None if it has none."""
     taken = step.transitions
     if deed:
         within = [t for t in taken if not deed.block and deed.where[: len(t.where)] == t.where]

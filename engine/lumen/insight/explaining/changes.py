@@ -1,4 +1,4 @@
-"""What would have to be otherwise: edits of an event or of what is remembered, applied, and tried in steps."""
+"""Proposed changes: edits of an event or of a context, which are applied and then tried by taking a step."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -9,21 +9,22 @@ from lumen.language.json_paths import with_value
 from lumen.statechart.values import Invoked, Snapshot
 
 ProposedChange = Mapping[str, Any]
-"""By how expressions call it, its other value: `event.data.result`, `context.tries`; in what runs as `quiz`,
-`quiz/context.tries`. `event` is the name of one that has to come, `state` that of a state that has to be active,
-`wait` how long nothing else may happen [s].
+"""New values by their names in expressions: `event.data.result`, `context.tries`, or `quiz/context.tries` in `quiz`.
+
+Three names are special: `event` is the name of an event that must come, `state` that of a state that must be active,
+and `wait` is how long nothing else may happen [s].
 """
 
 
 class StepSituation(NamedTuple):
-    """From where a step is taken, and with what; `owner` says to which behaviour the edits of a context go."""
+    """The snapshot from which a step is taken, its event, and the behaviour whose context is edited (`owner`)."""
 
     snapshot: Snapshot
     event: Event | None
     owner: str = ""
 
     def edited(self, change: ProposedChange) -> "StepSituation":
-        """The situation with those edits; a new `event` gets the data that the change gives it."""
+        """Return the situation with those edits; a new `event` has no data but that of the change."""
         snapshot, event = self.snapshot, self.event
         if "event" in change:
             event = Event(change["event"], None, snapshot.at)

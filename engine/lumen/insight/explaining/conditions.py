@@ -1,4 +1,4 @@
-"""A guard evaluated again: whether it holds, its parts with their values, and the first of them that is false."""
+"""A guard evaluated again: whether it holds, its parts with their values, and the first part that is false."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -10,23 +10,24 @@ from lumen.language.actions import Expression
 
 
 class GuardPart(NamedTuple):
-    """One of the conditions that a guard joins by `&&`, and the values that it looked at, by how they are written.
-
-    It is true, false, or has no value: then `error` says why, and it counts as false (SCXML 5.9.1).
-    """
+    """One of the conditions that a guard joins by `&&`."""
 
     text: str
+    """The condition as it is written."""
     holds: bool
+    """Whether it is true. A condition that has no value counts as false (SCXML 5.9.1)."""
     values: Mapping[str, Any]
+    """The values that it read, by their names in the condition."""
     error: str = ""
+    """Why it has no value; empty if it has one."""
 
 
 def parts(guard: Expression, scope: Scope) -> tuple[GuardPart, ...]:
-    """The parts of a guard, in the order written; of one without `&&` the whole."""
+    """Return the parts of a guard in the order written; a guard without `&&` is one part."""
     meant = tuple(_joined(parse_expression(guard.source)))
     try:
         shown = tuple(_joined(parse_expression(guard.shown)))
-    except ExpressionError:  # words, such as those of a round: there is a next exhibit
+    except ExpressionError:  # some guards are shown in words, such as: there is a next exhibit
         return (_part(parse_expression(guard.source), guard.shown, scope),)
     if len(meant) != len(shown):
         shown = meant
@@ -34,14 +35,14 @@ def parts(guard: Expression, scope: Scope) -> tuple[GuardPart, ...]:
 
 
 def first_false(guard: Expression, scope: Scope) -> GuardPart | None:
-    """The first part that is not true; None where the guard holds, whatever its parts say."""
+    """Return the first part that is not true; None if the guard as a whole holds."""
     if holds(guard, scope):
         return None
     return next((part for part in parts(guard, scope) if not part.holds), None)
 
 
 def holds(guard: Expression | None, scope: Scope) -> bool:
-    """Whether a guard is true; one that has no value is not."""
+    """Return whether a guard is true; no guard is true, and a guard without a value is false."""
     try:
         return guard is None or compile_guard(guard.source)(scope)
     except ExpressionError:
@@ -49,12 +50,12 @@ def holds(guard: Expression | None, scope: Scope) -> bool:
 
 
 def values(guard: Expression | None, scope: Scope) -> dict[str, Any]:
-    """Everything that a guard looked at."""
+    """Return the values that a guard read, by their names in it."""
     return readings(guard.source, scope, guard.shown) if guard else {}
 
 
 def awaits_event(source: str) -> tuple[bool, ...]:
-    """Of each part of a guard: whether it looks at the event, and so has no truth before one has come."""
+    """Return for each part of a guard whether it reads the event, so that it has no value before one comes."""
     return tuple(
         any((path_of(node) or ("",))[0] == "event" or looks_at_what_was_heard(node) for node, _ in walk(part))
         for part in _joined(parse_expression(source))

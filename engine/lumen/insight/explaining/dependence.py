@@ -1,6 +1,6 @@
-"""Which earlier inputs an outcome rests on: without any that is not among them it would have come all the same.
+"""The earlier inputs on which an outcome rests; without all others, the outcome would have been the same.
 
-More may be named than is needed: it is asked what could have decided, not what did.
+The answer may include too many: it contains each input that could have decided, not only those that did.
 """
 
 from collections.abc import Callable, Iterator
@@ -15,7 +15,7 @@ from lumen.statechart.values import Snapshot
 
 
 def needed(history: StepHistory, number: int) -> tuple[int, ...]:
-    """The numbers of the steps on which that one rests, itself included, in order."""
+    """Return the numbers of the steps on which step `number` rests, itself included, in ascending order."""
     found: set[int] = set()
     left = [number]
     while left:
@@ -27,7 +27,7 @@ def needed(history: StepHistory, number: int) -> tuple[int, ...]:
 
 
 def directly_needed(history: StepHistory, number: int) -> Iterator[int]:
-    """The steps that made what a step was decided by: active states, what is remembered, timers and commands."""
+    """Yield the steps that set what a step depended on: its active states, context, timer or command."""
     one = history.steps[number]
     before, event = one.before, one.step.event
     if before is None:
@@ -49,7 +49,7 @@ def directly_needed(history: StepHistory, number: int) -> Iterator[int]:
 
 
 def _last(history: StepHistory, number: int, made: Callable[[RecordedStep], bool]) -> int:
-    """The last step before that one of which it is true; the first of all where none is."""
+    """Return the last earlier step for which `made` is true; 0 if there is none."""
     return next((n for n in reversed(range(number)) if made(history.steps[n])), 0)
 
 
@@ -62,14 +62,14 @@ def _changes(key: str, one: RecordedStep) -> bool:
 
 
 def _timers(snapshot: Snapshot | None) -> set[str]:
-    """The ids of all that are set, those of invoked behaviours included."""
+    """Return the ids of all timers that run, those of invoked behaviours included."""
     inner = snapshot.invoked.values() if snapshot else ()
     own = (timer.id for timer in snapshot.timers) if snapshot else ()
     return {*own, *(id for child in inner for id in _timers(child.snapshot))}
 
 
 def _read(history: StepHistory, number: int) -> set[str]:
-    """The keys of the context that were read where it was decided, or by what was done then."""
+    """Return the keys of the context that the step's guards, or the actions of its states, read."""
     keys: set[str] = set()
     trace = history.trace(number)
     for moment in trace.moments:

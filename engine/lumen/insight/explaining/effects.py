@@ -1,4 +1,4 @@
-"""What a question is about: the last time that something was said, played, done or entered."""
+"""The subject of a question: the last time that something was said, played, done or entered."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -12,18 +12,22 @@ from lumen.statechart.nesting import entered_names
 
 
 class Effect(NamedTuple):
-    """Something that happened in the step of that number: a command, or a state that was entered."""
+    """Something that happened in a step: a command, or the entry of a state."""
 
     number: int
+    """The number of the step."""
     what: str
+    """The effect in words."""
     command: Command | None = None
+    """The command; None if the effect is a state."""
     state: str = ""
+    """The outside name of the state that was entered; empty if the effect is a command."""
 
 
 def effect(history: StepHistory, what: str) -> Effect:
-    """The last time that `what` happened; empty for the last thing that happened at all.
+    """Return the last time that `what` happened; if `what` is empty, the last thing that happened.
 
-    Raises UsageError, saying what to do, where it did not happen as far as is kept.
+    Raises UsageError, with a hint, if the history does not contain it.
     """
     if not history.steps:
         raise UsageError("the journal has no entries from that time: choose another time with `--at`")
@@ -34,7 +38,7 @@ def effect(history: StepHistory, what: str) -> Effect:
 
 
 def _effects(history: StepHistory, what: str) -> Iterator[Effect]:
-    """The newest first."""
+    """Yield the matching effects, newest first."""
     state = state_named(history.steps[-1].machine, what) if what else ""
     for number in reversed(range(len(history.steps))):
         step = history.steps[number].step
@@ -48,7 +52,7 @@ def _effects(history: StepHistory, what: str) -> Iterator[Effect]:
 
 
 def is_meant(command: Command, what: str) -> bool:
-    """Whether a command is what somebody asks about: by its id, by part of its text, or by a name in it."""
+    """Return whether `what` means a command: by its id, by part of its text, or by a name in it. Empty means any."""
     match command:
         case Start(id, wanted):
             if not what or what == id:
@@ -64,7 +68,7 @@ def is_meant(command: Command, what: str) -> bool:
 
 
 def _unknown(history: StepHistory, what: str) -> str:
-    """What to do about a question that has no answer."""
+    """Return the message for a question that has no answer, with a hint."""
     known = KnownNames(history.steps[-1])
     first = history.steps[0]
     kept = f"in the {history.steps[-1].at - first.at:.0f} s that the journal covers"

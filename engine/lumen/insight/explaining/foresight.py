@@ -1,4 +1,4 @@
-"""The commands of a robot if an event were processed now."""
+"""The commands that a robot would receive if an event were processed now."""
 
 from collections import deque
 from typing import Any
@@ -12,13 +12,13 @@ from lumen.statechart.stepping import step
 from lumen.statechart.values import Snapshot
 
 MAX_DEEDS = 8
-"""Deeds that are listed."""
+"""The most deeds that are listed."""
 
 
 def foreseen(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> list[dict[str, Any]]:
-    """Return what the robot says and does because of an event, `{"verb": "say", "text": "Hello", …}` each, in order.
+    """Return what the robot would say and do because of an event, in order: `{"verb": "say", "text": "Hello", …}`.
 
-    Each command is taken to end as usual, and nothing else to happen. The list ends at the next transition, after
+    Each command is assumed to end as usual, and nothing else to happen. The list ends at the next transition, after
     `MAX_DEEDS`, or if the step raises a LumenError.
     """
     found: list[dict[str, Any]] = []

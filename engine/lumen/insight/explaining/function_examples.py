@@ -1,4 +1,4 @@
-"""The examples of a project's functions as tests: whether each call gives the value that its file says."""
+"""The examples of a project's functions as tests: each call must give the value in its file."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -16,16 +16,20 @@ from lumen.language.functions import FunctionDefinition, FunctionExample
 
 
 class TriedExample(NamedTuple):
-    """An example of a `file`, the `call` as it would be written, and what is `wrong`; empty if nothing is."""
+    """The result of one example."""
 
     file: str
+    """The file of the function, relative to the project."""
     example: FunctionExample
+    """The example."""
     call: str
+    """The call as it would be written in an expression."""
     wrong: str
+    """The difference from the expected value, in words; empty if there is none."""
 
 
 def tried_examples(functions: Iterable[FunctionDefinition]) -> Iterator[TriedExample]:
-    """Try all examples of these functions."""
+    """Yield the result of each example of these functions."""
     for function in functions:
         for example in function.examples:
             given = ", ".join(_shown(example.arguments[name]) for name in function.parameters)
@@ -34,7 +38,7 @@ def tried_examples(functions: Iterable[FunctionDefinition]) -> Iterator[TriedExa
 
 
 def value_of(function: FunctionDefinition, example: FunctionExample) -> Any:
-    """Return the value of a function for the arguments of an example. Raises ExpressionError without a value."""
+    """Return the value of a function for the arguments of an example. Raises ExpressionError if it has none."""
     arguments = {name: literal(value) for name, value in example.arguments.items()}
     return compile_expression(unparse(with_arguments(parse_expression(function.expanded), arguments)))(Scope())
 
@@ -48,7 +52,7 @@ def _wrong(function: FunctionDefinition, example: FunctionExample) -> str:
 
 
 def _shown(value: Any) -> str:
-    """A JSON value as an expression writes it."""
+    """Return a JSON value as an expression writes it."""
     try:
         return unparse(literal(value))
     except TypeError:

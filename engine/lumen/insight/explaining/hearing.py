@@ -10,34 +10,38 @@ from lumen.talk.finder import Find
 from lumen.talk.hearing import Dropped, hearing_of, said_in
 
 RowFate = Literal["taken", "not found", "guard", "better row"] | Dropped
-"""The fate of a row; one that its state takes is `taken`, even if another state goes first."""
+"""The fate of a row. `taken` is the best row of its state, even if another state's row has priority."""
 MAX_QUOTED = 80
 """Characters of a sentence that are shown."""
 
 
 class HeardRow(NamedTuple):
-    """A row of `hears`, what was found for it in a sentence, and what becomes of it.
-
-    `words` are those of its phrase as they were said, in `clause`; both are empty if nothing was found. `name` is that
-    of the phrase, `strength` the number of its words. A `late` row is asked only if no state has taken another.
-    `better` is the row that is taken instead. `caught` is what `heard` holds besides the text, by how expressions
-    call it.
-    """
+    """A row of `hears` and its result for a sentence."""
 
     transition: Transition
+    """The transition of the row."""
     row: Hears
+    """The row."""
     fate: RowFate
+    """Why it is taken or not."""
     words: str = ""
+    """The words of its phrase as they were said; empty if nothing was found."""
     clause: str = ""
+    """The part of the sentence that contains the words."""
     name: str = ""
+    """The name of the phrase."""
     strength: int = 0
+    """The number of words of the phrase."""
     late: bool = False
+    """Whether the row is tried only if no state has taken another."""
     better: Hears | None = None
+    """The row that is taken instead, if the fate is `better row`."""
     caught: Mapping[str, Any] = {}
+    """The values of `heard` except the text, by their names in expressions."""
 
     @property
     def why(self) -> str:
-        """The words that were found, and why they do not count: `“dance” is negated in “Please don't dance”`."""
+        """The words that were found and why they do not count: `“dance” is negated in “Please don't dance”`."""
         words, clause = _quoted(self.words), _quoted(self.clause)
         match self.fate:
             case "taken":
@@ -64,12 +68,12 @@ class HeardRow(NamedTuple):
 
 
 def heard_rows(machine: MachineDefinition, state: str, scope: Scope) -> tuple[HeardRow, ...]:
-    """Return the fate of each row of the state at that path, in the order written; guards there see `scope`."""
+    """Return the fate of each row of the state at a path, in the order written; guards are evaluated in `scope`."""
     return tuple(_rows(machine, state, scope))
 
 
 def heard_row(machine: MachineDefinition, transition: Transition, scope: Scope) -> HeardRow:
-    """Return the fate of one row: the transition is a row of `hears`."""
+    """Return the fate of one row, given by its transition."""
     return next(row for row in heard_rows(machine, transition.source, scope) if row.row is transition.hears)
 
 
@@ -103,7 +107,7 @@ def _rows(machine: MachineDefinition, state: str, scope: Scope) -> Iterator[Hear
 
 
 def _found(machine: MachineDefinition, row: HeardRow, find: Find, text: str) -> HeardRow:
-    """Return the row with the find. A row that counts shows the whole sentence, another one the clause."""
+    """Return the row with the words that were found. A row that counts shows the whole sentence, others the clause."""
     reading = hearing_of(machine).read(text)
     inside = [i for i, clause in enumerate(reading.clauses) if clause == reading.clauses[find.start]]
     clause = text if row.fate in ("taken", "guard", "better row") else reading.said(inside[0], inside[-1] + 1)

@@ -1,4 +1,4 @@
-"""What has happened, as far as it was kept: the material from which questions are answered."""
+"""Recorded steps: the material from which questions are answered."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -12,37 +12,41 @@ from lumen.language.projects import Project
 from lumen.statechart.values import Snapshot, Step
 
 OPERATOR_GOTO = "operator.goto"
-"""The event of a step that a person wanted, whatever the guards said."""
+"""The event of a step that an operator forced, regardless of the guards."""
 
 
 class RecordedStep(NamedTuple):
-    """A step, from where it was taken, and in which machine; `before` is None for the first of a run.
+    """A step with the machine and the snapshot from which it was taken.
 
-    A step without an event that is not the first is a reload: nothing was decided by the machine. `project` is the
-    bundle that says in which files things stand; a machine alone has none.
+    A step without an event, other than the first, is a reload: the machine did not decide it.
     """
 
     machine: MachineDefinition
+    """The machine of the step."""
     before: Snapshot | None
+    """The snapshot before the step; None for the first step of a run."""
     step: Step
+    """The step."""
     project: Project | None = None
+    """The bundle, which gives the places in files; None for a machine without one."""
 
     @property
     def at(self) -> float:
-        """When it was taken, on the exhibition's clock [s]."""
+        """When the step was taken, on the exhibition's clock [s]."""
         return self.step.snapshot.at
 
     @property
     def is_reload(self) -> bool:
+        """Whether the step is a reload of the files."""
         return self.step.event is None and self.before is not None
 
     @property
     def is_decided(self) -> bool:
-        """Whether the machine decided it, so that it can be taken again."""
+        """Whether the machine decided the step, so that it can be taken again."""
         return not self.is_reload and not (self.step.event and self.step.event.name == OPERATOR_GOTO)
 
     def place(self, machine: MachineDefinition, where: NodePath) -> Place | None:
-        """Where in the files stands what has that path in the document of a machine; None where nobody knows."""
+        """Return the place in the files of the node at `where` in a machine's document; None if it is unknown."""
         if self.project is None or not where:
             return None
         names = [name for name, other in self.project.behaviors.items() if other is machine]
@@ -51,14 +55,14 @@ class RecordedStep(NamedTuple):
 
 
 class StepHistory:
-    """Recorded steps, the oldest first, and what was found out about each by taking it again."""
+    """Recorded steps, oldest first, and the trace of each, which is computed once by taking the step again."""
 
     def __init__(self, steps: Sequence[RecordedStep]) -> None:
         self.steps = steps
         self._traces: dict[int, Trace] = {}
 
     def trace(self, number: int) -> Trace:
-        """What happened within the step of that number; nothing is known of one that the machine did not decide."""
+        """Return what happened within the step of that number; empty if the machine did not decide it."""
         if number not in self._traces:
             one = self.steps[number]
             before = one.before or _before_the_first(one)
@@ -67,7 +71,7 @@ class StepHistory:
 
     @cached_property
     def started(self) -> dict[str, list[int]]:
-        """In which steps a command of that id was started: ids begin anew with each run."""
+        """The numbers of the steps that started a command, by its id; a list, because ids begin anew with each run."""
         found: dict[str, list[int]] = {}
         for number, one in enumerate(self.steps):
             for command in one.step.commands:
@@ -76,7 +80,7 @@ class StepHistory:
         return found
 
     def deed(self, number: int, command: Any) -> Deed | None:
-        """The action that asked for a command of that step."""
+        """Return the action that issued a command of that step; None if there is none."""
         return next((deed for deed in self.trace(number).deeds if deed.what == command), None)
 
 

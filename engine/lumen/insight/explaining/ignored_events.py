@@ -1,4 +1,4 @@
-"""Why an event changed nothing: which states did not listen, or which guards were false, and with what values."""
+"""Why an event changed nothing: no active state listens to it, or guards were false, with their values."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -20,38 +20,39 @@ from lumen.statechart.values import Snapshot, Step
 
 _TIMED = ("after.", "at.")
 _OWN = (*_TIMED, "done.do.", "done.state.", "done.invoke.", "error.do.", "error.invoke.")
-"""How the events begin that a behaviour sends itself: `after`, `at`, `onDone` and `onError`."""
+"""The prefixes of events that a behaviour sends itself: `after`, `at`, `onDone` and `onError`."""
 
 
 class FalseGuard(NamedTuple):
-    """A guard of a transition of `state` that was false, and the values that it looked at, by how they are written.
-
-    If a phrase of a row of `hears` was found and does not count, `guard` is the row and `why` the reason.
-    """
+    """A guard that was false, or a row of `hears` whose phrase was found but does not count."""
 
     state: str
+    """The outside name of the state that has the transition."""
     guard: Expression
+    """The guard; for a phrase that does not count, the title of the row."""
     values: Mapping[str, Any]
+    """The values that the guard read, by their names in it."""
     why: str = ""
+    """Why the phrase does not count; empty for a guard."""
 
 
 class IgnoredEvent(NamedTuple):
-    """An event that changed nothing.
-
-    `deaf` are the innermost states of those regions that listen to it, but not where they are now; `refused` the
-    guards that were false; `unheard` states with `hears` for which nothing was found in it.
-    """
+    """An event that changed nothing."""
 
     event: Event
+    """The event."""
     deaf: tuple[str, ...]
+    """The innermost active states of the regions that listen to it only in other states."""
     refused: tuple[FalseGuard, ...]
+    """The guards that were false."""
     unheard: tuple[str, ...] = ()
+    """The states with `hears` in which no phrase was found."""
 
 
 def ignored(machine: MachineDefinition, step: Step) -> IgnoredEvent | None:
-    """Why the event of a step changed nothing; None where it did, or where nothing here ever listens to it.
+    """Return why the event of a step changed nothing; None if it did, or if no state ever listens to it.
 
-    What nobody sent, as a time that has come or the end of a `do`, only has guards that may be false.
+    For an event that the behaviour sends itself, such as a timer or the end of a `do`, only false guards are reasons.
     """
     event, parts = step.event, list(flattened_steps(machine, step))
     if event is None or any(part.transitions for _, _, part in parts):
@@ -89,7 +90,7 @@ def _within(node: StateNode, region: StateNode | None) -> bool:
 
 
 def _listens(node: StateNode, name: str) -> bool:
-    """Whether it has a transition for that event; one that takes any event does not count."""
+    """Return whether a state has a transition for that event; one for any event (`*`) does not count."""
     return any(transition.definition.event != "*" and transition.matches(name) for transition in node.transitions)
 
 
@@ -112,7 +113,7 @@ def _refused(prefix: str, machine: MachineDefinition, step: Step, event: Event) 
 
 
 def _unheard(prefix: str, machine: MachineDefinition, step: Step, event: Event) -> Iterator[str]:
-    """Yield active states with `hears` none of whose phrases was said."""
+    """Yield active states with `hears` in which no phrase was found."""
     planner = compiled(machine).planner
     standing = planner.configuration(step.snapshot.configuration)
     groups = standing.candidates(event.name)
@@ -124,7 +125,7 @@ def _unheard(prefix: str, machine: MachineDefinition, step: Step, event: Event) 
 
 
 def _scope(chart: Chart, node: StateNode, standing: Configuration, now: Snapshot, event: Event) -> Scope:
-    """What the guard saw: nothing has changed since."""
+    """Return the scope that the guard saw: nothing has changed since."""
     machine, seen = chart.definition, {"name": event.name, "data": event.data}
     return Scope(
         now.context, seen, node.view(now.language, now.place), standing.known.__contains__, now.at, now.language,

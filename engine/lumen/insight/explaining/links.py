@@ -1,4 +1,4 @@
-"""One link of the chain that leads from something that happened to what caused it."""
+"""One link of the chain from an effect to its cause."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,22 +12,25 @@ LinkKind = Literal["command", "activity", "transition", "event", "timer", "messa
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """What happened at `at` [s since 1970, in UTC], in words, and where the files say so.
-
-    `id` is that of a command, a timer or a message; `values` are those that decided it: of a guard's parts, or what an
-    event brought. `number` is that of the recorded step.
-    """
+    """Something that happened, as part of a chain of causes."""
 
     kind: LinkKind
+    """The kind of link."""
     text: str
+    """What happened, in words."""
     at: float
+    """When it happened [s since 1970, in UTC]."""
     place: Place | None = None
+    """The place in the files that defines it; None if there is none."""
     id: str = ""
+    """The id of the command, timer or message; empty if it has none."""
     values: Mapping[str, Any] = field(default_factory=dict)
+    """The values that decided it: those of the guard's parts, or the data of the event."""
     number: int = 0
+    """The number of the recorded step."""
 
     def to_json(self) -> dict[str, Any]:
-        """The object of `lumen why --format json`."""
+        """Return an entry of `chain` in the output of `lumen why --format json`."""
         return {
             "kind": self.kind,
             "text": self.text,

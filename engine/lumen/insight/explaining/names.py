@@ -1,4 +1,4 @@
-"""The names that a question may use: states, motions and texts of a machine, and of those that it invokes."""
+"""The names that a question may use: states, motions and texts of a machine and of the behaviours that it invokes."""
 
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
@@ -13,18 +13,24 @@ from lumen.language.machines import MachineDefinition, State
 
 
 class PlacedDeed(NamedTuple):
-    """An action of a machine: in which state, in which block (empty for those of a transition), and where."""
+    """An action of a machine and its position."""
 
     owner: str
+    """The ids under which the machine runs; empty for the outermost."""
     machine: MachineDefinition
+    """The machine."""
     state: State
+    """The state that has the action."""
     block: str
+    """The block of the state: `entry`, `do` or `exit`; empty for the actions of a transition."""
     action: Action
+    """The action."""
     where: NodePath
+    """The path of the action in the machine's document."""
 
 
 def machines_in(machine: MachineDefinition, owner: str = "") -> Iterator[tuple[str, MachineDefinition]]:
-    """A machine and those that run within it, with the ids under which they do: `quiz`, `hint@quiz`."""
+    """Yield a machine and those that it invokes, each with the ids under which it runs: `quiz`, `hint@quiz`."""
     yield owner, machine
     for state in machine.states.values():
         for invoke in state.invoke:
@@ -34,7 +40,7 @@ def machines_in(machine: MachineDefinition, owner: str = "") -> Iterator[tuple[s
 
 
 def deeds_in(machine: MachineDefinition) -> Iterator[PlacedDeed]:
-    """Every action, those within `if` and `parallel` included."""
+    """Yield every action of a machine and its invoked behaviours, including those within `if` and `parallel`."""
     for owner, inner in machines_in(machine):
         for state in inner.states.values():
             for name in ("entry", "do", "exit"):
@@ -60,7 +66,7 @@ def _flat(block: tuple[PlacedAction, ...]) -> Iterator[tuple[Action, NodePath]]:
 
 
 def same_text(wanted: str, text: str) -> bool:
-    """Whether words are part of a text, however they are written."""
+    """Return whether words are part of a text, ignoring case and punctuation."""
     return bool(wanted) and _plain(wanted) in _plain(text)
 
 
@@ -69,9 +75,9 @@ def _plain(text: str) -> str:
 
 
 def state_named(machine: MachineDefinition, name: str) -> str:
-    """How `name` is called outside, if it is a state: by its name, its path or the end of one; else nothing.
+    """Return the outside name of a state, given by its name, its path or the end of its path; empty if there is none.
 
-    Raises UsageError where several end so.
+    Raises UsageError if several paths end so.
     """
     found = [
         (prefix_of(owner), state)
@@ -87,7 +93,7 @@ def state_named(machine: MachineDefinition, name: str) -> str:
 
 
 class KnownNames:
-    """What can be asked about in the machine, or the bundle, of a recorded step."""
+    """The names that a question about a recorded step may use."""
 
     def __init__(self, recorded: RecordedStep) -> None:
         self.machine = recorded.machine
@@ -95,15 +101,16 @@ class KnownNames:
         self.motions = {*played, *(recorded.project.motions if recorded.project else ())}
 
     def has(self, what: str) -> bool:
+        """Return whether `what` is a state, a motion or part of a text."""
         return bool(state_named(self.machine, what)) or what in self.motions or any(self.texts(what))
 
     def texts(self, what: str) -> Iterable[str]:
-        """Texts of the behaviour in which these words stand."""
+        """Yield the texts of the behaviour that contain these words."""
         for deed in deeds_in(self.machine):
             if isinstance(deed.action, SayText):
                 yield from (t.text for ts in deed.action.texts.values() for t in ts if same_text(what, t.text))
 
     def near(self, what: str) -> str:
-        """What was probably meant."""
+        """Return a hint with the names most similar to `what`."""
         states = {state.name for _, inner in machines_in(self.machine) for state in inner.states.values() if state.path}
         return did_you_mean(what, sorted(states | self.motions), "there are")

@@ -1,4 +1,4 @@
-"""Where an event from outside came from: who or what caused it."""
+"""The origin of an event from outside."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -11,7 +11,7 @@ from lumen.language.modules import own_module_events
 
 
 class EventOrigin(NamedTuple):
-    """The last link of a chain."""
+    """The cause of an event, which is the last link of a chain."""
 
     kind: LinkKind
     text: str
@@ -20,7 +20,7 @@ class EventOrigin(NamedTuple):
 
 
 def origin(one: RecordedStep, event: Event) -> EventOrigin | None:
-    """What is known of the cause; None where nobody said and nothing can be told from the routes."""
+    """Return the cause of an event, as far as the event or the routes give it; None if it is unknown."""
     if event.cause and (said := _said(event.cause)):
         return said
     by = event.data.get("by") if isinstance(event.data, Mapping) else None
@@ -39,7 +39,7 @@ def origin(one: RecordedStep, event: Event) -> EventOrigin | None:
 
 
 def _said(cause: Cause) -> EventOrigin | None:
-    """What the event itself says of its cause."""
+    """Return the cause that the event itself carries."""
     values = {key: value for key in ("key", "sender") if (value := getattr(cause, key))}
     by = f", from {cause.sender}" if cause.sender else ""
     match cause.kind:

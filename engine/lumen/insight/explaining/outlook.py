@@ -1,4 +1,4 @@
-"""Where a behaviour can go from where it stands: each way out of its active states, whether it is open now, and why."""
+"""The ways out of a behaviour's active states: whether each is open now, and why."""
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
@@ -19,7 +19,7 @@ from lumen.statechart.values import Snapshot, Timer
 
 
 class GuardTruth(NamedTuple):
-    """A guard at this moment: what it looks at, and whether it holds; None where that is for the event to say."""
+    """A guard at this moment: the values that it reads, and its result; None if that depends on the event."""
 
     text: str
     holds: bool | None
@@ -27,35 +27,41 @@ class GuardTruth(NamedTuple):
 
 
 class WayOut(NamedTuple):
-    """A transition of an active state of the behaviour that runs under `owner`.
-
-    It is `open` unless something is known to stand against it. `due` is when its timer ends [s]; None without one.
-    """
+    """A transition of an active state."""
 
     owner: str
+    """The ids under which its behaviour runs; empty for the outermost."""
     machine: MachineDefinition
+    """The machine of that behaviour."""
     transition: Transition
+    """The transition."""
     open: bool
+    """False if something is known to prevent it."""
     guard: GuardTruth | None
+    """Its guard at this moment; None if it has none."""
     why: str
+    """What prevents it or what it waits for, in words."""
     due: float | None = None
+    """When its timer ends [s]; None without one."""
 
 
 class Running(NamedTuple):
-    """A behaviour that runs: under which ids (none for the outermost), which, where it stands, and by which path.
-
-    `prefix` stands before the names of its states (`quiz/`), `host` is the path of the state that has invoked it.
-    """
+    """A behaviour that runs."""
 
     owner: str
+    """The ids under which it runs; empty for the outermost."""
     machine: MachineDefinition
+    """Its machine."""
     snapshot: Snapshot
+    """Its snapshot."""
     prefix: str = ""
+    """The prefix of its states' names: `quiz/`."""
     host: str = ""
+    """The path of the state that has invoked it."""
 
 
 def running(machine: MachineDefinition, snapshot: Snapshot, owner: str = "", host: str = "") -> Iterator[Running]:
-    """A behaviour and those that run within it, each after its host."""
+    """Yield a behaviour and those that run within it, each after its host."""
     yield Running(owner, machine, snapshot, prefix_of(owner), host)
     for id, child in snapshot.invoked.items():
         inner = machine.invoked[machine.invoked_behavior(child.state, id)]
@@ -64,9 +70,9 @@ def running(machine: MachineDefinition, snapshot: Snapshot, owner: str = "", hos
 
 
 def ways_out(machine: MachineDefinition, snapshot: Snapshot, at: float, event: Event | None = None) -> Iterator[WayOut]:
-    """Every way out of the states that are active at `at` [s], innermost first; invoked behaviours' last.
+    """Yield every way out of the states that are active at `at` [s], innermost states first, invoked behaviours last.
 
-    Of an `event`, only those that it selects, and with what it brings.
+    With an `event`, yield only those that it selects, evaluated with its data.
     """
     for one in running(machine, snapshot):
         yield from _out_of(one, snapshot, at, event)
@@ -86,9 +92,9 @@ def _out_of(one: Running, outermost: Snapshot, at: float, event: Event | None) -
 def _ranked(
     configuration: Configuration, asked: "_Asked"
 ) -> Iterator[tuple[CompiledTransition, CompiledTransition | None]]:
-    """Each transition of the active states once, and the one that is always taken in its place, if there is one.
+    """Yield each transition of the active states once, with the rival that is always taken instead, or None.
 
-    It is only where that is so for each of the active atomic states below it.
+    A rival counts only if there is one for each active atomic state below the transition.
     """
     rivals: dict[CompiledTransition, CompiledTransition | None] = {}
     for leaf in configuration.leaves:
@@ -104,7 +110,7 @@ def _ranked(
 
 
 def _covers(one: Transition, other: Transition) -> bool:
-    """Whether whatever selects the other selects this one, too."""
+    """Return whether every event that selects `other` also selects `one`."""
     if one.timed or other.timed or not one.event or not other.event:
         return one.timed == other.timed and one.event == other.event and one.source == other.source
     prefix = one.event.removesuffix(".*")
@@ -112,7 +118,7 @@ def _covers(one: Transition, other: Transition) -> bool:
 
 
 class _Asked:
-    """What is asked of the transitions of one running behaviour; each guard is looked at once."""
+    """The evaluation of one running behaviour's transitions; each guard is evaluated once."""
 
     def __init__(
         self, one: Running, configuration: Configuration, outermost: Snapshot, at: float, event: Event | None
@@ -130,7 +136,7 @@ class _Asked:
         self._known: dict[CompiledTransition, tuple[GuardTruth | None, str]] = {}
 
     def truth(self, transition: CompiledTransition) -> bool | None:
-        """Whether its guard holds; None where that is for the event to say."""
+        """Return whether its guard holds; None if that depends on the event."""
         guard, why = self._guard(transition)
         hears = transition.definition.hears
         if hears and hears.way != "else" and not why:
@@ -152,7 +158,7 @@ class _Asked:
         )
 
     def _guard(self, transition: CompiledTransition) -> tuple[GuardTruth | None, str]:
-        """The truth of its guard, and what of it is false whatever comes; empty where nothing is."""
+        """Return the guard's truth and the part that is false for any event; that text is empty if there is none."""
         found = self._known.get(transition)
         if found is None:
             found = self._known[transition] = self._looked_at(transition)

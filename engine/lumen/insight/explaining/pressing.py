@@ -1,4 +1,4 @@
-"""The buttons of the states that are active, and whether pressing one would lead anywhere now."""
+"""The buttons of the active states, and whether pressing each would have an effect now."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -17,24 +17,26 @@ from lumen.statechart.stepping import step
 from lumen.statechart.values import Snapshot, Step
 
 MAX_NAMED_STATES = 3
-"""Of the states in which a button works."""
+"""The most states that a refusal names as those in which a button works."""
 
 
 class ShownButton(NamedTuple):
-    """A button of an active `state`; `enabled` where its event would be taken now, else `reason` says why not.
-
-    `key` is empty where another one that is shown has it.
-    """
+    """A button of an active state."""
 
     button: Button
+    """The button."""
     state: str
+    """The outside name of its state."""
     key: str
+    """Its key; empty if another button that is shown has the same one."""
     enabled: bool
+    """Whether its event would be taken now."""
     reason: str
+    """Why it would not be taken; empty if it would."""
 
 
 def shown_buttons(machine: MachineDefinition, snapshot: Snapshot, at: float) -> list[ShownButton]:
-    """The buttons of all active states, the innermost first; what stands further in takes the place of its like."""
+    """Return the buttons of all active states, innermost first; a button replaces similar ones of outer states."""
     found: list[ShownButton] = []
     keys: set[str] = set()
     for one in running(machine, snapshot):
@@ -47,7 +49,9 @@ def shown_buttons(machine: MachineDefinition, snapshot: Snapshot, at: float) -> 
 
 
 def pressed(machine: MachineDefinition, snapshot: Snapshot, label: str, at: float, by: str) -> Event | str:
-    """The event of the button of that label, in any language, which `by` presses; why not, where it can't be."""
+    """Return the event of the button with that label, in any language, pressed by `by`; a message if it can't be
+    pressed.
+    """
     shown = shown_buttons(machine, snapshot, at)
     found = sorted((one for one in shown if one.button.named(label)), key=lambda one: not one.enabled)
     if not found:
@@ -60,7 +64,7 @@ def pressed(machine: MachineDefinition, snapshot: Snapshot, label: str, at: floa
 
 
 def refusal_of(machine: MachineDefinition, snapshot: Snapshot, button: Button, at: float) -> str:
-    """Why pressing it would lead nowhere at `at` [s], in people's words; empty where it would."""
+    """Return why pressing a button at `at` [s] would have no effect, in words for people; empty if it would."""
     event = Event(button.event, button.data, at)
     try:
         if takes(step(machine, snapshot, event)):
@@ -72,12 +76,12 @@ def refusal_of(machine: MachineDefinition, snapshot: Snapshot, button: Button, a
 
 
 def takes(step: Step) -> bool:
-    """Whether a transition was taken, here or in an invoked behaviour, for what happened."""
+    """Return whether a step has transitions, here or in an invoked behaviour."""
     return bool(step.transitions) or any(takes(inner) for _, inner in step.invoked)
 
 
 def _active(one: Running) -> Iterator[tuple[str, Button]]:
-    """Each button of a running behaviour once, with the state that it stands in."""
+    """Yield each button of a running behaviour once, with the name of its state."""
     configuration = compiled(one.machine).planner.configuration(one.snapshot.configuration)
     seen: set[str] = set()
     if configuration.finished:
@@ -94,7 +98,7 @@ def _active(one: Running) -> Iterator[tuple[str, Button]]:
 
 
 def _elsewhere(machine: MachineDefinition, event: str) -> str:
-    """Where it would be taken."""
+    """Return which states accept the event, in words."""
     names = [
         prefix_of(owner) + (node.name or inner.id)
         for owner, inner in machines_in(machine)

@@ -1,4 +1,4 @@
-"""Why a transition was not taken: whether its state, its event or its guard stood against it, and what would help."""
+"""Why a transition was not taken: its state, its event or its guard prevented it; and what would help."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -28,29 +28,34 @@ from lumen.talk.sample_sentences import of_row
 Because = Literal["inactive", "no-event", "preempted", "unheard", "guard"]
 ORDER: tuple[Because, ...] = ("guard", "unheard", "preempted", "no-event", "inactive")
 MAX_SAMPLES = 40
-"""Data of an event of which each is tried."""
+"""The most samples of an event's data that are tried."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reason:
-    """Why one way did not lead there; `at` is when that was decided [s since 1970, in UTC].
-
-    `false` is the first part of the guard that was not true. `change` is the smallest one found after which it would
-    have happened, proved by taking the step again with it; where there is none, `note` says why. `number` is that of
-    the recorded step in which it was decided, or of the last one.
-    """
+    """Why one way did not lead to the goal."""
 
     because: Because
+    """The kind of reason."""
     text: str
+    """The reason in words."""
     at: float
+    """When that was decided [s since 1970, in UTC]."""
     place: Place | None = None
+    """The place in the files of the guard or transition; None if unknown."""
     false: GuardPart | None = None
+    """The first part of the guard that was not true."""
     change: ProposedChange | None = None
+    """The smallest change found after which it would have happened, proved by taking the step again; None if none was
+    found.
+    """
     note: str = ""
+    """Why there is no change; empty if there is one."""
     number: int = -1
+    """The number of the recorded step that decided it, or of the last one."""
 
     def to_json(self) -> dict[str, Any]:
-        """An entry of `reasons` of `lumen why-not --format json`."""
+        """Return an entry of `reasons` in the output of `lumen why-not --format json`."""
         false = {"text": self.false.text, "values": dict(self.false.values)} if self.false else None
         return {
             "because": self.because,
@@ -64,16 +69,16 @@ class Reason:
 
 
 class TransitionRefusals:
-    """Asks of single transitions why they were not taken, in the steps from the number `first` on.
+    """Explanations of why single transitions were not taken, in the steps from number `first` on.
 
-    `goal` is the state to which they should lead, empty where they should do something.
+    `goal` is the state that they should enter; empty if the question is about an action.
     """
 
     def __init__(self, history: StepHistory, first: int, goal: str = "") -> None:
         self.history, self.first, self.goal = history, first, goal
 
     def of(self, owner: str, machine: MachineDefinition, transition: Transition) -> Reason:
-        """The nearest reason: what was decided last about it, else what it waits for."""
+        """Return the nearest reason: the last decision about the transition, else the condition that it waits for."""
         for number in reversed(range(self.first, len(self.history.steps))):
             for moment in reversed(self.history.trace(number).moments):
                 if moment.owner != owner or moment.machine.chart.definition is not machine:
@@ -88,7 +93,7 @@ class TransitionRefusals:
         return any(step.moment is moment and transition in step.transitions for step in steps)
 
     def _decided(self, number: int, moment: Moment, found: CompiledTransition) -> Reason:
-        """It was looked at, and its guard was false, or another one was taken."""
+        """Return the reason for a transition that was examined: its guard was false, or another one was taken."""
         one, wanted, machine = self.history.steps[number], found.definition, moment.machine.chart.definition
         scope = moment.scope_of(found.source)
         false = first_false(wanted.guard, scope) if wanted.guard else None
@@ -126,14 +131,16 @@ class TransitionRefusals:
         return Reason("preempted", f"{after}, {who}", at, place, None, change, note, number)
 
     def _rival(self, number: int, moment: Moment, found: CompiledTransition) -> Transition | None:
-        """What was taken in its place: a state within, one before it in the same state, or one in a region beside."""
+        """Return the transition that was taken instead: of an inner state, earlier in the same state, or in another
+        region.
+        """
         taken_then = [t for s in self.history.trace(number).microsteps if s.moment is moment for t in s.transitions]
         group = next((group for group in moment.groups if found in group), ())
         own = [t.definition for t in group]
         return next((t for t in taken_then if t in own), next(iter(taken_then), None))
 
     def _waits(self, owner: str, machine: MachineDefinition, transition: Transition) -> Reason:
-        """Nobody looked at it: its state is not active, or its event did not come."""
+        """Return the reason for a transition that was not examined: its state is inactive, or no event came."""
         last = self.history.steps[-1]
         snapshot, inner = last.step.snapshot, within(last.step.snapshot, owner)
         source, text = machine.states[transition.source], of_transition(machine, transition, owner)
@@ -163,7 +170,7 @@ class TransitionRefusals:
 def _coming(
     machine: MachineDefinition, wanted: Transition, standing: StepSituation, happens: Happens, owner: str
 ) -> ProposedChange | None:
-    """The event that would have it taken, with its data, or how long to wait; None where none was found."""
+    """Return the event with its data, or the time to wait, that would select the transition; None if none was found."""
     change: dict[str, Any]
     if wanted.timed:
         event = due(standing.snapshot)
@@ -187,7 +194,7 @@ def _coming(
 
 
 def _dropped(row: HeardRow, false: GuardPart | None, scope: Scope) -> GuardPart | None:
-    """Return the false part of a row of `hears`: its guard, or the search for its phrases; None if it has none."""
+    """Return the false part of a row of `hears`: its guard, or the search for its phrases; None if all are true."""
     if row.fate == "guard":
         return false
     if row.fate in ("taken", "better row"):
@@ -202,7 +209,7 @@ def _fields(data: Any) -> Mapping[str, Any]:
 
 
 def _names(machine: MachineDefinition, descriptor: str) -> Iterator[str]:
-    """Names of events that a descriptor selects and that may come from outside."""
+    """Yield the names of events that match a descriptor and can come from outside."""
     if descriptor.startswith(("done.", "error.")) or not descriptor:
         return
     prefix = descriptor.removesuffix("*").removesuffix(".")
@@ -214,7 +221,9 @@ def _names(machine: MachineDefinition, descriptor: str) -> Iterator[str]:
 def _standing_in(
     machine: MachineDefinition, snapshot: Snapshot, state: str, wanted: Transition, goal: str
 ) -> Snapshot | bool:
-    """Where it would stand had it been in that state; True where that alone leads on, False where it can't be."""
+    """Return the snapshot after entering that state; True if the entry alone reaches the goal, False if it is
+    impossible.
+    """
     try:
         step = entered_directly(machine, snapshot, state, Event(OPERATOR_GOTO, {"state": state}, snapshot.at))
     except LumenError:

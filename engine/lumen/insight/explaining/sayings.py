@@ -1,4 +1,4 @@
-"""Sayings as tests: whether the row that should take each of them does, and catches what it should."""
+"""Sayings as tests: the right row must take each of them, with the right slots."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
@@ -12,16 +12,20 @@ from lumen.talk.hearing import phrases_in
 
 
 class TriedSaying(NamedTuple):
-    """A saying of a `file`, the key of the row that takes it, and what is `wrong`; both empty if there is nothing."""
+    """The result of one saying."""
 
     file: str
+    """The file of the saying, relative to the project."""
     saying: Saying
+    """The saying."""
     took: str
+    """The key of the row that takes it; empty if none does."""
     wrong: str
+    """The difference from the expected result, in words; empty if there is none."""
 
 
 def tried(sets: Iterable[SayingSet], machines: Mapping[str, MachineDefinition]) -> Iterator[TriedSaying]:
-    """Try the sayings in their states, each with the first values of its behaviour's context."""
+    """Yield the result of each saying in its state, with the initial context of its behaviour."""
     contexts = {name: first_context(machine) for name, machine in machines.items()}
     for each in sets:
         for saying in each.sayings:
@@ -33,7 +37,7 @@ def tried(sets: Iterable[SayingSet], machines: Mapping[str, MachineDefinition]) 
 
 
 def path_of(machine: MachineDefinition, name: str) -> str:
-    """Return the path of the state of that id or path; raise KeyError if there is none."""
+    """Return the path of the state with that id or path. Raises KeyError if there is none."""
     found = next((state.path for state in machine.states.values() if name == state.alias), name)
     return machine.states[found].path
 
@@ -54,7 +58,7 @@ def _wrong(saying: Saying, found: ExplainedSentence) -> str:
 
 
 def _by_guard(saying: Saying, found: ExplainedSentence) -> str:
-    """The guards that decided, if one of them did."""
+    """Return the guards that decided, as the end of a sentence; empty if none did."""
     rows = [row for row in found.rows if row.key == saying.row and (row.guard is False or row.error)]
     if rows:
         return f"; {_guard(rows[0])} {'fails' if rows[0].error else 'is false'} with the initial values of the context"
@@ -69,7 +73,7 @@ def _guard(row: ExplainedRow) -> str:
 
 
 def _same(caught: Any, wanted: Any) -> bool:
-    """Whether that was caught; an entry of a list is named by one of its phrases, several answers by one of them."""
+    """Return whether a value was caught; one phrase of a list's entry is enough, and one of several answers."""
     if isinstance(caught, Mapping) and isinstance(wanted, str):
         return any(folded(wanted) == folded(one) for texts in phrases_in(caught).values() for one in texts)
     return bool(caught == wanted or (isinstance(caught, list | tuple) and wanted in caught))
@@ -82,7 +86,7 @@ def _shown(value: Any) -> str:
 
 
 def caught_text(value: Any) -> str:
-    """Return what a slot caught as text; an entry of a list is named by its first phrase, of several answers each."""
+    """Return what a slot caught as text: the first phrase of a list's entry, all of several answers."""
     if isinstance(value, list | tuple):
         return " | ".join(map(str, value))
     texts = [text for several in phrases_in(value).values() for text in several] if isinstance(value, Mapping) else []

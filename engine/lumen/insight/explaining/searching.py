@@ -22,21 +22,22 @@ from lumen.talk.hearing import said_in
 from lumen.talk.sample_sentences import of_row
 
 MAX_TRIED = 40
-"""Steps that are taken to find a change."""
+"""The most steps that are taken to find a change."""
 MAX_EDITS = 1_000
-"""Sets of values with which a guard is evaluated."""
+"""The most sets of values with which a guard is evaluated."""
 
 MAX_SAID = 24
-"""Sentences that are tried for a row of `hears`."""
+"""The most sentences that are tried for a row of `hears`."""
 _SAID = ("event", "data", "result")
 
 Happens = Callable[[StepSituation], bool]
+"""Whether the expected thing happens in a situation."""
 
 
 def taken(machine: MachineDefinition, owner: str, transition: Transition, goal: str) -> Happens:
-    """Whether a step takes that transition of the behaviour that runs under `owner`, and enters `goal`, if any.
+    """Return a test of whether a step takes that transition of the behaviour `owner`, and enters `goal` if it is given.
 
-    Where a transition leads back by a history, it depends on more than itself what is entered.
+    The goal is checked too, because a transition to a history state may enter any of several states.
     """
 
     def happens(situation: StepSituation) -> bool:
@@ -60,9 +61,9 @@ def smallest_change(
     from_: StepSituation,
     happens: Happens,
 ) -> ProposedChange | None:
-    """The change with the fewest edits by which `wanted` happens; None where none was found among those tried.
+    """Return the change with the fewest edits after which `happens` is true; None if none of those tried was.
 
-    `others` are the transitions that stand before it, whose guards may have to become false.
+    `others` are the transitions that precede `wanted`; their guards may have to become false.
     """
     proposals = islice(_proposals(moment, node, wanted, others, from_.owner), MAX_TRIED)
     return next((change for change in proposals if happens(from_.edited(change))), None)
@@ -71,7 +72,7 @@ def smallest_change(
 def _proposals(
     moment: Moment, node: StateNode, wanted: Transition, others: tuple[Transition, ...], owner: str
 ) -> Iterator[ProposedChange]:
-    """Edits after which the guard holds, by how many there are; the data of an event before what is remembered."""
+    """Yield edits after which the guard holds, fewest first; the data of an event comes before the context."""
     definition, checks = moment.machine.chart.definition, moment.machine.chart.checks
     scope = moment.scope_of(node)
     guards = [t.guard.source for t in (wanted, *others) if t.guard]
@@ -99,13 +100,13 @@ def _proposals(
 
 
 def literals_in(guard: Expression | None) -> list[Any]:
-    """The values that a guard compares something with, and the numbers beside them."""
+    """Return the literals of a guard, and the neighbours of each integer."""
     found = [n.value for n, _ in walk(parse_expression(guard.source)) if isinstance(n, Literal)] if guard else []
     return [beside for value in found for beside in ((value, value + 1, value - 1) if type(value) is int else (value,))]
 
 
 def edited_scope(scope: Scope, edits: Mapping[tuple[str, ...], Any]) -> Scope:
-    """What an expression sees with other values at these paths."""
+    """Return the scope with other values at these paths."""
     seen: dict[str, Any] = {"context": scope.context, "event": scope.event}
     for path, value in edits.items():
         seen = with_value(seen, path, value)

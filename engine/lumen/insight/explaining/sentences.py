@@ -1,4 +1,4 @@
-"""A sentence in a state, row by row: what was found for each row of `hears`, and which one is taken."""
+"""A sentence in a state, row by row: what was found for each row of `hears`, and the row that is taken."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -23,52 +23,60 @@ _DROPPED: Mapping[Dropped, str] = {
 
 
 class FoundPhrase(NamedTuple):
-    """A phrase in a sentence: its name, its words as they were said, and how many of them count.
-
-    `alone` is whether it is a whole clause, None if it need not be. `dropped` is why it does not count for its row, its
-    guard aside; empty if it counts.
-    """
+    """A phrase that was found in a sentence."""
 
     name: str
+    """The name of the phrase as the row's key has it."""
     said: str
+    """Its words as they were said."""
     words: int
+    """The number of words that count."""
     alone: bool | None
+    """Whether it is a whole clause; None if it need not be one."""
     negated: bool
+    """Whether it is negated."""
     asked: bool
+    """Whether it is part of a question."""
     dropped: Dropped
+    """Why it does not count for its row, regardless of the guard; empty if it counts."""
 
     @property
     def counts(self) -> bool:
+        """Whether the phrase counts for its row, regardless of the guard."""
         return not self.dropped
 
 
 class ExplainedRow(NamedTuple):
-    """A row of `hears` in `state`, or another transition that waits for what is heard.
-
-    `found` is the phrase that counts most, or one that does not count. `guard` is None if there is no guard, or if it
-    is not asked; `error` is why it has no value. `caught` is what `heard` is in the row that is taken.
-    """
+    """A row of `hears`, or another transition that waits for a sentence."""
 
     transition: Transition
+    """The transition."""
     state: str
+    """The name of its state."""
     found: FoundPhrase | None = None
+    """The phrase that counts most, else one that does not count; None if none was found."""
     guard: bool | None = None
+    """Whether the guard holds; None if there is none or it is not evaluated."""
     error: str = ""
+    """Why the guard has no value; empty if it has one."""
     taken: bool = False
+    """Whether the row is taken."""
     caught: Mapping[str, Any] = {}
+    """The values of `heard` in the row that is taken."""
 
     @property
     def key(self) -> str:
+        """The key of the row in the file; `on EVENT` for another transition."""
         hears = self.transition.hears
         return hears.key if hears else f"on {self.transition.event}"
 
     @property
     def slots(self) -> dict[str, Any]:
-        """The slots that were caught, and the answer."""
+        """The values of the slots that were caught, and the answer if there is one."""
         return {k: v for k, v in self.caught.items() if k not in ("text", "phrase") and (k, v) != ("answer", None)}
 
     def because(self, taken: "ExplainedRow | None") -> str:
-        """Return why this row is taken or not, in a few words; `taken` is the one that is."""
+        """Return in a few words why this row is taken or not; `taken` is the row that is."""
         hears, found = self.transition.hears, self.found
         if self.taken:
             return "taken"
@@ -85,27 +93,28 @@ class ExplainedRow(NamedTuple):
 
 
 class ExplainedSentence(NamedTuple):
-    """All rows that a state could take a sentence by, in the order in which the file has them, inner states first."""
+    """All rows that could match a sentence in a state, in the order of the file, inner states first."""
 
     rows: tuple[ExplainedRow, ...]
 
     @property
     def taken(self) -> ExplainedRow | None:
+        """The row that is taken; None if there is none."""
         return next((row for row in self.rows if row.taken), None)
 
 
 def explained(
     machine: MachineDefinition, path: str, text: str, context: Mapping[str, Any], language: str = ""
 ) -> ExplainedSentence:
-    """Return what a sentence does in the state at that path: its own rows, and those of the states around it.
+    """Return how a sentence matches in the state at a path: its own rows, and those of the states around it.
 
-    Other regions are not looked at, and `In()` is true for these states only.
+    Other regions are ignored, and `In()` is true for these states only.
     """
     return _Sentence(machine, path, text, context, language).explained()
 
 
 def first_context(machine: MachineDefinition) -> Mapping[str, Any]:
-    """Return the first values of the context; within a `for` the first entry of its list."""
+    """Return the initial context; for a `for`, with the first entry of its list."""
     context = dict(machine.context)
     for loop in (state.for_each for state in machine.states.values() if state.for_each):
         try:
@@ -151,7 +160,7 @@ class _Sentence:
         return ExplainedSentence(tuple(self.row(one, one is taken) for one in waiting))
 
     def first(self, waiting: list[CompiledTransition]) -> CompiledTransition | None:
-        """The transition that is taken: rows of slots alone only if no other is, and `else` only after those."""
+        """Return the transition that is taken: rows of slots alone only if no other is, and `else` only after those."""
         rows = [one for one in waiting if not one.is_otherwise]
         passes = (
             [(one, one.guard) for one in rows],
@@ -171,7 +180,7 @@ class _Sentence:
         return ExplainedRow(one.definition, one.source.name, found, holds, error, taken, caught)
 
     def found(self, row: Hears) -> FoundPhrase | None:
-        """The phrase for a row that counts most, else the one with the most words."""
+        """Return the phrase that counts most for a row, else the one with the most words; None if none was found."""
         nearest = self.hearing.nearest(row.number, self.reading.text, self.context)
         if nearest is None:
             return None
@@ -182,7 +191,7 @@ class _Sentence:
         return FoundPhrase(name, said, find.strength, alone, negated, asked, dropped)
 
     def holds(self, guard: CompiledGuard | None, node: StateNode) -> tuple[bool, str]:
-        """Whether a guard is true in its state, and why it has no value, if it has none."""
+        """Return whether a guard is true in its state, and the error if it has no value."""
         if guard is None:
             return True, ""
         machine = self.machine
@@ -197,6 +206,6 @@ class _Sentence:
 
 
 def _written(row: Hears) -> dict[str, str]:
-    """The names of a row, each as its key has it."""
+    """Return the names of a row as its key writes them, by their full names."""
     words = row.key.split()
     return dict(zip(row.names, "".join(words[bool(row.way) :]).split("|"), strict=True))

@@ -1,4 +1,4 @@
-"""A machine compiled so that each action says where it stands before it is done: for steps that are taken again."""
+"""A machine compiled so that each action reports its path before it runs, for steps that are taken again."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ from lumen.statechart.plans import MicrostepPlanner
 
 
 def traced(definition: MachineDefinition) -> CompiledMachine:
-    """The machine compiled for tracing, on first use, and kept beside its definition."""
+    """Return the machine compiled for tracing; it is compiled on first use and kept on its definition."""
     machine: CompiledMachine | None = definition.__dict__.get("_traced")
     if machine is None:
         chart = Chart(definition)
@@ -37,7 +37,7 @@ def traced(definition: MachineDefinition) -> CompiledMachine:
         planner = MicrostepPlanner(chart)
         invoked = {name: traced(other) for name, other in definition.invoked.items()}
         machine = CompiledMachine(chart, planner, FastPaths(planner), invoked)
-        object.__setattr__(definition, "_traced", machine)  # frozen, and the same for all who hold it
+        object.__setattr__(definition, "_traced", machine)  # frozen, but every holder of the definition shares it
     return machine
 
 

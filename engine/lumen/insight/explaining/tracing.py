@@ -1,4 +1,4 @@
-"""A step taken again, and everything noted on the way: nothing is noted while an exhibition runs."""
+"""A step taken again with everything that happens on the way; nothing is traced while an exhibition runs."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Self
@@ -22,26 +22,32 @@ from lumen.statechart.values import Snapshot, Step, Timer
 
 
 class Moment(NamedTuple):
-    """When it was decided which transitions are taken: for an event, or (`eventless`) for none.
-
-    `owner` are the ids of the invokes under which that behaviour runs, `hint@quiz`; empty for the outermost.
-    """
+    """A decision about which transitions are taken."""
 
     owner: str
+    """The ids of the invokes under which the behaviour runs, as in `hint@quiz`; empty for the outermost."""
     machine: CompiledMachine
+    """The compiled machine that decided."""
     event: Event | None
+    """The event that was processed; None if there was none."""
     eventless: bool
+    """Whether only transitions without an event were considered."""
     configuration: Configuration
+    """The active states."""
     scope: Scope
+    """The scope of the guards."""
     place: str
+    """The place in the hall."""
 
     def scope_of(self, node: StateNode) -> Scope:
-        """What an expression that stands in that state saw."""
+        """Return the scope that an expression in that state saw."""
         return self.scope._replace(state=node.view(self.scope.language, self.place))
 
     @property
     def candidates(self) -> Candidates:
-        """Those among which was chosen, for each active atomic state the innermost first; late ones apart."""
+        """The transitions that were considered, for each active atomic state the innermost first; late ones are
+        separate.
+        """
         if self.eventless or self.event is None:
             return self.configuration.eventless
         if timed := self.configuration.timed(self.event.name):
@@ -50,7 +56,7 @@ class Moment(NamedTuple):
 
     @property
     def groups(self) -> tuple[Group, ...]:
-        """The candidates of each active atomic state in the order in which they are asked: late ones last."""
+        """The candidates of each active atomic state in the order in which they are tried, late ones last."""
         chosen = self.candidates
         passes = zip(chosen, *chosen.later, strict=True)
         return tuple(tuple(dict.fromkeys(t for group in groups for t in group)) for groups in passes)
@@ -58,7 +64,7 @@ class Moment(NamedTuple):
 
 @dataclass(eq=False, slots=True)
 class TracedMicrostep:
-    """A microstep, and which decision led to it; that of a machine which begins has no transitions."""
+    """A microstep and the decision that led to it; the first microstep of a machine has no transitions."""
 
     moment: Moment
     transitions: tuple[Transition, ...]
@@ -67,29 +73,31 @@ class TracedMicrostep:
 
 
 class Deed(NamedTuple):
-    """Something that an action did, or that came about by itself (`where` is empty then).
-
-    `what` is a Command, an Event that was raised, or the id of a `send`; `state` the path of the state in whose
-    `entry`, `do`, `exit` or transitions the action stands. `microstep` is the last one before it in this step.
-    """
+    """Something that an action did, or that happened by itself."""
 
     owner: str
+    """The ids under which the behaviour runs; empty for the outermost."""
     machine: MachineDefinition
+    """The machine."""
     what: Command | Event | str
+    """A command, an event that was raised, or the id of a `send`."""
     where: NodePath
+    """The path of the action in the machine's document; empty if it happened by itself."""
     state: str
+    """The path of the state whose `entry`, `do`, `exit` or transitions contain the action."""
     microstep: TracedMicrostep | None
+    """The last microstep before it in this step."""
 
     @property
     def block(self) -> str:
-        """`entry`, `do` or `exit`; empty for the actions of a transition."""
+        """The block that contains the action: `entry`, `do` or `exit`; empty for the actions of a transition."""
         key = self.where[len(self.machine.states[self.state].where) :][:1]
         return str(key[0]) if key and key[0] in ("entry", "do", "exit") else ""
 
 
 @dataclass(slots=True)
 class Trace:
-    """What happened within a step, in order; `step` is what came of it."""
+    """Everything that happened within a step, in order; `step` is the result."""
 
     moments: list[Moment] = field(default_factory=list)
     microsteps: list[TracedMicrostep] = field(default_factory=list)
@@ -97,25 +105,27 @@ class Trace:
     step: Step | None = None
 
     def entering(self, owner: str, state: str, until: TracedMicrostep | None = None) -> TracedMicrostep | None:
-        """The last microstep that entered the state of that name, `until` one that may be it; else of all."""
+        """Return the last microstep that entered the state of that name, None if none did; `until` is the last one
+        considered.
+        """
         steps = self.microsteps[: self.microsteps.index(until) + 1] if until else self.microsteps
         found = (one for one in reversed(steps) if one.moment.owner == owner and state in one.entered)
         return next(found, None)
 
 
 class TracedContext(ExecutionContext):
-    """A context that notes what becomes of it. `acting` is where the action stands that is being done."""
+    """A context that records what happens in it; `acting` is the path of the action that runs."""
 
     trace: Trace | None = None
     owner = ""
     acting: NodePath = ()
     pending = False
-    """Whether an event has come and nothing was decided yet."""
+    """Whether an event has come and nothing has been decided about it yet."""
     last: TracedMicrostep | None = None
     timers_before: tuple[Timer, ...] = ()
 
     def begin(self, trace: Trace, owner: str) -> Self:
-        """Note from now on."""
+        """Start recording into `trace`, and return the context."""
         self.owner, self.pending, self.timers_before = owner, self.trigger is not None, self.timers
         self.trace = trace
         return self
@@ -138,7 +148,7 @@ class TracedContext(ExecutionContext):
         self._decide(eventless=True)
 
     def _settle(self, taken: tuple[Transition, ...] | None = None) -> None:
-        """Note the decision on the event from outside, and what was taken; without that, nothing was."""
+        """Record the decision on the event from outside, and the transitions taken; None means that none were."""
         assert self.trace is not None
         if self.pending:
             self.pending = False
@@ -205,7 +215,7 @@ class TracedContext(ExecutionContext):
 
 
 def retaken(machine: MachineDefinition, before: Snapshot, event: Event | None) -> Trace:
-    """The step from `before` taken again; without an event the first one, as `initial` takes it."""
+    """Return the trace of the step from `before`; without an event, that of the first step, as in `initial`."""
     program, trace = traced(machine), Trace()
     at = before.at if event is None else max(before.at, event.at)
     context = TracedContext.of(program, before, event, at, Invocations(before.invoked)).begin(trace, "")
@@ -214,7 +224,7 @@ def retaken(machine: MachineDefinition, before: Snapshot, event: Event | None) -
 
 
 def _is_heard(event: Event | None, timers: tuple[Timer, ...]) -> bool:
-    """Whether transitions are asked about an event from outside: not where it lets a `do` go on."""
+    """Return whether an event from outside can select transitions; one that only continues a `do` can't."""
     if event is None or (not event.sendid and answer_of(event)):
         return False
     ended = [t for t in timers if (t.id, t.event) == (event.sendid, event.name)]

@@ -13,7 +13,9 @@ from lumen.statechart.state_sets import StateSets
 
 
 class Way(NamedTuple):
-    """A transition of the behaviour that runs under `owner`, and the action that it leads to, if one is wanted."""
+    """A transition of the behaviour that runs under `owner`, and the action that it leads to; None if a state is
+    sought.
+    """
 
     owner: str
     machine: MachineDefinition
@@ -22,7 +24,7 @@ class Way(NamedTuple):
 
 
 def ways(machine: MachineDefinition, what: str) -> list[Way]:
-    """Every transition that would have led there; a state is meant before a motion or a text of that name."""
+    """Return every transition that leads to `what`; a state has precedence over a motion or a text of that name."""
     if state := state_named(machine, what):
         return list(_into(machine, state))
     found = {id(way.transition): way for deed in deeds(machine, what) for way in _towards(deed)}
@@ -30,7 +32,7 @@ def ways(machine: MachineDefinition, what: str) -> list[Way]:
 
 
 def deeds(machine: MachineDefinition, what: str) -> Iterator[PlacedDeed]:
-    """The actions that say, play or do it."""
+    """Yield the actions that say, play or do `what`."""
     for deed in deeds_in(machine):
         action = deed.action
         if isinstance(action, SayText):
@@ -50,7 +52,7 @@ def _into(machine: MachineDefinition, state: str) -> Iterator[Way]:
 
 
 def entering(machine: MachineDefinition, path: str) -> Iterator[Transition]:
-    """The transitions that enter the state at that path when they are taken, as far as history does not decide."""
+    """Yield the transitions that enter the state at that path, assuming that no history is remembered."""
     chart = compiled(machine).chart
     nothing: History = {}
     sets = StateSets(chart, nothing)
@@ -61,7 +63,7 @@ def entering(machine: MachineDefinition, path: str) -> Iterator[Transition]:
 
 
 def _towards(deed: PlacedDeed) -> Iterator[Way]:
-    """What has to be taken for an action to be done."""
+    """Yield the transitions after which an action runs."""
     for transition in deed.state.transitions:
         inside = deed.where[: len(transition.where)] == transition.where
         if (not deed.block and inside) or (deed.block == "exit" and transition.targets):

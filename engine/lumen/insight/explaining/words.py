@@ -1,4 +1,4 @@
-"""What steps are made of, in words."""
+"""The parts of steps in words."""
 
 import json
 from collections.abc import Mapping
@@ -10,15 +10,16 @@ from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.verbs import verb_of
 
 MAX_VALUE_CHARACTERS = 80
+"""Characters of a value that are shown; a longer value is cut."""
 
 
 def prefix_of(owner: str) -> str:
-    """`quiz/hint/` for what runs as `hint@quiz`: how the names of its states begin."""
+    """Return the prefix of the names of a behaviour's states: `quiz/hint/` for `hint@quiz`."""
     return "".join(f"{id}/" for id in reversed(owner.split("@"))) if owner else ""
 
 
 def of_command(command: Command) -> str:
-    """`says “Hello!”`, `plays dance`, `publishes on `show``."""
+    """Return a command in words: `says “Hello!”`, `plays dance`, `publishes on `show``."""
     match command:
         case Start(_, wanted):
             return of_deed(wanted)
@@ -33,7 +34,7 @@ def of_command(command: Command) -> str:
 
 
 def of_deed(command: BodyCommand) -> str:
-    """`says “Hello!”`, `plays dance`, `asks “how tall are you”`."""
+    """Return a command to the robot in words: `says “Hello!”`, `plays dance`, `asks “how tall are you”`."""
     match command:
         case Say(text):
             return f"says “{text}”"
@@ -44,7 +45,7 @@ def of_deed(command: BodyCommand) -> str:
 
 
 def of_transition(machine: MachineDefinition, transition: Transition, owner: str = "") -> str:
-    """`ask_name → how_are_you, on heard, as GUARD`."""
+    """Return a transition in words: `ask_name → how_are_you, on heard, as GUARD`."""
     prefix = prefix_of(owner)
     source = prefix + (machine.states[transition.source].name or machine.id)
     targets = ", ".join(prefix + (machine.states[path].name or machine.id) for path in transition.targets)
@@ -53,7 +54,7 @@ def of_transition(machine: MachineDefinition, transition: Transition, owner: str
 
 
 def awaited(transition: Transition) -> str:
-    """What a transition waits for."""
+    """Return the event, time or phrase that a transition waits for, in words."""
     if transition.hears:
         return transition.hears.title
     if transition.timed:
@@ -64,24 +65,24 @@ def awaited(transition: Transition) -> str:
 
 
 def of_event(event: Event) -> str:
-    """`heard {"result": "my name is Budi"}`."""
+    """Return an event in words: `heard {"result": "my name is Budi"}`."""
     return event.name if event.data is None else f"{event.name} {shown(event.data)}"
 
 
 def shown(value: Any) -> str:
-    """A value as JSON, cut where it is long."""
+    """Return a value as JSON, cut to `MAX_VALUE_CHARACTERS`."""
     text = json.dumps(value, ensure_ascii=False, default=str)
     return text if len(text) <= MAX_VALUE_CHARACTERS else f"{text[: MAX_VALUE_CHARACTERS - 1]}…"
 
 
 def brought(event: Event) -> dict[str, Any]:
-    """What an event brought, by how expressions call it."""
+    """Return the data of an event, by its names in expressions."""
     if isinstance(event.data, Mapping):
         return {f"event.data.{key}": value for key, value in event.data.items()}
     return {} if event.data is None else {"event.data": event.data}
 
 
 def ordinal(number: int) -> str:
-    """`1st`, `2nd`, `11th`."""
+    """Return an ordinal number: `1st`, `2nd`, `11th`."""
     ending = "th" if number % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
     return f"{number}{ending}"

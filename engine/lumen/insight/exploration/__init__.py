@@ -1,6 +1,7 @@
-"""Explores a behaviour through everything that can happen, and tells where it would never get out again.
+"""The exploration of a behaviour through everything that can happen, to find states with no way out.
 
-What counts as one configuration is said in `abstraction`, what can happen in `stimuli`, what events carry in `samples`.
+`abstraction` defines when two snapshots count as one configuration, `stimuli` what can happen, and `samples` the data
+of events.
 """
 
 from collections.abc import Callable, Mapping
@@ -17,26 +18,31 @@ from lumen.language.machines import MachineDefinition, Transition
 __all__ = ["Exploration", "ExplorationFinding", "PathStep", "Stimulus", "StimulusKind", "explore"]
 
 MAX_CONFIGURATIONS = 10_000
+"""The default bound of an exploration."""
 
 
 @dataclass(frozen=True)
 class Exploration:
-    """What came of a search; `waiting` are configurations that its bound left out.
-
-    `never_entered` and `never_taken` are states and transitions that it did not come upon: what it does not see, or
-    what can't be. `kept` are the properties that hold wherever it came.
-    """
+    """The result of a search."""
 
     findings: tuple[ExplorationFinding, ...]
+    """The faults that were found."""
     configurations: int
+    """The number of configurations that were expanded."""
     steps: int
+    """The number of steps that were taken."""
     waiting: int
+    """The number of configurations that were found but not expanded, because of the bound."""
     never_entered: tuple[str, ...] = ()
+    """The paths of states that the search did not enter: they are unreachable, or beyond its bound or its samples."""
     never_taken: tuple[Transition, ...] = ()
+    """The transitions that the search did not take, for the same reasons."""
     kept: tuple[str, ...] = ()
+    """The names of the properties that hold in every configuration that was found."""
 
     @property
     def complete(self) -> bool:
+        """Whether every configuration that was found was also expanded."""
         return not self.waiting
 
 
@@ -53,10 +59,10 @@ def explore(
 ) -> Exploration:
     """Explore every configuration that can be reached, up to `bound` of them.
 
-    `events` are those that may come from outside, each with the JSON Schema of its data. `home` is the state to come
-    back to; without it, each state of the beginning that has others beside it. What the bound left out may lead
-    anywhere: nothing is found that depends on it. `progress` is called with how many configurations were explored and
-    how many are in sight.
+    `events` are those that may come from outside, each with the JSON Schema of its data. `home` is the state that must
+    stay reachable; if it is empty, each innermost state of the beginning must. A configuration beyond the bound may
+    lead anywhere, so no finding depends on one. `progress` is called with the numbers of configurations that were
+    expanded and that wait.
     """
     search = StateSpaceSearch(machine, events, language=language, epoch=epoch, timezone=timezone)
     for expanded in search.expand(bound):

@@ -1,4 +1,4 @@
-"""When two snapshots count as one: what cannot make a difference is left out, and numbers have an end."""
+"""The rule by which two snapshots count as one: irrelevant parts are left out, and numbers are limited."""
 
 import re
 from bisect import bisect_left
@@ -15,19 +15,21 @@ from lumen.language.numbers import is_number
 from lumen.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 
 MAX_ITEMS_COMPARED = 4
-"""Of a list or map in the context more is not looked at."""
+"""Items of a list or map in the context that are compared; the others are ignored."""
 
 ConfigurationKey = tuple[Any, ...]
+"""The hashable key of a configuration."""
 
 
 class Abstraction:
-    """The key of a snapshot: equal keys, one configuration.
+    """The key of a snapshot; snapshots with equal keys are one configuration.
 
-    Of the context only keys that can still matter count. Of a number only whether it is one of those near the numbers
-    that the behaviour mentions, or below or above them all; of a text whether it is empty or one that is mentioned;
-    where the behaviour asks for a `size`, of texts, lists and maps also that, as a number.
-    Of a `for` its entry counts, and how many are left. Of a history only what it can still lead back to. Times,
-    ids, what has been drawn and (unless it is asked for) the language do not count.
+    Only context keys that can still matter count. A number counts as itself near the numbers that the behaviour
+    mentions, else as below or above them all. A text counts as empty, as one that is mentioned, or as another. If the
+    behaviour uses `size`, the lengths of texts, lists and maps count as numbers too.
+
+    Of a `for`, the entry and the number of entries left count; of a history, only what it can still restore. Times,
+    ids, random numbers and (unless a guard reads it) the language do not count.
     """
 
     def __init__(self, machine: MachineDefinition) -> None:
@@ -49,6 +51,7 @@ class Abstraction:
         self._inner = {behavior: Abstraction(inner) for behavior, inner in machine.invoked.items()}
 
     def key(self, snapshot: Snapshot) -> ConfigurationKey:
+        """Return the key of the configuration that a snapshot belongs to."""
         live = self._liveness.of(snapshot.configuration, snapshot.history)
         if live not in self._sorted:
             self._sorted[live] = tuple(sorted(live | self._always_live))
@@ -64,16 +67,16 @@ class Abstraction:
         )
 
     def _goes_on(self, use: ExpressionUse) -> bool:
-        """Whether it is what a `for` goes through its list by: its numbers are none that the behaviour mentions."""
+        """Return whether an expression is how a `for` goes through its list; its numbers are not the behaviour's."""
         paths = [path_of(node) for node, _ in walk(use.tree)]
         return any(path and path[0] == "context" and "left" in path and path[1] in self._loops for path in paths)
 
     def _known(self, key: str, value: Any) -> Any:
-        """What of a key of the context counts: of a `for` the entry, and how many are left."""
+        """Return the relevant part of a context value; of a `for`, that is the entry and the number of entries left."""
         return (self.value(value["entry"]), len(value["left"])) if key in self._loops else self.value(value)
 
     def _remembered(self, snapshot: Snapshot) -> Iterator[tuple[Any, ...]]:
-        """What histories can still lead back to."""
+        """Yield what histories can still restore."""
         for history, paths in sorted(snapshot.history.items()):
             if self._histories[history] & snapshot.configuration:
                 halted = [(path, _shape(at.position)) for path, at in sorted(snapshot.halted.items()) if path in paths]
@@ -84,7 +87,7 @@ class Abstraction:
         return (id, behavior, self._inner[behavior].key(child.snapshot))
 
     def value(self, value: Any) -> Any:
-        """What of a value counts."""
+        """Return the relevant part of a value."""
         if value is None or isinstance(value, bool):
             return value
         if isinstance(value, int | float):

@@ -1,4 +1,4 @@
-"""Which context keys surely get new values: an expression may fail, and then the key keeps its old one."""
+"""The context keys that certainly get new values: if an expression fails, its key keeps the old one."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ from lumen.language.machines import Transition
 
 
 def assigned_on_entry(block: tuple[PlacedAction, ...]) -> frozenset[str]:
-    """The keys that a block surely gives new values, whatever they were."""
+    """Return the keys that a block certainly gives new values that do not depend on the old ones."""
     return frozenset(
         key
         for step in block
@@ -23,10 +23,10 @@ def assigned_on_entry(block: tuple[PlacedAction, ...]) -> frozenset[str]:
 
 
 def assigned_by(transition: Transition, caught: frozenset[str] = frozenset()) -> frozenset[str]:
-    """The keys that its actions surely give new values: up to the first action that may fail.
+    """Return the keys that a transition's actions certainly give new values, up to the first action that may fail.
 
-    What its guard has computed from the event, which it has if it is true, can be computed again. `caught` is what
-    `heard` surely has there.
+    An expression that the guard has evaluated from the event alone can't fail later: the guard was true. `caught` are
+    the keys that `heard` certainly has there.
     """
     guard = tree_of(transition.guard.source) if transition.guard else None
     known = {unparse(node) for node in _computed(guard)} if guard else set()
@@ -43,7 +43,7 @@ def assigned_by(transition: Transition, caught: frozenset[str] = frozenset()) ->
 
 
 def _certain(value: ComputedValue) -> bool:
-    """Whether a value can be had without fail: an expression may have none."""
+    """Return whether a value is certain: an expression, unless it is a literal, may fail."""
     return not isinstance(value, Expression) or isinstance(tree_of(value.source), Literal)
 
 
@@ -55,12 +55,12 @@ def _again(value: Expression, known: set[str], caught: frozenset[str]) -> bool:
 
 
 def _computed(tree: ExpressionNode) -> Iterator[ExpressionNode]:
-    """The parts of a true guard that it has surely computed, and that come to the same for the same event."""
+    """Yield the parts of a true guard that were certainly evaluated and have the same value for the same event."""
     speaks = names(tree)
     if not speaks.context and not speaks.functions & {"In", *clock_functions()}:
         yield tree
     match tree:
-        case Binary() | Unary() | Logic(sign="&&"):  # the other sign takes an error for false
+        case Binary() | Unary() | Logic(sign="&&"):  # `||` counts an error as false, so an operand may have failed
             parts = tuple(children(tree))
         case FunctionCall(function=function) if function != "has":
             parts = tuple(children(tree))

@@ -1,4 +1,4 @@
-"""What a behaviour reads: the expressions on which its way depends, state by state."""
+"""The expressions that decide what a behaviour does, state by state."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
@@ -24,7 +24,7 @@ from lumen.talk.hearing import ENTRY
 
 
 class ExpressionUse(NamedTuple):
-    """An expression, and the context key that its value goes to; no key where the way itself depends on it."""
+    """An expression, and the context key that gets its value; the key is empty if the course depends on it."""
 
     tree: ExpressionNode
     key: str = ""
@@ -32,7 +32,7 @@ class ExpressionUse(NamedTuple):
 
 @lru_cache(maxsize=8192)
 def tree_of(source: str) -> ExpressionNode | None:
-    """The tree of an expression, None where it can't be read."""
+    """Return the tree of an expression; None if it is malformed."""
     try:
         return parse_expression(source)
     except ExpressionError:
@@ -40,12 +40,12 @@ def tree_of(source: str) -> ExpressionNode | None:
 
 
 def property_trees(properties: Iterable[Property]) -> Iterator[ExpressionNode]:
-    """The conditions of properties."""
+    """Yield the conditions of properties as trees."""
     yield from filter(None, (tree_of(condition.source) for condition in conditions_of(properties)))
 
 
 def of_transition(transition: Transition) -> Iterator[ExpressionUse]:
-    """What a transition reads: its phrases in a list's entry, its guard, how long it waits, and what its actions do."""
+    """Yield what a transition reads: phrases in a list's entry, its guard, its delay, and its actions' expressions."""
     if transition.hears:
         yield from (use for name in transition.hears.names if name.startswith(ENTRY) for use in _of(Expression(name)))
     if transition.guard:
@@ -55,7 +55,7 @@ def of_transition(transition: Transition) -> Iterator[ExpressionUse]:
 
 
 def of_state(state: State) -> Iterator[ExpressionUse]:
-    """Everything that a state reads, its transitions included."""
+    """Yield everything that a state reads, its transitions included."""
     for block in (state.entry, state.do, state.exit):
         yield from of_block(block)
     for transition in state.transitions:
@@ -65,7 +65,7 @@ def of_state(state: State) -> Iterator[ExpressionUse]:
 
 
 def of_block(block: tuple[PlacedAction, ...]) -> Iterator[ExpressionUse]:
-    """What actions read, except for texts and messages: those change nothing in the behaviour."""
+    """Yield what actions read, except for texts and messages, which change nothing in the behaviour."""
     for step in block:
         match step.action:
             case If(guard, then, otherwise):
@@ -76,7 +76,7 @@ def of_block(block: tuple[PlacedAction, ...]) -> Iterator[ExpressionUse]:
             case Assign(values):
                 for way, value in values.items():
                     yield from _of(value, context_key(way))
-                    if (key := context_key(way)) != way:  # the rest of the map stays
+                    if (key := context_key(way)) != way:  # the other keys of the map stay, so its old value is read
                         yield from _of(Expression(f"context.{key}"), key)
             case Send(data=data, delay=delay):
                 yield from _of(data)
@@ -86,7 +86,7 @@ def of_block(block: tuple[PlacedAction, ...]) -> Iterator[ExpressionUse]:
 
 
 def relevant(machine: MachineDefinition) -> frozenset[str]:
-    """The context keys on which the behaviour's way depends, directly or through others."""
+    """Return the context keys that the behaviour's course depends on, directly or through other keys."""
     uses = [use for state in machine.states.values() for use in of_state(state)]
     found: set[str] = set()
     while True:

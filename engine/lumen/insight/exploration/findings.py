@@ -1,4 +1,4 @@
-"""What should not be among the configurations found: dead ends, no way back, no rest; and the path to each."""
+"""The faults among the configurations found, each with the path to it: dead ends, no way back, no rest."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,34 +15,34 @@ FindingKind = Literal["dead-end", "no-way-back", "restless", "property"]
 
 @dataclass(frozen=True)
 class PathStep:
-    """A step of the path to a finding: the stimulus (None at the beginning), and the states active after it.
-
-    `states` are the innermost ones, those of invoked behaviours (`quiz/ask`) included.
-    """
+    """A step of the path to a finding."""
 
     stimulus: Stimulus | None
+    """What happened; None at the beginning."""
     states: tuple[str, ...]
+    """The innermost states active after it, those of invoked behaviours (`quiz/ask`) included."""
 
 
 @dataclass(frozen=True)
 class ExplorationFinding:
-    """Something that should not be: a dead end, no way back to `home`, a machine that never comes to rest, or a
-    property that does not hold.
-
-    `state` is the path of the state it is about, `path` the shortest one there. A property's place is `where`; to see
-    it broken one waits there for `patience` [s].
-    """
+    """A fault: a dead end, no way back to `home`, a machine that never rests, or a property that does not hold."""
 
     kind: FindingKind
+    """The kind of fault."""
     state: str
+    """The path of the state that it is about."""
     message: str
+    """The fault in words."""
     path: tuple[PathStep, ...]
+    """The shortest path to it."""
     where: NodePath = ()
+    """The place of the property in the file; empty for other faults."""
     patience: float = 0.0
+    """How long to wait at the end of the path to see the property fail [s]."""
 
 
 def findings(machine: MachineDefinition, search: StateSpaceSearch, home: str = "") -> list[ExplorationFinding]:
-    """Everything found; without a `home`, that is each innermost state of the beginning."""
+    """Return all faults; without a `home`, each innermost state of the beginning must be reachable again."""
     nodes = list(search.nodes.values())
     dead = list(_dead_ends(machine, search, nodes))
     homes = [home] if home else [machine.states[p].name for p in leaves(machine, search.first.names)]
@@ -59,7 +59,7 @@ def _restless(machine: MachineDefinition, nodes: list[SearchNode]) -> Iterator[E
 def _dead_ends(
     machine: MachineDefinition, search: StateSpaceSearch, nodes: list[SearchNode]
 ) -> Iterator[ExplorationFinding]:
-    """Where no event, time or answer leads to other states, and the machine is not at its end."""
+    """Yield states that no event, time or answer leaves, unless the machine has ended there."""
     leaving = {s for s in nodes if not s.expanded or s.restless or any(e.names != s.names for e in s.successors)}
     free = reaching(nodes, leaving, inside=True)
     stuck = [s for s in nodes if s not in free and not search.finished(s)]
@@ -76,12 +76,12 @@ def _dead_ends(
 def _no_way_back(
     machine: MachineDefinition, search: StateSpaceSearch, nodes: list[SearchNode], home: str
 ) -> Iterator[ExplorationFinding]:
-    """Where a state can't be reached any more, nor the machine's end."""
+    """Yield states from which neither `home` nor the machine's end can be reached any more."""
     goals = {s for s in nodes if home in s.names or not s.expanded or s.restless or search.finished(s)}
     reached = reaching(nodes, goals)
     lost = [s for s in nodes if s not in reached]
     nearest = _cheapest(machine, lost, _region(machine, home))
-    for path, node in sorted(nearest.items(), key=lambda item: _ahead(item[1])):  # what others only lead to is first
+    for path, node in sorted(nearest.items(), key=lambda item: _ahead(item[1])):  # the ends of paths come first
         name = machine.states[path].name or machine.id
         elsewhere = any(name in s.names for s in nodes if s in reached)
         message = f"from `{name}` there is {'not always a' if elsewhere else 'no'} way back to `{home}`"
@@ -89,7 +89,7 @@ def _no_way_back(
 
 
 def _ahead(node: SearchNode) -> int:
-    """How many nodes can be reached from this one."""
+    """Return how many nodes can be reached from this one, itself included."""
     found, ahead = {node}, [node]
     while ahead:
         fresh = [successor for successor in ahead.pop().successors if successor not in found]
@@ -99,7 +99,7 @@ def _ahead(node: SearchNode) -> int:
 
 
 def _cheapest(machine: MachineDefinition, nodes: list[SearchNode], region: str = "") -> dict[str, SearchNode]:
-    """For each innermost state of a region (of all, where it is not active) the nearest of these nodes."""
+    """Return the nearest node for each innermost state of a region; for all states if the region is inactive."""
     found: dict[str, SearchNode] = {}
     for node in sorted(nodes, key=lambda s: s.cost):
         paths = list(leaves(machine, node.names))
@@ -110,7 +110,7 @@ def _cheapest(machine: MachineDefinition, nodes: list[SearchNode], region: str =
 
 
 def _region(machine: MachineDefinition, name: str) -> str:
-    """The region of the nearest parallel state in which a state lies; empty where there is none."""
+    """Return the region of the nearest parallel state around a state; empty if there is none."""
     path = next(s.path for s in machine.states.values() if s.name == name)
     while (parent := machine.states[path].parent) is not None:
         if machine.states[parent].kind is StateKind.PARALLEL:

@@ -1,4 +1,4 @@
-"""In which states it still matters what a history state remembers: from there on it may be led back to."""
+"""The states in which the content of a history state still matters, because it may be restored from there."""
 
 from collections.abc import Iterator, Mapping
 
@@ -6,10 +6,10 @@ from lumen.language.machines import MachineDefinition, State, StateKind
 
 
 def history_uses(machine: MachineDefinition) -> Mapping[str, frozenset[str]]:
-    """For each history state the names of the states from which it can be led back to before it remembers anew.
+    """Return for each history state the names of the states from which it can be restored before it is overwritten.
 
-    It remembers anew when its parent is left, which entering it, or a state within, comes to. Where a transition leads
-    through is not looked at closely: a state may be named that does not matter, and none that does is left out.
+    It is overwritten when its parent is left, so a path through the parent does not count. The way of a transition is
+    approximated: the result may contain states that do not matter, but misses none that does.
     """
     histories = (state for state in machine.states.values() if state.kind is StateKind.HISTORY)
     return {state.path: _uses(machine, state) for state in histories}
@@ -25,7 +25,7 @@ def _uses(machine: MachineDefinition, history: State) -> frozenset[str]:
 
 
 def _led_to(machine: MachineDefinition, state: State, home: str) -> Iterator[str]:
-    """The paths of what a transition of that state may enter, without entering `home`."""
+    """Yield the paths that a transition of a state may enter without entering `home`."""
     for transition in state.transitions:
         for target in transition.targets:
             kind = machine.states[target].kind

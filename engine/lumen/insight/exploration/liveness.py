@@ -1,7 +1,7 @@
-"""Which context keys can still matter where a behaviour stands: those read before they are given a new value.
+"""The context keys that can still matter in a state: those that are read before they get a new value.
 
-The number of a visitor's tries to tell a name means nothing once nobody will ask for it again; two configurations that
-differ in it alone are one. A history leads back to what it remembers and to nothing else.
+For example, the number of a visitor's attempts does not matter if no state reads it again, so configurations that
+differ only in that number are one. A history restores only what it remembers.
 """
 
 from collections.abc import Iterator, Mapping
@@ -32,7 +32,9 @@ class Liveness:
         self._without_history: dict[frozenset[str], frozenset[str]] = {}
 
     def of(self, configuration: frozenset[str], history: Mapping[str, tuple[str, ...]]) -> frozenset[str]:
-        """The keys that can still matter in a configuration, of which each history remembers these paths."""
+        """Return the keys that can still matter in a configuration; `history` has the paths that each history
+        remembers.
+        """
         live = self._without_history.get(configuration)
         if live is None:
             live = frozenset().union(*(self._by_name[name] for name in configuration))
@@ -46,11 +48,13 @@ class Liveness:
         return frozenset(key for use in uses for key in names(use.tree).context)
 
     def _killed(self, state: State) -> frozenset[str]:
-        """The keys that surely get new values on entering, and that nothing around it may have read before."""
+        """Return the keys that entering a state certainly overwrites and that no state around it can read first."""
         return assigned_on_entry(state.entry).difference(*(self._reads[path] for path in self._around(state.path)))
 
     def _solve(self, leaves: list[str]) -> Mapping[str, frozenset[str]]:
-        """What is read in a leaf or around it, or live after one of its transitions; until nothing is added."""
+        """Return the keys that matter in each leaf: read there or around it, or after one of its transitions (a fixed
+        point).
+        """
         live = {leaf: frozenset().union(*(self._reads[path] for path in self._around(leaf))) for leaf in leaves}
         changed = True
         while changed:
@@ -62,7 +66,9 @@ class Liveness:
         return live
 
     def _successors(self, leaf: str) -> Iterator[tuple[str, frozenset[str]]]:
-        """The leaves that transitions of a leaf or around it may lead to, each with the keys given new values there."""
+        """Yield the leaves that transitions of a leaf or of states around it may enter, each with the keys overwritten
+        then.
+        """
         for transition in (tr for path in self._around(leaf) for tr in self._machine.states[path].transitions):
             killed, domain = assigned_by(transition, self._caught(transition)), self._domain(transition)
             for target in transition.targets:
@@ -72,11 +78,11 @@ class Liveness:
             yield after, frozenset()
 
     def _caught(self, transition: Transition) -> frozenset[str]:
-        """The keys that `heard` always has in the actions of a row of `hears`."""
+        """Return the keys that `heard` always has in the actions of a row of `hears`."""
         return always_caught(self._machine, transition.hears) if transition.hears else frozenset()
 
     def _domain(self, transition: Transition) -> str:
-        """The state within which everything is left and entered (SCXML's `getTransitionDomain`)."""
+        """Return the path of the state within which everything is left and entered (SCXML's `getTransitionDomain`)."""
         source = self._machine.states[transition.source]
         inside = source.kind is StateKind.COMPOUND and all(_within(t, source.path) for t in transition.targets)
         if inside and not transition.reenter:
@@ -86,9 +92,9 @@ class Liveness:
         return next((path for path in compound if all(_within(t, path) for t in transition.targets)), "")
 
     def _entered(self, target: str, domain: str) -> set[str]:
-        """The leaves below a target, and those of the regions beside it that are entered with it in that domain.
+        """Return the leaves below a target, and those of parallel regions that are entered with it in that domain.
 
-        Of a history what it leads to as long as it remembers nothing: `of` knows what it remembers.
+        For a history these are its default leaves: `of` adds what it remembers.
         """
         state = self._machine.states[target]
         if state.kind is StateKind.HISTORY:
@@ -103,7 +109,7 @@ class Liveness:
         return found
 
     def _left_and_entered_again(self, leaf: str) -> Iterator[str]:
-        """The leaves to which a history may lead back that remembers this one, or what it lies in."""
+        """Yield the leaves that a history can restore which remembers this leaf or a state around it."""
         around = list(self._around(leaf))
         histories = [state for state in self._machine.states.values() if state.kind is StateKind.HISTORY]
         homes = {state.parent for state in histories}
@@ -122,7 +128,7 @@ class Liveness:
             yield from self._below(child)
 
     def _around(self, path: str) -> Iterator[str]:
-        """The state and all that it lies in."""
+        """Yield the path of a state and of every state around it, innermost first."""
         place: str | None = path
         while place is not None:
             yield place
@@ -130,5 +136,5 @@ class Liveness:
 
 
 def _within(path: str, outer: str) -> bool:
-    """Whether a state lies below another."""
+    """Return whether a state is below another."""
     return path != outer and (not outer or path.startswith(f"{outer}."))

@@ -1,7 +1,7 @@
-"""Properties that do not hold wherever a behaviour can come, each with the shortest way to see it.
+"""Properties that do not hold in every reachable configuration, each with the shortest way to a counterexample.
 
-A deadline is looked at from each configuration in which `whenever` comes to hold, as long as nothing comes from
-outside: timers end in their order, and the robot does at once what it was told, or fails.
+A deadline is checked from each configuration in which `whenever` becomes true, as long as nothing comes from outside:
+timers end in order, and the robot completes a command at once, or fails.
 """
 
 from collections import deque
@@ -21,11 +21,11 @@ from lumen.statechart.nesting import innermost_names
 from lumen.statechart.property_monitor import holds
 
 MAX_QUIET_STEPS = 2_000
-"""How many steps are looked at from one configuration on."""
+"""The most steps that are examined from one configuration on."""
 
 
 class QuietRun(NamedTuple):
-    """Where a run stands in which nothing comes from outside, and the steps to there."""
+    """The end of a run without input from outside, the commands that are under way, and the steps to there."""
 
     snapshot: Snapshot
     commands: Mapping[str, BodyCommand]
@@ -33,7 +33,7 @@ class QuietRun(NamedTuple):
 
 
 def property_findings(machine: MachineDefinition, search: StateSpaceSearch) -> Iterator[ExplorationFinding]:
-    """A finding for each property of the machine that does not hold."""
+    """Yield a finding for each property of the machine that does not hold."""
     for property in machine.properties:
         broken = search.violations.get(property.name)
         if broken:
@@ -48,7 +48,7 @@ def property_findings(machine: MachineDefinition, search: StateSpaceSearch) -> I
 
 
 def _triggers(machine: MachineDefinition, search: StateSpaceSearch, property: Property) -> list[SearchNode]:
-    """The configurations in which `whenever` comes to hold, the nearest first."""
+    """Return the configurations in which `whenever` becomes true, nearest first."""
     condition = property.whenever
     if condition is None:
         return [search.first]
@@ -60,7 +60,7 @@ def _triggers(machine: MachineDefinition, search: StateSpaceSearch, property: Pr
 def _late(
     machine: MachineDefinition, search: StateSpaceSearch, property: Property, node: SearchNode
 ) -> tuple[QuietRun, SearchNode] | None:
-    """A run from there in which the deadline passes, None where there is none."""
+    """Return a run in which the deadline passes, with the configuration where it starts; None if all runs meet it."""
     assert property.eventually is not None
     deadline = nanoseconds(node.snapshot.at) + nanoseconds(property.within)
     ahead, seen = deque([QuietRun(node.snapshot, node.commands)]), set[object]()
@@ -76,7 +76,7 @@ def _late(
         for stimulus in following:
             try:
                 taken = step(machine, run.snapshot, stimulus.event)
-            except LumenError:  # told as restless
+            except LumenError:  # reported as restless by the search
                 continue
             path = (*run.path, _step(machine, stimulus, taken.snapshot))
             ahead.append(QuietRun(taken.snapshot, still(run.commands, taken.commands, stimulus), path))
@@ -84,7 +84,7 @@ def _late(
 
 
 def _quiet(search: StateSpaceSearch, run: QuietRun) -> list[Stimulus]:
-    """What happens next if nothing comes from outside: the robot's answers, else the timer that is due."""
+    """Return what happens next if nothing comes from outside: the robot's answers, else the timer that is due first."""
     every = list(search.stimuli.of(run.snapshot, run.commands))
     answers = [s for s in every if s.kind in (StimulusKind.DONE, StimulusKind.FAILED)]
     timers = sorted((s for s in every if s.kind is StimulusKind.TIME), key=lambda s: s.event.at)

@@ -1,4 +1,4 @@
-"""Data that events may carry: one of each sort that the guards tell apart, found from the guards themselves."""
+"""Data of events: one sample for each case that the guards distinguish, derived from the guards themselves."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
@@ -23,11 +23,13 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.numbers import is_number
 
 MAX_FIELD_COMBINATIONS = 300
-"""Combinations of fields that are tried."""
+"""The most combinations of fields that are tried."""
 
 SAMPLE_TEXT = "Ani"
+"""A text that no guard mentions."""
 
 FieldPath = tuple[str, ...]
+"""The keys that lead to a field of an event's data."""
 
 
 def samples(
@@ -37,10 +39,9 @@ def samples(
     context: Mapping[str, Any],
     more: Mapping[FieldPath, Iterable[Any]] = MappingProxyType({}),
 ) -> Iterator[Any]:
-    """Data of an event with that JSON Schema, with every field that the trees read at all values they mention.
+    """Yield data of an event with that JSON Schema, with all mentioned values for every field that the trees read.
 
-    `context` is what the behaviour remembers, `more` are other values of fields. Further ones go on where a field has
-    many values; the first is the plainest.
+    The first is the plainest. `context` is the behaviour's context; `more` has further values of fields.
     """
     values: dict[FieldPath, dict[Any, None]] = {path: dict.fromkeys(found) for path, found in more.items()}
     for tree in trees:
@@ -57,7 +58,7 @@ def samples(
 
 
 def _chosen(columns: list[list[Any]]) -> Iterator[tuple[Any, ...]]:
-    """Every combination of a value from each column; where there are too many, every value once."""
+    """Yield every combination of values; if there are more than `MAX_FIELD_COMBINATIONS`, every value once."""
     if prod(map(len, columns)) <= MAX_FIELD_COMBINATIONS:
         yield from product(*columns)
         return
@@ -67,7 +68,7 @@ def _chosen(columns: list[list[Any]]) -> Iterator[tuple[Any, ...]]:
 
 
 def example(schema: Any) -> Any:
-    """Some value that fits a JSON Schema, as plain as can be."""
+    """Return a plain value that fits a JSON Schema."""
     if not isinstance(schema, Mapping):
         return {}
     shown = next(iter(schema.get("examples") or ()), None)
@@ -78,7 +79,7 @@ def example(schema: Any) -> Any:
 
 
 def _plain(schema: Any) -> list[Any]:
-    """A few values of a field, by its schema."""
+    """Return a few values that fit a field's schema."""
     if not isinstance(schema, Mapping) or not schema:
         return [SAMPLE_TEXT, "", 0, True]
     if "const" in schema:
@@ -104,7 +105,7 @@ def _of_kind(kind: str, schema: Mapping[str, Any]) -> list[Any]:
 def _mentioned(
     machine: MachineDefinition, tree: ExpressionNode, context: Mapping[str, Any]
 ) -> Iterator[tuple[FieldPath, list[Any]]]:
-    """For each field of the event's data that stands in the tree, values that it is compared with."""
+    """Yield each field of the event's data in the tree, with values that it is compared with."""
     yield from ((path, []) for path in _fields(tree))
     for node, _ in walk(tree):
         match node:
@@ -122,7 +123,7 @@ def _mentioned(
 
 
 def texts_for(machine: MachineDefinition, function: str, text: str) -> list[Any]:
-    """Texts of which a function with that second argument says something, and others."""
+    """Return texts for which a function with that second argument gives different results."""
     match function:
         case "heard":
             return [phrase for texts in machine.phrases.get(text, {}).values() for phrase in texts]
@@ -137,7 +138,7 @@ def texts_for(machine: MachineDefinition, function: str, text: str) -> list[Any]
 
 
 def phrases_at(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> list[Any]:
-    """Phrases that stand in the context, one for each language."""
+    """Return phrases at a path of the context, the first of each language."""
     value = _in_context(path, context)
     try:
         return [text for texts in phrases_of(value).values() for text in texts[:1]] if value else []
@@ -146,7 +147,7 @@ def phrases_at(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> list
 
 
 def _in_context(path: tuple[str, ...] | None, context: Mapping[str, Any]) -> Any:
-    """The value at a path that begins with `context`; None for any other."""
+    """Return the value at a path that begins with `context`; None for any other path."""
     return value_at(context, path[1:]) if path and path[0] == "context" else None
 
 
@@ -166,7 +167,7 @@ def _compared(other: ExpressionNode, context: Mapping[str, Any], *, sized: bool)
 
 
 def _fields(tree: ExpressionNode) -> Iterator[FieldPath]:
-    """The fields of the event's data in a tree, each as a whole."""
+    """Yield the fields of the event's data in a tree, each as a whole path."""
     path = _field(tree)
     if path is not None:
         yield path

@@ -1,4 +1,4 @@
-"""The search through everything that can happen, the likeliest paths first (uniform cost search)."""
+"""The uniform-cost search through everything that can happen: the likeliest paths first."""
 
 from collections.abc import Iterator, Mapping
 from heapq import heappop, heappush
@@ -17,9 +17,9 @@ from lumen.statechart.property_monitor import holds
 
 
 class SearchNode:
-    """A configuration that was found: one snapshot that stands for it, the cheapest path to it, and where it leads.
+    """A configuration that was found: a snapshot that represents it, the cheapest path to it, and its successors.
 
-    `restless` says how the machine never comes to rest after the stimulus `endless`.
+    `restless` is the error if the machine never comes to rest after the stimulus `endless`; else it is empty.
     """
 
     __slots__ = ("commands", "cost", "endless", "expanded", "parent", "restless", "snapshot", "stimulus", "successors")
@@ -41,11 +41,11 @@ class SearchNode:
 
     @property
     def names(self) -> frozenset[str]:
-        """The active states."""
+        """The names of the active states."""
         return self.snapshot.configuration
 
     def path(self) -> list["SearchNode"]:
-        """The nodes on the path here, this one included."""
+        """Return the nodes on the cheapest path to this one, itself included."""
         node: SearchNode | None = self
         found = []
         while node:
@@ -64,7 +64,7 @@ class BrokenProperty(NamedTuple):
 
 
 class StateSpaceSearch:
-    """Explores a machine up to so many configurations; `nodes` are those found, in that order.
+    """The search through the configurations of a machine; `nodes` are those found, in that order.
 
     `events` are those that may come from outside, each with the JSON Schema of its data.
     """
@@ -94,11 +94,11 @@ class StateSpaceSearch:
 
     @property
     def waiting(self) -> int:
-        """How many configurations were found and not expanded."""
+        """The number of configurations that were found but not expanded."""
         return len(self.nodes) - self.expanded
 
     def expand(self, bound: int) -> Iterator[int]:
-        """Expand nodes, the cheapest first, until none is left or so many are; yields their number."""
+        """Expand nodes, the cheapest first, until `bound` of them are expanded; yield their number after each."""
         while self._waiting and self.expanded < bound:
             cost, _, node = heappop(self._waiting)
             if not node.expanded and cost == node.cost:
@@ -108,11 +108,11 @@ class StateSpaceSearch:
                 yield self.expanded
 
     def finished(self, node: SearchNode) -> bool:
-        """Whether the machine has come to its end there."""
+        """Return whether the machine has ended in that configuration."""
         return self._planner.configuration(node.names).finished
 
     def _expand(self, node: SearchNode) -> None:
-        """Find out where everything that can happen here leads."""
+        """Take a step for everything that can happen in a node."""
         if self.finished(node):
             return
         for stimulus in self.stimuli.of(node.snapshot, node.commands):
@@ -127,7 +127,7 @@ class StateSpaceSearch:
                 node.successors.append(self._reach(taken, node, stimulus))
 
     def _watch(self, snapshot: Snapshot, cost: int, parent: SearchNode | None, stimulus: Stimulus | None) -> None:
-        """Remember the cheapest way to break each property that has to hold always."""
+        """Record the cheapest violation of each property that must always hold."""
         for property in self._machine.properties:
             known = self.violations.get(property.name)
             if (
@@ -158,16 +158,16 @@ class StateSpaceSearch:
 def still(
     commands: Mapping[str, BodyCommand], started: tuple[Command, ...], stimulus: Stimulus | None
 ) -> dict[str, BodyCommand]:
-    """The awaited commands by id, without the one just answered."""
+    """Return the awaited commands by id, without the one that was just answered."""
     answer = answer_of(stimulus.event) if stimulus else None
     kept = {id: c for id, c in commands.items() if not (answer and id == answer.id)}
     return kept | {c.id: c.command for c in started if isinstance(c, Start) and c.id.startswith("d")}
 
 
 def reaching(nodes: list[SearchNode], goals: set[SearchNode], *, inside: bool = False) -> set[SearchNode]:
-    """The nodes from which one of the goals can be reached.
+    """Return the nodes from which one of the goals can be reached.
 
-    With `inside` only paths count on which the active states stay the same.
+    With `inside`, only paths count on which the active states stay the same.
     """
     before: dict[SearchNode, list[SearchNode]] = {}
     for node in nodes:
@@ -184,7 +184,7 @@ def reaching(nodes: list[SearchNode], goals: set[SearchNode], *, inside: bool = 
 
 
 def leaves(machine: MachineDefinition, names: frozenset[str]) -> Iterator[str]:
-    """The innermost of the active states, by path, in the order of the file."""
+    """Yield the paths of the innermost active states, in the order of the file."""
     for state in machine.states.values():
         if state.name in names and not any(machine.states[child].name in names for child in state.children):
             yield state.path

@@ -1,4 +1,4 @@
-"""Everything that can happen next where a behaviour stands: events, timers that end, answers of the robot."""
+"""Everything that can happen next to a behaviour: events, ends of timers, and answers of the robot."""
 
 from collections.abc import Iterator, Mapping
 from enum import StrEnum
@@ -29,7 +29,7 @@ COMPARISONS = frozenset(("==", "!=", "<", "<=", ">", ">=", "in"))
 
 
 class StimulusKind(StrEnum):
-    """Which sort of thing happens: an event from outside, a timer's end, a command's end, or its failure."""
+    """The kind of stimulus: an event from outside, the end of a timer, the end of a command, or its failure."""
 
     EVENT = "event"
     TIME = "time"
@@ -43,36 +43,39 @@ STIMULUS_COSTS: Mapping[StimulusKind, int] = {
     StimulusKind.TIME: 2,
     StimulusKind.FAILED: 7,
 }
-"""What a stimulus costs on the path to the shortest story: a robot that does what it should costs nothing."""
+"""The cost of a stimulus on the path to the shortest story: a robot that does what it should costs nothing."""
 
 OVERTAKING_COST = 5
-"""What it costs besides that a timer ends while a command is under way, or before an earlier one."""
+"""The extra cost if a timer ends during a command, or before an earlier timer."""
 
 MAX_SAID = 20
-"""How many sentences are tried for a row of `hears`."""
+"""The most sentences that are tried for a row of `hears`."""
 
 
 class Stimulus(NamedTuple):
-    """Something that can happen; `event` is what the behaviour steps with.
-
-    `waited` [s] is how long it takes, `pending` what the robot is doing meanwhile; `command` is what is answered.
-    `overtaking` is a timer that ends before one that is due earlier.
-    """
+    """Something that can happen."""
 
     kind: StimulusKind
+    """The kind of stimulus."""
     event: Event
+    """The event that the behaviour processes."""
     waited: float = 0.0
+    """The time until it happens [s]."""
     command: BodyCommand | None = None
+    """The command that is answered; None for other kinds."""
     pending: tuple[BodyCommand, ...] = ()
+    """The commands that the robot is performing meanwhile."""
     overtaking: bool = False
+    """Whether a timer ends before one that is due earlier."""
 
     @property
     def cost(self) -> int:
+        """Its cost on the path to a story."""
         return STIMULUS_COSTS[self.kind] + OVERTAKING_COST * (bool(self.pending) + self.overtaking)
 
 
 class HeardTransition(NamedTuple):
-    """A transition that an event may select, its machine, and what that one remembers."""
+    """A transition that an event may select, with its machine and that machine's context."""
 
     machine: MachineDefinition
     transition: Transition
@@ -80,7 +83,7 @@ class HeardTransition(NamedTuple):
 
 
 class StimulusFinder:
-    """Finds the stimuli; `events` are those that may come from outside, each with the JSON Schema of its data."""
+    """The stimuli of snapshots; `events` are those from outside, each with the JSON Schema of its data."""
 
     def __init__(self, machine: MachineDefinition, events: Mapping[str, Any]) -> None:
         self._machine, self._events = machine, events
@@ -89,7 +92,7 @@ class StimulusFinder:
         self._keys: dict[tuple[Any, ...], tuple[tuple[str, ...], ...]] = {}
 
     def of(self, snapshot: Snapshot, commands: Mapping[str, BodyCommand]) -> Iterator[Stimulus]:
-        """The stimuli of a snapshot; `commands` are those started so far, by id."""
+        """Yield the stimuli of a snapshot; `commands` are those started so far, by id."""
         commanded = [id for id in _awaited(snapshot) if not _is_wait(id)]
         pending = tuple(commands[id] for id in commanded if id in commands)
         for id in commanded:
@@ -111,7 +114,7 @@ class StimulusFinder:
             yield Stimulus(StimulusKind.FAILED, event, 0.0, commands.get(id))
 
     def _data(self, name: str, snapshot: Snapshot) -> tuple[Any, ...]:
-        """Data of an event, one for each sort that the transitions that may hear it tell apart."""
+        """Return samples of an event's data: one for each case that the transitions for it distinguish."""
         if name.startswith(CONTROLLER_EVENT):
             return tuple(_extremes(self._events[name]))
         heard = tuple(_heard(self._compiled, snapshot, name))
@@ -154,30 +157,30 @@ class StimulusFinder:
 
 
 def _uses(heard: HeardTransition) -> Iterator[ExpressionUse]:
-    """What a transition reads, and the states that it enters as they begin: they see the same event."""
+    """Yield what a transition and the entry of its targets read: both see the same event."""
     yield from of_transition(heard.transition)
     for target in heard.transition.targets:
         yield from of_block(heard.machine.states[target].entry)
 
 
 def loop_keys(machine: MachineDefinition) -> frozenset[str]:
-    """The keys of the context that hold the entry of a `for`, found on first use and kept beside the definition."""
+    """Return the context keys that hold the entry of a `for`; they are found once and kept on the definition."""
     found: frozenset[str] | None = machine.__dict__.get("_loop_keys")
     if found is None:
         found = frozenset(state.for_each.key for state in machine.states.values() if state.for_each)
-        object.__setattr__(machine, "_loop_keys", found)  # frozen, and the same for all who hold it
+        object.__setattr__(machine, "_loop_keys", found)  # frozen, but every holder of the definition shares it
     return found
 
 
 def _arrival(command: BodyCommand | None, snapshot: Snapshot) -> Event | None:
-    """What comes before the end of a walk to a place, where the robot is not there yet."""
+    """Return the arrival event that precedes the end of a walk to another place; None for other commands."""
     if not isinstance(command, GoTo) or command.to == snapshot.place:
         return None
     return Event(ARRIVED, {"place": command.to, "doubt": 0.0}, snapshot.at)
 
 
 def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[HeardTransition]:
-    """The transitions that an event of that name may select, here or in what is invoked."""
+    """Yield the transitions that an event of that name may select, here or in invoked behaviours."""
     for transition in machine.planner.configuration(snapshot.configuration).candidates(name).all:
         yield HeardTransition(machine.chart.definition, transition.definition, snapshot.context)
     for id, child in snapshot.invoked.items():
@@ -186,9 +189,10 @@ def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[
 
 
 def _said(heard: tuple[HeardTransition, ...]) -> Iterator[str]:
-    """A text for each name of each row of `hears`, and one that no row has.
+    """Yield a text for each name of each row of `hears`, and one for no row.
 
-    Texts for which their row is the best of its state come first: "no no problems" is no example of `not fine`.
+    If there are texts for which the row is the best of its state, only those are used: "no no problems" is no example
+    of `not fine`.
     """
     for machine, transition, context in heard:
         if row := transition.hears:
@@ -198,13 +202,13 @@ def _said(heard: tuple[HeardTransition, ...]) -> Iterator[str]:
 
 
 def _is_best(machine: MachineDefinition, row: Hears, text: str, context: Mapping[str, Any]) -> bool:
-    """Whether a text is for this row before all others of its state."""
+    """Return whether this row is the best for a text among those of its state."""
     first, late = hearing_of(machine).order(row.number, text, context)
     return next((one.number for one in (*first, *late)), None) == row.number
 
 
 def _orders(heard: tuple[HeardTransition, ...], name: str, data: Any) -> Iterator[Any]:
-    """In which order a text is for the rows of each state."""
+    """Yield the order of the rows of each state for a text."""
     text = said_in({"name": name, "data": data})
     for machine, transition, context in heard:
         if transition.hears:
@@ -213,13 +217,13 @@ def _orders(heard: tuple[HeardTransition, ...], name: str, data: Any) -> Iterato
 
 
 def _extremes(schema: Mapping[str, Any]) -> Iterator[Any]:
-    """What a controller makes of the context at the least, and at the most: of what is heard of it or is not."""
+    """Yield the least and the greatest data that a controller can send."""
     for end in ("minimum", "maximum"):
         yield {key: value[end] for key, value in schema["properties"].items() if end in value}
 
 
 def _known_of_events(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[ExpressionNode]:
-    """The largest parts of an expression that depend on the event's data and on nothing else but it and entries."""
+    """Yield the largest parts of an expression that depend only on the event's data and on entries of `for`."""
     speaks = names(tree)
     alone = speaks.context <= loops and not speaks.functions & {"In", *clock_functions()}
     if alone and "event" in unparse(tree):
@@ -230,7 +234,9 @@ def _known_of_events(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[Ex
 
 
 def _compared(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[ExpressionNode]:
-    """The smallest parts of an expression that depend on the event's data and on the context besides entries."""
+    """Yield the smallest parts of an expression that depend on the event's data and on context other than entries of
+    `for`.
+    """
     within = [node for child in children(tree) for node in _compared(child, loops)]
     yield from within
     compares = tree.sign in COMPARISONS if isinstance(tree, Binary) else isinstance(tree, FunctionCall)
@@ -241,14 +247,14 @@ def _compared(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[Expressio
 
 
 def _compared_keys(heard: HeardTransition) -> tuple[str, ...]:
-    """The keys of the context that a transition compares with the event's data, sorted."""
+    """Return the context keys that a transition compares with the event's data, sorted."""
     loops = loop_keys(heard.machine)
     found = (names(node).context for use in _uses(heard) for node in _compared(use.tree, loops))
     return tuple(sorted(frozenset().union(*found)))
 
 
 def _sort(heard: HeardTransition, source: str, name: str, data: Any) -> str:
-    """What a part of an expression says of an event, where that can be true, false, empty or something."""
+    """Return the result of a part of an expression for an event: its value if it is short, `something` or `fails`."""
     machine, _, context = heard
     scope = Scope(context, {"name": name, "data": data}, phrases=machine.phrases, answers=machine.answers)
     scope = scope._replace(lists=machine.lists, machine=machine)
@@ -260,10 +266,10 @@ def _sort(heard: HeardTransition, source: str, name: str, data: Any) -> str:
 
 
 def _next(snapshot: Snapshot) -> Iterator[Timer]:
-    """The timers that may be the next to end.
+    """Yield the timers that may be the next to end.
 
-    Nobody knows how long ago a state elsewhere was entered; but of those of a state and of the states around it, a
-    shorter one ends before a longer one.
+    It is unknown how long ago an unrelated state was entered; but among the timers of a state and the states around it,
+    a shorter delay ends before a longer one.
     """
     for timer in snapshot.timers:
         around = [t for t in snapshot.timers if t.kind == "after" and _within(timer.state, t.state)]
@@ -278,7 +284,7 @@ def _within(path: str, outer: str) -> bool:
 
 
 def _awaited(snapshot: Snapshot) -> Iterator[str]:
-    """The ids that a `do` waits for, as they are called outside."""
+    """Yield the ids that a `do` waits for, as seen from outside."""
     for position in snapshot.doing.values():
         yield from awaited(position)
     for owner, child in snapshot.invoked.items():
@@ -286,5 +292,5 @@ def _awaited(snapshot: Snapshot) -> Iterator[str]:
 
 
 def _is_wait(id: str) -> bool:
-    """Whether an id is that of a `wait`, which ends with its timer."""
+    """Return whether an id is that of a `wait`, which ends with its timer."""
     return id.startswith("w")

@@ -1,7 +1,8 @@
-"""Lets a running behaviour go on under other files: a pure plan, a reason to wait, or a reason why not.
+"""The migration of a running behaviour to other files: a pure plan, a reason to wait, or a refusal.
 
-The answers are in `verdicts`; which state is which, in `identity`; what stays and where the rest goes, in `placing`;
-whether a `do` under way can go on, in `activity_compatibility`; context, timers and history, in `carried_state`.
+`verdicts` has the three results, `identity` maps states, `placing` decides which states stay and where the others lead,
+`activity_compatibility` whether a `do` under way can continue, and `carried_state` translates context, timers and
+history.
 """
 
 from lumen.insight.migration.migrating import migrated
@@ -17,12 +18,13 @@ __all__ = ["MigrationDelay", "MigrationPlan", "MigrationVerdict", "Refusal", "mi
 def plan(
     old: Project, new: Project, snapshot: Snapshot, *, at: float = 0.0, now: bool = False, back: bool = False
 ) -> MigrationVerdict:
-    """How the behaviour that runs by `old` goes on by `new` from that snapshot at `at` [s]; nothing happens.
+    """Return how a behaviour of `old` at that snapshot continues under `new` at `at` [s]; nothing is performed.
 
-    Active states keep their identity by path or by `renamed`. One that is still there is not entered again, keeps its
-    timers' deadlines and what it does; one that is gone runs its old exit actions, and the nearest `onReload` around
-    says where to go (else a Refusal). Where a `do` under way is gone or changed that is a MigrationDelay; with `now`
-    it is cancelled (a changed one begins anew). The same content gives the same snapshot.
+    Active states keep their identity by path or by `renamed`. A state that still exists is not entered again; its
+    timers keep their deadlines, and its actions continue. A state that is gone runs its old exit actions, and the
+    nearest `onReload` around it names the next state (else a Refusal). If a `do` under way is gone or changed, the
+    result is a MigrationDelay; with `now` the `do` is cancelled instead, and a changed one begins anew. If the content
+    is the same, so is the snapshot.
 
     `back` is a rollback: `new` ran before `old`, whose renamings are undone.
     """
@@ -39,5 +41,5 @@ def migrate(
     now: bool = False,
     back: bool = False,
 ) -> MigrationVerdict:
-    """The plan for machines without a project around them."""
+    """Return the verdict for machines without a project."""
     return migrated(old, new, snapshot, MigrationOptions(at, now, back), new.id)

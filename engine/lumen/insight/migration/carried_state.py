@@ -1,4 +1,4 @@
-"""What a behaviour remembers, translated from an old machine to a new one: context, timers, history."""
+"""A behaviour's memory, translated from an old machine to a new one: context, timers, history."""
 
 from collections.abc import Mapping
 from itertools import combinations
@@ -22,10 +22,10 @@ _LIST = "lists."
 
 
 def carried_round(old: MachineDefinition, new: MachineDefinition, loop: ForEach, value: Mapping[str, Any]) -> Any:
-    """What the key of a `for` holds under the new machine: the same entries as they are written now.
+    """Return the value of a `for` key under the new machine: the same entries in their new form.
 
-    One that is gone is not asked any more; the entry that is being asked stays, even so. Of another list than one under
-    `lists` nothing is known, and nothing changes.
+    Removed entries are skipped, but the present entry stays. A list that is not in `lists` can't be compared, so its
+    value stays the same.
     """
     name = loop.each.source.strip().removeprefix(_LIST)
     before, after = list(old.lists.get(name, ())), list(new.lists.get(name, ()))
@@ -37,7 +37,9 @@ def carried_round(old: MachineDefinition, new: MachineDefinition, loop: ForEach,
 
 
 def _now(entry: Any, before: list[Any], after: list[Any]) -> Any:
-    """An entry of the old list as the new one has it: unchanged wherever it stands, else what took its place."""
+    """Return an old entry's form in the new list: the same if it is still there, else the new entry at its index, or
+    None.
+    """
     if entry in after or entry not in before:
         return entry if entry in after else None
     place = before.index(entry)
@@ -52,7 +54,7 @@ class CarriedContext(NamedTuple):
 
 
 def carried_shared(new: Chart, values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """What the robots have in common: each key that is still there keeps its value where that is of its type."""
+    """Return the values that robots share; each key that still exists keeps its value if it has the key's type."""
     common = dict(new.definition.context[SHARED])
     for key in common.keys() & values.keys():
         if fits(changed := {**common, key: values[key]}, new.checks[SHARED]):
@@ -61,7 +63,9 @@ def carried_shared(new: Chart, values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identity) -> CarriedContext:
-    """Every key still declared keeps its value where that is of the key's type; others have their first values."""
+    """Return the new context: each key that still exists keeps its value if it has the key's type, else its initial
+    value.
+    """
     first, names = new.definition.context, identity.keys()
     kept = {key: values[was] for key, was in names.items() if was in values and fits(values[was], new.checks[key])}
     if new.definition.shared and isinstance(common := values.get(SHARED), Mapping):
@@ -82,7 +86,7 @@ def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identit
 
 
 def halted(halted: Mapping[str, Halted], old: Chart, new: Chart) -> dict[str, Halted]:
-    """Where a `do` stood that was left, for those whose actions are as they were."""
+    """Return the interrupted positions of each `do` whose actions are unchanged."""
     return {
         path: where
         for path, where in halted.items()
@@ -93,10 +97,10 @@ def halted(halted: Mapping[str, Halted], old: Chart, new: Chart) -> dict[str, Ha
 def timers(
     timers: tuple[Timer, ...], kept: Mapping[StateNode, StateNode], context: ExecutionContext
 ) -> tuple[Timer, ...]:
-    """The timers that go on, in their order, each with its deadline; what is new in a state's `after` or `at` is set.
+    """Return the timers that continue, in their order with their deadlines, then new ones of a state's `after` or `at`.
 
-    Where the delay of an `after` was changed, it counts from when the old one was set. One that is computed is so again
-    where it is new or its text was changed, in the new machine's `context`.
+    If the delay of an `after` was changed, it counts from when the old timer was set. A computed delay is computed
+    again, in the new machine's `context`, if it is new or its text was changed.
     """
     images = {node.path: image for node, image in kept.items()}
     going: dict[int, Timer] = {}
@@ -132,12 +136,12 @@ def timers(
 
 
 def _delays(node: StateNode) -> dict[str, int | Template]:
-    """The delays of a state's `after` by their events: [ns], or what computes them."""
+    """Return the delays of a state's `after` by their events: [ns], or a template that computes them."""
     return {**dict(node.afters), **{event: after.delay for event, after in node.computed.items()}}
 
 
 def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int | Template, bool]]:
-    """The events and delays of a new state's `after`, those first (True) that the old one had."""
+    """Return the events and delays of a new state's `after`; those that the old state had (True) come first."""
     before = list(_delays(node).values())
     found = []
     for event, delay in _delays(image).items():
@@ -148,7 +152,7 @@ def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int | Template
 
 
 def history(old: History, new: Chart, identity: Identity) -> dict[str, tuple[str, ...]]:
-    """What each history state that is still there remembers: the states themselves, or the nearest around them."""
+    """Return what each history state that still exists remembers: the states themselves, or the nearest around them."""
     found = {}
     for path, remembered in old.items():
         name = identity.state(path)
@@ -159,9 +163,9 @@ def history(old: History, new: Chart, identity: Identity) -> dict[str, tuple[str
 
 
 def _recalled(history: StateNode, remembered: tuple[str, ...], new: Chart, identity: Identity) -> list[StateNode]:
-    """What a history stands for now, completed as it would be entered; nothing where that can't be any more."""
+    """Return the states that a history restores now, completed as for an entry; empty if they exclude each other."""
     home = history.parent
-    assert home is not None  # only the document has none
+    assert home is not None  # only the document has no parent
     assert history.state is not None  # likewise
     nodes = list(dict.fromkeys(node for path in remembered if (node := _nearest(path, home, new, identity))))
     if not nodes or not all(_together(*pair) for pair in combinations(nodes, 2)):
@@ -183,7 +187,7 @@ def _nearest(path: str, home: StateNode, new: Chart, identity: Identity) -> Stat
 
 
 def _together(one: StateNode, other: StateNode) -> bool:
-    """Whether two states can be active at once."""
+    """Return whether two states can be active at once."""
     if one.lies_below(other) or other.lies_below(one):
         return True
     return next(a for a in one.ancestors if other.lies_below(a)).kind is StateKind.PARALLEL

@@ -1,18 +1,18 @@
-"""Which state of a new machine an active one is: by its path, or by `renamed`."""
+"""The mapping of active states to those of a new machine: by path, or by `renamed`."""
 
 from collections.abc import Iterator, Mapping
 
 from lumen.language.machines import MachineDefinition
 
 CONTEXT_PREFIX = "context."
-"""How `renamed` calls keys of the context: `context.name: context.visitor`."""
+"""The prefix of context keys in `renamed`: `context.name: context.visitor`."""
 
 
 class Identity:
-    """Follows states and context keys from an old machine to a new one.
+    """The mapping of states and context keys from an old machine to a new one.
 
-    A renaming counts once: one that the old machine's file holds already has been followed. A renamed state takes those
-    below it along. `back` is the way to a bundle that ran before: the old machine's renamings are undone.
+    A renaming counts once: one that the old machine's file already contains was followed before. A renamed state
+    includes the states below it. With `back`, the new machine ran before, and the old machine's renamings are undone.
     """
 
     def __init__(self, old: MachineDefinition, new: MachineDefinition, *, back: bool = False) -> None:
@@ -24,7 +24,7 @@ class Identity:
         self._last: Mapping[str, str] = {} if back else again
 
     def state(self, path: str) -> str | None:
-        """The path in the new machine, None where the state is gone."""
+        """Return the path in the new machine; None if the state is gone."""
         for table in (self._first, {path: path}, self._last):
             for prefix in _prefixes(path):
                 if prefix in table:
@@ -37,7 +37,7 @@ class Identity:
         return None
 
     def keys(self) -> Mapping[str, str]:
-        """For each key of the new context the old machine's name of it."""
+        """Return for each key of the new context its name in the old machine."""
         names = {key: key for key in self._new.context}
         for table in (self._last, self._first):
             for was, now in table.items():
@@ -50,14 +50,14 @@ class Identity:
 
 
 def _path(machine: MachineDefinition, name: str) -> str:
-    """The path of the state of that id, else the name as it is."""
+    """Return the path of the state of that id; the name itself if there is none."""
     if name in machine.states:
         return name
     return next((path for path, state in machine.states.items() if path and state.alias == name), name)
 
 
 def _prefixes(path: str) -> Iterator[str]:
-    """The path and those of the states around it, the longest first."""
+    """Yield a path and those of the states around it, longest first."""
     while path:
         yield path
         path = path.rpartition(".")[0]

@@ -1,4 +1,4 @@
-"""Takes a snapshot from an old machine to a new one: leaves what is gone, translates, enters what is new."""
+"""The migration of a snapshot: leaves states that are gone, translates the rest, enters new states."""
 
 from collections.abc import Iterator
 
@@ -20,9 +20,9 @@ from lumen.statechart.values import Invoked, Snapshot, Step
 def migrated(
     old: MachineDefinition, new: MachineDefinition, snapshot: Snapshot, options: MigrationOptions, behavior: str = ""
 ) -> MigrationVerdict:
-    """How the snapshot goes on under the new machine, which stands in behaviors/BEHAVIOR.yaml.
+    """Return how a snapshot continues under the new machine, which is in behaviors/BEHAVIOR.yaml.
 
-    Raises SnapshotError where the snapshot has states that the old machine has not.
+    Raises SnapshotError if the snapshot has states that the old machine lacks.
     """
     if old == new and (not options.languages or snapshot.language in options.languages):
         return MigrationPlan(snapshot)
@@ -46,9 +46,9 @@ def migrated(
 
 
 class _Migration:
-    """One snapshot on its way; `before` is the context of the old machine, `after` that of the new one.
+    """The migration of one snapshot: `before` is the context of the old machine, `after` that of the new one.
 
-    `invocations` are those of the new one.
+    `invocations` belong to the new one.
     """
 
     def __init__(self, situation: Situation, placement: Placement) -> None:
@@ -59,7 +59,9 @@ class _Migration:
         self.after, self.notes = self._translated()
 
     def plan(self, behavior: str) -> MigrationVerdict:
-        """The plan: exits of the old machine, what stays translated, entries of the new one, and what follows."""
+        """Return the plan: exits of the old machine, the translated state, entries of the new machine, and what
+        follows.
+        """
         before, after = self.before, self.after
         leaving = before.commands
         for id, child in before.invocations.children.items():
@@ -73,7 +75,7 @@ class _Migration:
         if not is_legal(self.new.chart, after.configuration.nodes):
             names = ", ".join(f"`{name}`" for name in sorted(after.configuration.names))
             return Refusal(f"{names} can't be active together in the new file", "restart the exhibition", "", behavior)
-        if after.configuration.finished:  # it was before, or is now: nothing begins any more
+        if after.configuration.finished:  # it ended before, or does now: nothing may begin any more
             after.timers, after.beginnings = (), ()
         step = complete(after)
         notes = (*self._destinations(step), *self.notes)
@@ -82,7 +84,7 @@ class _Migration:
         )
 
     def _left(self) -> ExecutionContext:
-        """Leave what does not stay, and end what can't go on, by the old machine."""
+        """Leave states that do not stay and end what can't continue, in the old machine; return its context."""
         situation, snapshot = self.situation, self.situation.snapshot
         invocations = Invocations(snapshot.invoked)
         context = ExecutionContext.of(self.old, snapshot, None, snapshot.at, invocations)
@@ -96,7 +98,7 @@ class _Migration:
         return context
 
     def _translated(self) -> tuple[ExecutionContext, tuple[str, ...]]:
-        """What stays, under the new machine, and notes of what does not; nothing is entered yet."""
+        """Return the context under the new machine, before anything is entered, and notes about what was lost."""
         before, situation, kept = self.before, self.situation, self.placement.kept
         data, notes = carried_state.context(self.old.chart, self.new.chart, before.data, situation.identity)
         spoken, language = situation.options.languages, before.language
@@ -128,7 +130,7 @@ class _Migration:
         return after, notes
 
     def _beginning(self, node: StateNode, image: StateNode) -> Beginning:
-        """What a state that stays did not have before."""
+        """Return the invokes and the `do` that a state that stays did not have before."""
         had = [(invoke.id, invoke.behavior) for invoke in node.invokes]
         invokes = tuple(invoke for invoke in image.invokes if (invoke.id, invoke.behavior) not in had)
         return Beginning(
@@ -136,7 +138,7 @@ class _Migration:
         )
 
     def _adopt(self, id: str, child: Invoked) -> MigrationVerdict:
-        """Let an invoked behaviour go on under its new machine, as part of the new context."""
+        """Migrate an invoked behaviour as part of the new context, and return its verdict."""
         after = self.after
         owner = next(image for node, image in self.placement.kept.items() if node.path == child.state)
         behavior = self.new.chart.definition.invoked_behavior(owner.path, id)
@@ -156,7 +158,7 @@ class _Migration:
         return verdict
 
     def _destinations(self, step: Step) -> Iterator[str]:
-        """A sentence for each state that is gone, and where that leads."""
+        """Yield a sentence for each state that is gone, with the state that the behaviour goes to."""
         gone = [node for node in self.placement.left if self.situation.identity.state(node.path) is None]
         inner = [node for node in gone if not any(child in gone for child in node.children)]
         names = step.snapshot.configuration

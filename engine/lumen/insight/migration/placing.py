@@ -1,4 +1,4 @@
-"""Which active states stay, which are left, and which are entered so that the whole is legal in the new machine."""
+"""The states that stay, that are left and that are entered, so that the configuration is legal in the new machine."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from lumen.statechart.state_sets import EntrySet, StateSets
 
 
 class Placement(NamedTuple):
-    """`kept` maps old states that stay active to new ones; `left` are old ones, `entered` new ones."""
+    """The result: `kept` maps old states that stay active to new ones; `left` are old states, `entered` new ones."""
 
     kept: Mapping[StateNode, StateNode]
     left: frozenset[StateNode]
@@ -19,9 +19,11 @@ class Placement(NamedTuple):
 
 
 class Unplaced(NamedTuple):
-    """What was active in `state` (new) is gone, and nothing says where to go; `gone` is the innermost old one.
+    """A state in which nothing can be active: its active child `gone` was removed, and no `onReload` names another
+    state.
 
-    Or nothing is gone, but several children are active that can't be so together: `rivals`.
+    If several children are active that can't be active together, they are `rivals`. `state` is new, `gone` the
+    innermost old state.
     """
 
     state: StateNode
@@ -30,10 +32,10 @@ class Unplaced(NamedTuple):
 
 
 def place(new: Chart, active: frozenset[StateNode], identity: Identity, history: History) -> Placement | Unplaced:
-    """Where the active states of an old chart stand in the new one; `history` is the new one's.
+    """Return the place of an old chart's active states in the new one; `history` is the new one's.
 
-    Nothing that stays is entered again. Where a compound state has lost the one that was active in it, the nearest
-    `onReload` around says where to go; one that had no states before begins as always.
+    States that stay are not entered again. If a compound state has lost its active child, the nearest `onReload` around
+    it decides; one that had no children before enters its initial state.
     """
     placing = _Placing(new, active, identity)
     while (empty := placing.unplaced()) is not None:
@@ -45,7 +47,7 @@ def place(new: Chart, active: frozenset[StateNode], identity: Identity, history:
 
 
 class _Placing:
-    """The states that stay, while it is found out which."""
+    """The states that stay, during the search for a legal configuration."""
 
     def __init__(self, new: Chart, active: frozenset[StateNode], identity: Identity) -> None:
         self.new, self.active = new, active
@@ -61,7 +63,9 @@ class _Placing:
         return None if found and found.kind is StateKind.HISTORY else found
 
     def _keep(self, leaf: StateNode) -> None:
-        """Keep a leaf and the states around it that are still around it; or those around where it was."""
+        """Keep a leaf and those of its old ancestors that are still around it; if it is gone, those around its old
+        position.
+        """
         chain = [node for node in (leaf, *leaf.ancestors) if node in self.images]
         anchor = next(image for node in chain if (image := self.images[node]) is not None)
         around = {anchor, *anchor.ancestors}
@@ -75,12 +79,12 @@ class _Placing:
                 self.kept[node] = image
 
     def standing(self) -> set[StateNode]:
-        """All that stays or is entered for sure, and what is around it."""
+        """Return every state that certainly stays or is entered, and the states around them."""
         found = {*self.kept.values(), *self.goals}
         return found.union(*(node.ancestors for node in found))
 
     def unplaced(self) -> StateNode | None:
-        """The outermost compound state of which none or several children stand, and that can't just begin."""
+        """Return the outermost compound state that has not exactly one such child and can't enter its initial state."""
         standing = self.standing()
         begins = {self.kept[leaf] for leaf in _leaves(self.active) if leaf in self.kept} | set(self.goals)
         for node in sorted(standing, key=lambda node: node.index):
@@ -90,7 +94,7 @@ class _Placing:
         return None
 
     def lead(self, empty: StateNode, history: History) -> bool:
-        """Follow the nearest `onReload`: what lies in its way is left; False where there is none."""
+        """Follow the nearest `onReload` and drop the states in its domain; return False if there is none."""
         source = next((n for n in (empty, *empty.ancestors) if n.state and n.state.on_reload), None)
         if source is None or source.state is None:
             return False
@@ -102,7 +106,7 @@ class _Placing:
         return True
 
     def finish(self, history: History) -> Placement:
-        """Enter what the states that stay need around, beside and within them."""
+        """Return the placement, with the states around, beside and within those that stay."""
         staying = frozenset(self.kept.values())
         topology = StateSets(self.new, history, staying)
         entered = EntrySet()
@@ -118,7 +122,7 @@ class _Placing:
 
 
 def is_legal(chart: Chart, active: Iterable[StateNode]) -> bool:
-    """Whether these states are a configuration (SCXML 3.11): one child of a compound state, all of a parallel one."""
+    """Return whether states form a configuration (SCXML 3.11): one child of a compound state, all of a parallel one."""
     known = set(active)
     counts = {node: sum(child in known for child in node.children) for node in known}
     needed = {node: {StateKind.COMPOUND: 1, StateKind.PARALLEL: len(node.children)}.get(node.kind, 0) for node in known}
@@ -131,7 +135,7 @@ def _leaves(active: frozenset[StateNode]) -> Iterator[StateNode]:
 
 
 def _gone(empty: StateNode, active: frozenset[StateNode], placing: _Placing) -> StateNode:
-    """The innermost old state that stood in `empty` and does not stay."""
+    """Return the innermost old state in `empty` that does not stay."""
     left = [node for node in active if node not in placing.kept]
     inside = [n for n in left if any(placing.kept.get(a) is empty for a in n.ancestors)]
     return max(inside or left or list(active), key=lambda node: node.index)

@@ -1,4 +1,4 @@
-"""Where a behaviour stands when its files change, and what of that speaks against going on."""
+"""The situation of a behaviour when its files change, and what prevents it from continuing."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -15,10 +15,10 @@ from lumen.statechart.values import Awaiting, Fork, Position, Snapshot, Within
 
 
 def can_continue(before: tuple[PlacedAction, ...], after: tuple[PlacedAction, ...], position: Within) -> bool:
-    """Whether a `do` that stands there finds its place again.
+    """Return whether a `do` at that position can continue in the new actions.
 
-    What has been done already must be of the same verbs, and what is being done the same but for its texts and the
-    length of a `wait`; what comes later may be anything.
+    The actions already done must have the same verbs. The action under way must be the same, except for its texts and
+    the length of a `wait`. Later actions may differ.
     """
     place = position.place
     if place >= len(after) or _shape(before[:place]) != _shape(after[:place]):
@@ -54,21 +54,22 @@ def _shape(steps: tuple[PlacedAction, ...]) -> list[type]:
 
 
 class MigrationOptions(NamedTuple):
-    """The time of the change [s], whether to cancel rather than wait, whether back to a bundle that ran before.
-
-    `languages` are those that may be spoken, the first where the present one is gone; any where there are none.
-    `is_invoked` says that another behaviour invoked it.
-    """
+    """The options of a migration."""
 
     at: float
+    """The time of the change [s]."""
     now: bool = False
+    """Whether to cancel what is under way rather than wait for it."""
     back: bool = False
+    """Whether the new bundle ran before the old one."""
     languages: Sequence[str] = ()
+    """The languages that may be spoken, the first of which replaces one that is gone; any language if empty."""
     is_invoked: bool = False
+    """Whether another behaviour invoked this one."""
 
 
 class Situation:
-    """A snapshot between two machines; `placement` is what stays of it, or for whom there is no place."""
+    """A snapshot between two machines; `placement` has the states that stay, or the one that has no place."""
 
     def __init__(
         self, old: MachineDefinition, new: MachineDefinition, snapshot: Snapshot, options: MigrationOptions
@@ -81,6 +82,7 @@ class Situation:
         self.placement = place(self.new.chart, self.start.nodes, self.identity, history)
 
     def refusal(self, unplaced: Unplaced, behavior: str) -> Refusal:
+        """Return the refusal for a state without a place, with a hint how to fix the file."""
         state, gone, rivals = unplaced
         title = f"`{state.name or behavior}`"
         if len(rivals) > 1:
@@ -94,14 +96,14 @@ class Situation:
         return Refusal(reason, hint, gone.name, behavior, state.state.where if state.state else ())
 
     def still_finished(self) -> bool:
-        """Whether the new machine is at its end, too, where the old one had come to its own."""
+        """Return whether the new machine is at its end as well; the old one has ended."""
         if isinstance(self.placement, Unplaced) or self.placement.left or self.placement.entered:
             return False
         names = frozenset(node.name for node in self.placement.kept.values() if node.path)
         return self.new.planner.configuration(names).finished
 
     def ended_elsewhere(self, behavior: str) -> Refusal:
-        """Why a behaviour that is over does not go on: a reload brings nothing to life."""
+        """Return the refusal for a behaviour that has ended: a reload does not start it again."""
         ends = ", ".join(f"`{node.name}`" for node in self.start.ordered if node.kind is StateKind.FINAL)
         reason = f"the behaviour has ended in {ends}, but in the new files it does not end there"
         return Refusal(
@@ -112,12 +114,12 @@ class Situation:
         )
 
     def busy(self) -> MigrationDelay | None:
-        """The first state that is gone and still does something: it may lead elsewhere by itself."""
+        """Return a delay for the first state that is gone but still busy: it may lead to another state by itself."""
         gone = [node for node in self.start.ordered if node.path and self.identity.state(node.path) is None]
         return next((_gone(node) for node in gone if node.path in self.snapshot.doing), None)
 
     def delays(self, placement: Placement) -> Iterator[MigrationDelay]:
-        """What is under way and could not go on, in the order of the old file."""
+        """Yield what is under way and can't continue, in the order of the old file."""
         doing = self.snapshot.doing
         changed = self.changed(placement)
         for node in self.start.ordered:
@@ -131,7 +133,7 @@ class Situation:
                 yield MigrationDelay(f"`{id}` is no longer invoked, but is still busy", id)
 
     def changed(self, placement: Placement) -> list[StateNode]:
-        """The states that stay, and whose `do` is under way and can't go on."""
+        """Return the states that stay, but whose `do` is under way and can't continue."""
         doing = [(node, image) for node, image in placement.kept.items() if node.path in self.snapshot.doing]
         return [
             node
@@ -141,7 +143,7 @@ class Situation:
         ]
 
     def ending(self, placement: Placement) -> list[str]:
-        """The ids of invoked behaviours that end: their state is left, or invokes another one now."""
+        """Return the ids of invoked behaviours that end: their state is left, or invokes another behaviour now."""
         kept = {node.path: image.path for node, image in placement.kept.items()}
         old, new = self.old.chart.definition, self.new.chart.definition
         return [
@@ -157,5 +159,5 @@ def _gone(node: StateNode) -> MigrationDelay:
 
 
 def _is_busy(snapshot: Snapshot) -> bool:
-    """Whether any `do` is under way in a behaviour or in what it has invoked."""
+    """Return whether a `do` is under way in a behaviour or in one that it has invoked."""
     return bool(snapshot.doing) or any(_is_busy(child.snapshot) for child in snapshot.invoked.values())

@@ -1,4 +1,4 @@
-"""What comes of asking whether a running behaviour can go on under other files."""
+"""The results of a migration: a plan, a delay or a refusal."""
 
 from typing import NamedTuple
 
@@ -9,32 +9,38 @@ from lumen.statechart import Snapshot
 
 
 class MigrationPlan(NamedTuple):
-    """How a behaviour goes on: `snapshot` under the new files, and what has to be done for that.
+    """How a behaviour continues under the new files.
 
-    Perform `leaving` under the old bundle (exit actions and cancels, in the order of exit), then `entering` under the
-    new one. `exited` are names of old states, `entered` of new ones, as in a Step; both are empty where every active
-    state goes on. `notes` are sentences about what somebody could miss: where the behaviour went, what it
-    has forgotten. `sent` is what an invoked behaviour sends meanwhile to the one that invoked it.
+    Perform `leaving` under the old bundle, then `entering` under the new one.
     """
 
     snapshot: Snapshot
+    """The snapshot under the new files."""
     leaving: tuple[Command, ...] = ()
+    """Exit actions and cancels under the old bundle, in the order of exit."""
     entering: tuple[Command, ...] = ()
+    """Commands under the new bundle."""
     exited: tuple[str, ...] = ()
+    """The names of old states that were left; empty, as is `entered`, if every active state continues."""
     entered: tuple[str, ...] = ()
+    """The names of new states that were entered."""
     notes: tuple[str, ...] = ()
+    """Sentences about changes that an operator might miss: the new state, or forgotten values."""
     sent: tuple[Event, ...] = ()
+    """Events that an invoked behaviour sends to its host meanwhile."""
 
     @property
     def commands(self) -> tuple[Command, ...]:
-        """Everything to be performed, in order."""
+        """All commands to be performed, in order."""
         return self.leaving + self.entering
 
 
 class MigrationDelay(NamedTuple):
-    """Not yet: `what` names the state whose `do` (or invoked behaviour) is under way and gone or changed.
+    """The behaviour can't change yet: the `do` of a state, or an invoked behaviour, is under way and is gone or
+    changed.
 
-    Ask again when the behaviour has taken a step, or with `now`, which cancels what is under way.
+    `what` is the name of the state or behaviour. Try again after the next step, or with `now`, which cancels what is
+    under way.
     """
 
     reason: str
@@ -42,17 +48,18 @@ class MigrationDelay(NamedTuple):
 
 
 class Refusal(NamedTuple):
-    """Not from here: `reason` says why, `hint` what would be right.
-
-    `where` is the place in the *new* `behaviors/BEHAVIOR.yaml` where it could be said; `state` the name of the active
-    state that is gone.
-    """
+    """The behaviour can't continue under the new files."""
 
     reason: str
+    """Why it can't."""
     hint: str = ""
+    """A hint how to fix it."""
     state: str = ""
+    """The name of the active state that is gone."""
     behavior: str = ""
+    """The name of the new behaviour's file."""
     where: NodePath = ()
+    """The place in the new `behaviors/BEHAVIOR.yaml` that could be changed."""
 
 
 MigrationVerdict = MigrationPlan | MigrationDelay | Refusal

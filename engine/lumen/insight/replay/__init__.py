@@ -1,5 +1,5 @@
-"""What a journal of inputs holds, and the same steps taken again from it: entries and bundles in, steps out.
+"""The content of a journal of inputs, and its replay: entries and bundles in, steps out.
 
-`entries` are the values, `digest` what a step comes to in eight digits, `replaying` takes the steps again, `visits`
-says where one visit begins and ends, `against` plays a visit under other files.
+`entries` has the values, `digest` reduces a step to eight digits, `replaying` repeats the steps, `visits` finds the
+beginning and end of each visit, and `against` plays a visit under other files.
 """

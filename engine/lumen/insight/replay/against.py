@@ -1,8 +1,8 @@
-"""A visit that was recorded, played again with other files: what would they have said and done?
+"""A recorded visit played again with other files, to see what they would have said and done.
 
-The behaviour goes over to the other files where it was at home last, as in a reload. Then it hears what it heard then,
-when it heard it. What the robot answered to a command then, it answers to the command of now that is in its place: the
-same one, or the next of its kind. A command that has no counterpart takes as long as on the recording robot.
+The behaviour changes to the other files where it was at home last, as in a reload. Then it receives the recorded events
+at their times. A recorded answer goes to the new command in its place: the same command, or the next of its kind. A
+command without a counterpart takes as long as on the recording robot.
 """
 
 import heapq
@@ -26,30 +26,33 @@ from lumen.statechart import Snapshot, Step, deserialize, due, elapse, step
 from lumen.statechart.direct_entry import entered_directly
 
 Duration = Callable[[Project, BodyCommand], float]
-"""How long a command takes [s] where nobody knows how long it took."""
+"""The duration of a command [s] for which the journal has none."""
 
 GRACE = 120.0
-"""How much longer than then a visit may take to come home [s]."""
+"""How much longer than recorded a visit may take to return home [s]."""
 MORE_STEPS, MOST_TIMES = 20_000, 10
-"""How many more steps than then a visit may take, and how many times as many: other files may never come to rest."""
+"""The most additional steps of a visit, and per recorded input: other files may never come to rest."""
 
 
 class VisitVerdict(NamedTuple):
-    """What became of a visit: `same`, `says something else`, or `ends elsewhere`; what `was` said first, and is `now`.
-
-    `at` is when that was, by the exhibition's clock [s]. `steps` were taken. `place` is where in the other files stands
-    what is `now` said, None where nothing is, or nobody knows.
-    """
+    """The result of a visit with other files."""
 
     how: str
+    """`same`, `says something else`, or `ends elsewhere`."""
     steps: int
+    """The number of steps that were taken."""
     at: float = 0.0
+    """When the first difference was, by the exhibition's clock [s]."""
     was: str = ""
+    """The recorded speech or action there."""
     now: str = ""
+    """The new speech or action there."""
     place: Place | None = None
+    """The place in the other files of the new speech or action; None if it is unknown."""
 
 
 SAME, SAYS, ENDS = "same", "says something else", "ends elsewhere"
+"""The values of `VisitVerdict.how`."""
 
 
 def played_against(
@@ -61,10 +64,10 @@ def played_against(
     beside: Project | None = None,
     hurry: Callable[[], None] = lambda: None,
 ) -> VisitVerdict | None:
-    """What becomes of a visit with other files; None where too little of it is in the journal to say.
+    """Return the result of a visit with other files; None if the journal has too little of it.
 
-    It is compared with what was done then, or with what the files `beside` would do. `hurry` is called at each step,
-    and may raise what ends it.
+    It is compared with the record, or with what the files `beside` would do. `takes` gives durations that were
+    not recorded. `hurry` is called at each step and may raise to end the play.
     """
     home = visit.home
     if home is None or not visit.inputs or visit.redacted:
@@ -73,7 +76,7 @@ def played_against(
     play.attend(old, home, visit, hurry)
     if beside is None:
         then = [(entry.event.at, command) for entry in visit.inputs for command in entry.commands]
-        if not visit.whole:  # nobody knows how it would have gone on
+        if not visit.whole:  # the rest of the visit was not recorded
             del play.done[len(then) :]
         return _verdict(play, then, "", home_of(old.machine) if visit.whole else "")
     other = OtherPlay(beside, takes)
@@ -82,7 +85,7 @@ def played_against(
 
 
 def _verdict(play: "OtherPlay", then: list[tuple[float, Any]], trouble: str, home: str) -> VisitVerdict:
-    """`home` is where it ended, empty for anywhere; `trouble` what ended it."""
+    """Compare two plays; `home` is where the visit ended (empty for anywhere), `trouble` the error that ended it."""
     if play.trouble != trouble:
         return VisitVerdict(ENDS, play.steps, play.at, trouble, play.trouble or "no such error")
     was, now = list(noticed(then)), list(noticed(play.done))
@@ -99,7 +102,7 @@ def _verdict(play: "OtherPlay", then: list[tuple[float, Any]], trouble: str, hom
 
 
 def noticed(commands: list[tuple[float, Any]]) -> Iterator[tuple[float, str, int]]:
-    """What others notice of commands, and which it is: without their ids, and without what is only logged."""
+    """Yield the time, the words and the index of each command that others notice: without ids and without logs."""
     for number, (at, command) in enumerate(commands):
         begun = started(command)
         if begun:
@@ -117,9 +120,9 @@ def _words(said: Mapping[str, Any]) -> str:
 
 
 class OtherPlay:
-    """The behaviour of the other files, and the robot that answers it; `done` is what it asked for, and when.
+    """The play of the other files with a simulated robot; `done` has its commands with their times.
 
-    `trouble` is what ended it before the visit did.
+    `trouble` is the error that ended it early, or empty.
     """
 
     def __init__(self, project: Project, takes: Duration) -> None:
@@ -139,21 +142,22 @@ class OtherPlay:
 
     @property
     def snapshot(self) -> Snapshot:
-        """Where it stands, from where it went over to the other files on."""
+        """The present snapshot; only after the change to the other files."""
         assert self._stands is not None
         return self._stands
 
     @property
     def at(self) -> float:
-        """How far it came, by the exhibition's clock [s]."""
+        """How far the play has come, by the exhibition's clock [s]."""
         return self._stands.at if self._stands else self._began
 
     @property
     def is_home(self) -> bool:
+        """Whether the behaviour is at home."""
         return self._stands is not None and self.home in self._stands.configuration
 
     def attend(self, old: Project, home: JournalJump, visit: RecordedVisit, hurry: Callable[[], None]) -> None:
-        """Go over to these files where the behaviour was at home, and live through the visit."""
+        """Change to these files where the behaviour was at home, and play the visit."""
         self._began, self._hurry = home.at, hurry
         self._most = MORE_STEPS + MOST_TIMES * len(visit.inputs)
         try:
@@ -170,7 +174,9 @@ class OtherPlay:
             self.trouble = str(error)
 
     def place(self, number: int) -> Place | None:
-        """Where in the files stands what asked for that one of what was `done`."""
+        """Return the place in the files of the action behind the command of that index in `done`; None if it is
+        unknown.
+        """
         if number < 0:
             return None
         before, event, command = self._asked[number]
@@ -181,7 +187,7 @@ class OtherPlay:
         return next((taken.place(deed.machine, deed.where) for deed in deeds if deed.what == command), None)
 
     def hear(self, entry: JournalInput) -> None:
-        """What happened then, at its time. Raises LumenError."""
+        """Process a recorded event at its time. Raises LumenError if a step fails."""
         at = entry.event.at
         self._pass(at, one=entry.how == "timer")
         if entry.how == "goto":
@@ -196,7 +202,7 @@ class OtherPlay:
         self._pair()
 
     def come_home(self, since: float) -> None:
-        """Let what is under way come to its end, where the visit has not ended by then."""
+        """Continue until the behaviour is at home, if it is not yet; stop `GRACE` after `since` [s]."""
         while not self.is_home:
             timer = due(self.snapshot)
             waiting = [self._answers[0][0]] if self._answers else []
@@ -206,7 +212,7 @@ class OtherPlay:
             self._pass(following)
 
     def _pass(self, until: float, *, one: bool = False) -> None:
-        """Timers and answers that come until then, in their order; of the timers of that very moment only `one`."""
+        """Process timers and answers up to a time, in order; of the timers of that very moment only `one`."""
         while self._answers and self._answers[0][0] <= until:
             at, id, data = heapq.heappop(self._answers)
             self._elapse(at)
@@ -239,7 +245,7 @@ class OtherPlay:
             heapq.heappush(self._answers, (ends, begun[0], usual_result(command.command)))
 
     def _pair(self) -> None:
-        """Find for each command of then its counterpart of now."""
+        """Find for each recorded command its counterpart among the new ones."""
         for parts in (slice(1, 3), slice(1, 2)):  # the same command, then the same kind of command
             for one in list(self._then):
                 other = next((row for row in self._now if one[parts] == row[parts]), None)
@@ -249,9 +255,9 @@ class OtherPlay:
                     self._counterparts[one[0]] = other[0]
 
     def _translated(self, event: Event) -> Event | None:
-        """An event as it is now: an answer has the id of the command of now; None where there is none."""
+        """Return an event with the id of the new command that it answers; None if there is no such command."""
         kind, separator, id = event.name.partition(".command.")
-        if not separator or id not in self._begun:  # of before the visit it is as it was
+        if not separator or id not in self._begun:  # a command from before the visit kept its id
             return event
         self._then = [row for row in self._then if row[0] != id]
         counterpart = self._counterparts.pop(id, None)

@@ -1,4 +1,4 @@
-"""What a step comes to in eight digits: two with the same digest left, entered, asked for and remember the same."""
+"""The digest of a step in eight digits: equal if states left and entered, commands and snapshot are equal."""
 
 import json
 from collections.abc import Mapping, Set
@@ -12,16 +12,16 @@ _encode = json.JSONEncoder(sort_keys=True, separators=(",", ":"), default=lambda
 
 
 class StepDigest:
-    """Gives each step its digest; what a step has left as it was is not read again.
+    """The digests of steps in order; parts that a step left unchanged are not encoded again.
 
-    It is the same in every process, and for a snapshot that was on the disk meanwhile.
+    The digest is the same in every process, and for a snapshot that was read from the disk.
     """
 
     def __init__(self) -> None:
         self._seen: dict[str, tuple[Any, int]] = {}
 
     def __call__(self, step: Step) -> str:
-        """Eight hexadecimal digits. Raises TypeError or ValueError where something in it is not JSON data."""
+        """Return eight hexadecimal digits. Raises TypeError or ValueError if a part of the step is not JSON data."""
         found = 0
         if step.exited or step.entered or step.commands:
             made = [step.exited, step.entered, [command_data(command) for command in step.commands]]

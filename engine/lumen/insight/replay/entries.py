@@ -9,67 +9,81 @@ from lumen.language.events import Event
 from lumen.language.numbers import is_number
 
 How = Literal["heard", "timer", "goto"]
-"""An event from outside, a timer that ran out, and the wish of an operator to enter a state."""
+"""How an event came: from outside, as the end of a timer, or as an operator's wish to enter a state."""
 
 JumpKind = Literal[
     "start", "reload", "rollback", "resume", "forget", "dropped timer", "dropped event", "gap", "keyframe"
 ]
-"""Where a behaviour went on from, by no step: begun, under other files, under those before again, after a crash,
-without somebody's name, without a timer or an event that it could not bear, after entries that were lost. A `keyframe`
-changes nothing; what it `said` is the `mark` of somebody, or the `note` of what they did to the robot themselves, and
+"""The reason why a behaviour continued from a snapshot without a step.
+
+It began, changed to other files (`reload`) or back to earlier ones (`rollback`), continued after a crash (`resume`) or
+without a visitor's name (`forget`), lost a timer or an event that it could not process, or entries were lost (`gap`). A
+`keyframe` changes nothing; its `said` is a person's `mark`, or the `note` of what that person did to the robot, and
 `by` whom.
 """
 
 HOWS: tuple[How, ...] = get_args(How)
+"""All values of `How`."""
 JUMP_KINDS: tuple[JumpKind, ...] = get_args(JumpKind)
+"""All values of `JumpKind`."""
 CAUSE_KINDS: tuple[CauseKind, ...] = get_args(CauseKind)
+"""All values of `CauseKind`."""
 LATEST = 1e11
-"""No time is later [s]: the year 5138."""
+"""The exclusive limit of times [s]: the year 5138."""
 
 
 class JournalInput(NamedTuple):
-    """An event and the step that it made, at its `position` in the journal.
-
-    `commands` are JSON data (`command_data`), `digest` is that of the step, empty where it was `redacted`: the name of
-    somebody who is forgotten was taken out.
-    """
+    """An event and the step that it caused."""
 
     position: int
+    """Its position in the journal."""
     how: How
+    """How the event came."""
     event: Event
+    """The event."""
     exited: tuple[str, ...] = ()
+    """The names of the states that the step left."""
     entered: tuple[str, ...] = ()
+    """The names of the states that the step entered."""
     commands: tuple[Any, ...] = ()
+    """The commands of the step as JSON data (`command_data`)."""
     digest: str = ""
+    """The digest of the step; empty if the entry is redacted."""
     redacted: bool = False
+    """Whether the name of a visitor whose data was deleted was removed."""
 
 
 class JournalJump(NamedTuple):
-    """The behaviour goes on from `snapshot` (frozen, None where it could not be written) at `at` [s].
-
-    It is that of `behavior` in the bundle of that hash. `commands` are those performed for it; `said` holds what is
-    known besides: the arguments of a start, who asked for it, how many entries were lost.
-    """
+    """A point at which the behaviour continues from a snapshot without a step."""
 
     position: int
+    """Its position in the journal."""
     kind: JumpKind
+    """The reason."""
     at: float
+    """The time [s]."""
     bundle: str
+    """The hash of the bundle."""
     behavior: str
+    """The name of the behaviour in the bundle."""
     snapshot: Mapping[str, Any] | None
+    """The frozen snapshot; None if it could not be written."""
     commands: tuple[Any, ...] = ()
+    """The commands that were performed for it, as JSON data."""
     said: Mapping[str, Any] = {}
+    """More details: the arguments of a start, who asked for it, how many entries were lost."""
     redacted: bool = False
+    """Whether the name of a visitor whose data was deleted was removed."""
 
 
 RecordedEntry: TypeAlias = JournalInput | JournalJump
 
 
 def entry_data(entry: RecordedEntry) -> dict[str, Any]:
-    """The entry as JSON data, without its position; what is empty is left out."""
+    """Return an entry as JSON data, without its position and without empty values."""
     match entry:
         case JournalInput(_, how, event, exited, entered, commands, digest, redacted):
-            timer = how == "timer"  # which one it was the snapshot before says
+            timer = how == "timer"  # the snapshot before it contains the timer
             found: dict[str, Any] = {how: event.name, "at": event.at}
             if event.data is not None and not timer:
                 found["data"] = event.data
@@ -90,7 +104,7 @@ def entry_data(entry: RecordedEntry) -> dict[str, Any]:
 
 
 def read_entry(data: Any, position: int) -> RecordedEntry:
-    """The entry in JSON data, at that position. Raises JournalError where it is none."""
+    """Return the entry in JSON data, at that position. Raises JournalError if it is malformed."""
     try:
         return _jump(data, position) if "jump" in data else _input(data, position)
     except (KeyError, TypeError, ValueError, AttributeError, StopIteration, OverflowError):

@@ -1,6 +1,6 @@
-"""What would have been from a moment of a journal on, with another event there or with other files, beside what was.
+"""A fork of a journal at a moment, with another event or other files, beside the recorded course.
 
-Everything that happened then happens again, when it did, as for a visit with other files.
+All other recorded events happen again at their times, as for a visit with other files.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,13 +17,13 @@ from lumen.language.projects import Project
 from lumen.statechart import Snapshot, Step
 
 ProjectSource = Callable[[str, str], Project | None]
-"""The bundle of a hash with that behaviour, None where it was not kept."""
+"""A function that returns the bundle with a hash and a behaviour; None if it was not kept."""
 MAX_STEPS = 200
-"""Inputs of then that are followed, and steps that are told."""
+"""The most recorded inputs that are followed, and the most steps that are returned."""
 
 
 class ForkedRun(NamedTuple):
-    """The entries from there on as they were, and as they would have been; `trouble` ended the latter early."""
+    """The entries from the fork on as they were, and as they would have been; `trouble` ended the latter early."""
 
     was: tuple[dict[str, Any], ...]
     would: tuple[dict[str, Any], ...]
@@ -40,11 +40,11 @@ def fork(
     saved: Project | None = None,
     hurry: Callable[[], None] = lambda: None,
 ) -> ForkedRun:
-    """The fork at the entry of that position, up to where something other than a step follows.
+    """Return the fork at the entry of that position, up to the next entry that is not a step.
 
-    `event` happens in place of what happened there, `saved` are other files. `takes` is how long commands take where
-    nobody knows, `hurry` is called at each step, and may raise. Raises LumenError where it is not known where the
-    behaviour stood.
+    `event` replaces the event there; `saved` are other files. `takes` gives durations of commands that were not
+    recorded; `hurry` is called at each step and may raise. Raises LumenError if the behaviour's state at that position
+    is unknown.
     """
     number = next((n for n, entry in enumerate(entries) if entry.position >= position), len(entries))
     then = _inputs(entries[number:])
@@ -66,7 +66,7 @@ def fork(
 
 
 def _inputs(entries: Sequence[RecordedEntry]) -> list[JournalInput]:
-    """What happened one after another, keyframes left out; `goto` is one, too."""
+    """Return the successive inputs, those of `goto` included, without keyframes."""
     found: list[JournalInput] = []
     for entry in entries:
         if len(found) >= MAX_STEPS or (isinstance(entry, JournalJump) and found and entry.kind != "keyframe"):
@@ -77,7 +77,7 @@ def _inputs(entries: Sequence[RecordedEntry]) -> list[JournalInput]:
 
 
 def _before(entries: Sequence[RecordedEntry], bundles: ProjectSource) -> tuple[Project, Snapshot]:
-    """The files that ran, and where the behaviour stood after these entries. Raises LumenError."""
+    """Return the files that ran and the snapshot after these entries. Raises LumenError if either is unknown."""
     jumps = [n for n, entry in enumerate(entries) if isinstance(entry, JournalJump) and entry.snapshot is not None]
     if not jumps:
         raise LumenError("the behaviour's state at that time is no longer in the journal")
@@ -96,7 +96,7 @@ def _before(entries: Sequence[RecordedEntry], bundles: ProjectSource) -> tuple[P
 
 
 class _Forked(OtherPlay):
-    """Goes on from a snapshot, and tells each step."""
+    """A play that continues from a snapshot and records each step in `told`."""
 
     def __init__(self, project: Project, takes: Duration, hurry: Callable[[], None]) -> None:
         super().__init__(project, takes)
@@ -104,7 +104,7 @@ class _Forked(OtherPlay):
         self.told: list[dict[str, Any]] = []
 
     def go_over(self, old: Project, stands: Snapshot, at: float) -> str:
-        """Stand there with these files; why that can't be, empty where it can."""
+        """Change to the files at that snapshot; return why it is impossible, or an empty text."""
         if self._project is old:
             self._stands = stands
             return ""

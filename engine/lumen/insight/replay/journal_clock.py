@@ -1,4 +1,4 @@
-"""What time it was, by the clock on the wall, when an entry of a journal was made."""
+"""The wall-clock time of the entries of a journal."""
 
 from collections.abc import Mapping
 from datetime import datetime, time, timedelta
@@ -9,13 +9,13 @@ from lumen.language.events import CLOCK_SET
 
 
 class JournalClock:
-    """Follows the entries of a journal: `epoch` is when time 0 was [s since 1970, in UTC]."""
+    """The wall clock of a journal; `epoch` is when its time 0 was [s since 1970, in UTC]."""
 
     def __init__(self) -> None:
         self.epoch, self._timezone = 0.0, ""
 
     def of(self, entry: RecordedEntry) -> float:
-        """When the next entry was made [s since 1970, in UTC]."""
+        """Return when the next entry was made [s since 1970, in UTC]; call it for each entry in order."""
         if isinstance(entry, JournalJump):
             self._set(entry.snapshot)
             return self.epoch + entry.at
@@ -25,11 +25,11 @@ class JournalClock:
         return self.epoch + event.at
 
     def local(self, moment: float) -> datetime:
-        """That moment where the exhibition was."""
+        """Return a moment in the exhibition's time zone."""
         return datetime.fromtimestamp(moment, zone(self._timezone))
 
     def next(self, moment: float, wanted: time) -> float:
-        """The first time after a moment at which the clock there shows what is wanted [s since 1970, in UTC]."""
+        """Return the first time after a moment at which the local clock shows `wanted` [s since 1970, in UTC]."""
         here = self.local(moment)
         then = datetime.combine(here.date(), wanted, here.tzinfo)
         return (then if then >= here else then + timedelta(days=1)).timestamp()

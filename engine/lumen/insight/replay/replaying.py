@@ -1,4 +1,4 @@
-"""The steps of a journal, taken again: entries and bundles in, compared steps out."""
+"""The replay of a journal: entries and bundles in, compared steps out."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator
@@ -14,17 +14,22 @@ from lumen.statechart import Snapshot, Step, deserialize, due, initial, serializ
 from lumen.statechart.direct_entry import entered_directly
 
 MachineSource = Callable[[str, str], MachineDefinition | None]
-"""The machine of a behaviour in the bundle of a hash, None where it was not kept."""
+"""A function that returns the machine of a behaviour in the bundle with a hash; None if it was not kept."""
 
 
 class StepOutcome(NamedTuple):
-    """What a step did, as it was recorded or as it is now; in words, `str`."""
+    """The result of a step, as recorded or as replayed; `str` gives it in words."""
 
     exited: tuple[str, ...]
+    """The names of the states that were left."""
     entered: tuple[str, ...]
+    """The names of the states that were entered."""
     commands: tuple[Any, ...]
+    """The commands as JSON data."""
     digest: str = ""
+    """The digest of the step."""
     trouble: str = ""
+    """The error if the step could not be taken; empty if it could."""
 
     def __str__(self) -> str:
         if self.trouble:
@@ -36,34 +41,38 @@ class StepOutcome(NamedTuple):
 
 
 class ReplayedStep(NamedTuple):
-    """An entry, the step taken again from the snapshot `before`, and whether it is the same: then `was` equals `now`.
-
-    `step` is None for a jump that is no step, and where it could not be taken: then `unknown` says why, as for what
-    somebody was forgotten in.
-    """
+    """An entry with its step taken again."""
 
     entry: RecordedEntry
+    """The entry."""
     machine: MachineDefinition | None = None
+    """The machine that ran; None if its files were not kept."""
     before: Snapshot | None = None
+    """The snapshot from which the step was taken."""
     step: Step | None = None
+    """The step; None for a jump, or if it could not be taken."""
     was: StepOutcome | None = None
+    """The recorded result."""
     now: StepOutcome | None = None
+    """The result of the replay."""
     unknown: str = ""
+    """Why the step can't be taken: the state is unknown, or a visitor's data was deleted from the entry."""
 
     @property
     def differs(self) -> bool:
+        """Whether the replay differs from the record."""
         return self.was != self.now
 
     @property
     def after(self) -> Snapshot | None:
-        """Where the behaviour stands then, None where that is not known."""
+        """The snapshot after the step; None if it is unknown."""
         return self.step.snapshot if self.step else self.before
 
 
 def replay(entries: Iterable[RecordedEntry], machines: MachineSource) -> Iterator[ReplayedStep]:
-    """Each entry with its step, taken again with the bundle that ran then.
+    """Yield each entry with its step, taken again with the bundle that ran then.
 
-    A difference is followed by others until the next keyframe that says where the behaviour stood.
+    After a difference, more follow until the next keyframe with a snapshot.
     """
     replayer = Replayer(machines)
     for entry in entries:
@@ -71,7 +80,7 @@ def replay(entries: Iterable[RecordedEntry], machines: MachineSource) -> Iterato
 
 
 class Replayer:
-    """Where a behaviour stands in its journal; `take` the next entry."""
+    """The replay of a journal, entry by entry."""
 
     def __init__(self, machines: MachineSource) -> None:
         self._machines, self._digest = machines, StepDigest()
@@ -80,7 +89,7 @@ class Replayer:
         self._unknown = "the journal does not contain the time before it"
 
     def take(self, entry: RecordedEntry) -> ReplayedStep:
-        """The entry, and what came of it now. Nothing is raised for what stands in a journal."""
+        """Replay the next entry and return its result. No content of a journal makes it raise."""
         return self._step(entry) if isinstance(entry, JournalInput) else self._jump(entry)
 
     def _step(self, entry: JournalInput) -> ReplayedStep:
@@ -144,7 +153,7 @@ class Replayer:
 
 
 def _taken(machine: MachineDefinition, before: Snapshot, entry: JournalInput) -> Step:
-    """The step of an entry. Raises LumenError where it can't be taken."""
+    """Return the step of an entry. Raises LumenError if it can't be taken."""
     event = entry.event
     if entry.how == "heard":
         return step(machine, before, event)
@@ -159,7 +168,7 @@ def _taken(machine: MachineDefinition, before: Snapshot, entry: JournalInput) ->
 
 
 def _standing(was: Any, now: Any) -> tuple[StepOutcome, StepOutcome]:
-    """What of two frozen snapshots is not the same; the same twice where all is."""
+    """Return the differences between two frozen snapshots, as two outcomes; they are equal if the snapshots are."""
     was, now = json.loads(json.dumps(was)), json.loads(json.dumps(now))
     keys = [key for key in {**was, **now} if was.get(key) != now.get(key)]
     told = [", ".join(f"{key} {json.dumps(one.get(key), ensure_ascii=False)}" for key in keys) for one in (was, now)]

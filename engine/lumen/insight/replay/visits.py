@@ -1,7 +1,7 @@
-"""What a visit is: from the step by which the behaviour leaves its home until the one by which it is back.
+"""The extent of a visit: from the step by which the behaviour leaves its home to the one by which it is back.
 
-Home is the innermost state in which a behaviour begins; where there are regions, that of the first one, in the order of
-the file. It is where `lumen test --explore` looks for a way back to.
+Home is the innermost state in which a behaviour begins; with regions, that of the first one in the order of the file.
+`lumen test --explore` looks for a way back to the same state.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -14,33 +14,38 @@ from lumen.language.machines import MachineDefinition, StateKind
 from lumen.statechart import initial
 
 DROPPED = "dropped timer"
-"""After it timers may be overdue, which then come in an order that no files would repeat."""
+"""A jump after which timers may be overdue, which then end in an order that no files would repeat."""
 BROKEN = ("start", "gap", DROPPED)
-"""Jumps before which something is missing, another run was, or what no files would do again."""
+"""Jumps after which entries are missing, another run begins, or events happen that no files would repeat."""
 
 
 class RecordedVisit(NamedTuple):
-    """A visit, and when it was [s since 1970, in UTC]; `first` and `last` are the positions of its entries.
-
-    `whole` is whether the behaviour came back home, with nothing missing between; `redacted` whether somebody was named
-    in it who is forgotten. `home` says where the behaviour stood before: at home, or where a run began that does not
-    begin there, as that of a museum which is open already. It is None where that is not in the journal, and `inputs`
-    are what happened from that moment on.
-    """
+    """A visit."""
 
     number: int
+    """Its number in the journal, from 1."""
     first: int
+    """The position of its first entry."""
     last: int
+    """The position of its last entry."""
     began: float
+    """When it began [s since 1970, in UTC]."""
     ended: float
+    """When it ended [s since 1970, in UTC]."""
     home: JournalJump | None = None
+    """The jump before it, with the behaviour at home, or where a run began elsewhere (as in a museum that is already
+    open); None if the journal lacks it.
+    """
     inputs: tuple[JournalInput, ...] = ()
+    """The events from `home` on."""
     whole: bool = False
+    """Whether the behaviour came back home with no entry missing."""
     redacted: bool = False
+    """Whether a visitor's data was deleted from it."""
 
 
 def home_of(machine: MachineDefinition) -> str:
-    """The name of the state in which the behaviour waits for a visitor, empty where it can't begin."""
+    """Return the name of the state in which the behaviour waits for a visitor; empty if it can't begin."""
     try:
         active, path = initial(machine).snapshot.configuration, ""
     except LumenError:
@@ -54,7 +59,7 @@ def home_of(machine: MachineDefinition) -> str:
 
 
 class VisitWatch:
-    """Says of one entry after another to which visit it belongs."""
+    """The assignment of entries to visits; pass each entry to `take` in order."""
 
     def __init__(self) -> None:
         self._homes: dict[tuple[str, str], str] = {}
@@ -63,9 +68,9 @@ class VisitWatch:
         self.at = 0.0
 
     def take(self, entry: RecordedEntry, machine: MachineDefinition | None) -> bool:
-        """Whether the entry is part of a visit; `away` is then whether that goes on. `machine` is the one that runs.
+        """Return whether the entry is part of a visit; `machine` is the one that runs.
 
-        `at` is when it was made [s since 1970, in UTC].
+        Afterwards `away` is whether the visit continues, and `at` is when the entry was made [s since 1970, in UTC].
         """
         before, self.at = self.away, self._clock.of(entry)
         match entry:
@@ -79,13 +84,16 @@ class VisitWatch:
                 if entry.kind in ("start", "resume"):
                     return self.away
             case JournalInput(exited=exited, entered=entered):
-                if self._home:  # one step may leave it and enter it several times
+                if self._home:  # one step may leave home and enter it several times
                     self.away = (not self.away) + entered.count(self._home) - exited.count(self._home) < 1
         return before or self.away
 
 
 def visits(entries: Iterable[tuple[RecordedEntry, MachineDefinition | None]]) -> Iterator[RecordedVisit]:
-    """The visits in a journal, each as it ends; the last may not be `whole`. With each entry comes what ran then."""
+    """Yield the visits in a journal, each at its end; each entry comes with the machine that ran.
+
+    The last visit may not be `whole`.
+    """
     watch, number = VisitWatch(), 0
     current: RecordedVisit | None = None
     home: JournalJump | None = None
