@@ -34,7 +34,7 @@ class WhyAnswer:
     """The chain of causes: the effect first, its cause last."""
     needs: tuple[Link, ...] = ()
     """Earlier steps without which it would not have happened, beside those of the chain: steps that entered the states
-    that were active, or set the values that were read. No other step made a difference.
+    that were active, or set the values that were read. Only these, and those that they need in turn, made a difference.
     """
 
     def to_json(self) -> dict[str, Any]:

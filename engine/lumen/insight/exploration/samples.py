@@ -26,7 +26,7 @@ MAX_FIELD_COMBINATIONS = 300
 """The most combinations of fields that are tried."""
 
 SAMPLE_TEXT = "Ani"
-"""A text that no guard mentions."""
+"""A text for fields whose guards mention none."""
 
 FieldPath = tuple[str, ...]
 """The keys that lead to a field of an event's data."""

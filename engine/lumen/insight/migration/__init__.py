@@ -1,8 +1,7 @@
 """The migration of a running behaviour to other files: a pure plan, a reason to wait, or a refusal.
 
 `verdicts` has the three results, `identity` maps states, `placing` decides which states stay and where the others lead,
-`activity_compatibility` whether a `do` under way can continue, and `carried_state` translates context, timers and
-history.
+`situation` whether a `do` under way can continue, and `carried_state` translates context, timers and history.
 """
 
 from lumen.insight.migration.migrating import migrated
