@@ -20,13 +20,16 @@ UNSHOWN = {"__init__", "__call__", "__enter__", "__exit__", "__iter__", "__len__
 FOREIGN = {"object", "Protocol", "Generic", "BaseException"}
 MADE_BY_LUMEN = {"Exhibition"}
 """Classes that only Lumen itself constructs: their arguments are internal."""
+SPLIT = {"lumen.ports"}
+"""Packages that were one module: listed are the names that their modules define, without aliases of types."""
 
 
 def offered(module: ModuleType) -> dict[str, Any]:
-    """The names of a module: those of `__all__`, else what is defined there."""
-    names = getattr(module, "__all__", None)
+    """The names of a module: those of `__all__`, else what is defined there or in modules of it."""
+    names = None if module.__name__ in SPLIT else getattr(module, "__all__", None)
     if names is None:
-        here = (name for name, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__)
+        own = f"{module.__name__}."
+        here = (name for name, value in vars(module).items() if f"{getattr(value, '__module__', '')}.".startswith(own))
         names = [name for name in here if not name.startswith("_")]
     return {name: getattr(module, name) for name in sorted(names)}
 
