@@ -1,8 +1,26 @@
-"""Manifests of features: the names, data and import strings that a feature adds to Lumen."""
+"""The features: what each adds to Lumen, as rows of its manifest.
 
+manifest.py       the kinds of rows; a manifest imports nothing else of Lumen
+checking.py       what is wrong with the manifest of an installed package
+finding.py        all manifests, and their rows by kind and name
+"""
+
+from lumen.feature.checking import wrong_rows
+from lumen.feature.finding import (
+    BUILT_IN,
+    FeatureFault,
+    Found,
+    described,
+    distribution_of,
+    features,
+    found,
+    owner,
+    resolve,
+    rows,
+    table,
+)
 from lumen.feature.manifest import (
     API,
-    BUILT_IN,
     EXPORTED_KINDS,
     IMPORTED_KINDS,
     PART_CONDITIONS,
@@ -12,8 +30,6 @@ from lumen.feature.manifest import (
     EditorRow,
     Exporter,
     Feature,
-    FeatureFault,
-    Found,
     FunctionRow,
     Importer,
     ModuleRow,
@@ -26,15 +42,6 @@ from lumen.feature.manifest import (
     SenseRow,
     Subcommand,
     VerbRow,
-    described,
-    distribution_of,
-    features,
-    found,
-    owner,
-    resolve,
-    rows,
-    table,
-    wrong_rows,
 )
 
 __all__ = [

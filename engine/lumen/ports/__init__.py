@@ -1,57 +1,68 @@
-"""The interfaces of the runtime to the world: robot, bus and clock, and the readings that they exchange."""
+"""The interfaces of the runtime to the world, and the values that they exchange.
 
-from lumen.ports.robot import (
+readings.py       the senses of a robot, and their readings
+robot.py          the commands of a robot, `Robot`, and what only some robots can do
+skills.py         the code of a verb that a feature adds
+world.py          `Clock`, and the hall around a robot: visitors, and what they can do
+bus.py            messages, `Bus`, and what only some buses can do
+"""
+
+from lumen.ports.bus import (
     NUMBERS,
     PREFIX,
     Ability,
-    Advances,
-    Aim,
-    Battery,
     BlockableBus,
     Bus,
-    Clock,
     CountsDrops,
-    Dozes,
     EndsWithExhibition,
+    KnowsListeners,
+    Message,
+    MessageHandler,
+    Outgoing,
+    ReturningBus,
+    SignsMessages,
+    UsesBroker,
+)
+from lumen.ports.readings import (
+    Battery,
+    Image,
+    Joints,
+    NumericReading,
+    PixelSource,
+    Reading,
+    Sense,
+    Sonar,
+    Tactile,
+    Whereabouts,
+)
+from lumen.ports.robot import (
+    Advances,
+    Aim,
+    HasOtherSenses,
+    Idles,
+    Live,
+    NativeCommand,
+    OtherReading,
+    Perform,
+    PerformsVerbs,
+    Record,
+    Robot,
+    RobotCommand,
+    Sole,
+    Strain,
+    Subject,
+)
+from lumen.ports.skills import Settings, SkillCall, SkillPerformer
+from lumen.ports.world import (
+    Clock,
+    Dozes,
     FeelsTouch,
     Hall,
     HasCharger,
-    HasOtherSenses,
     HasSpeed,
     HearsVisitors,
-    Idles,
-    Image,
-    Joints,
-    KnowsListeners,
-    Live,
     MeasuresPace,
-    Message,
-    MessageHandler,
-    NativeCommand,
-    NumericReading,
-    OtherReading,
-    Outgoing,
-    Perform,
-    PerformsVerbs,
-    PixelSource,
     PretendsSkills,
-    Reading,
-    Record,
-    ReturningBus,
-    Robot,
-    RobotCommand,
-    Sense,
-    Settings,
-    SignsMessages,
-    SkillCall,
-    SkillPerformer,
-    Sole,
-    Sonar,
-    Strain,
-    Subject,
-    Tactile,
-    UsesBroker,
-    Whereabouts,
 )
 
 __all__ = [

@@ -1,0 +1,161 @@
+"""All features: the manifests that come with Lumen and those of installed packages, and their rows."""
+
+from collections.abc import Iterator, Mapping
+from functools import cache
+from importlib import import_module
+from typing import Any, NamedTuple
+
+from lumen.distributions import Distribution, distributions
+from lumen.feature.checking import kinds, wrong_rows
+from lumen.feature.manifest import API, Feature
+
+BUILT_IN = (
+    "lumen.features.core:FEATURE",
+    "lumen.features.expressions:FEATURE",
+    "lumen.features.simulation:FEATURE",
+    "lumen.features.naoqi:FEATURE",
+    "lumen.features.reachy:FEATURE",
+    "lumen.features.robots:FEATURE",
+    "lumen.features.senses:FEATURE",
+    "lumen.features.memory_bus:FEATURE",
+    "lumen.features.rabbitmq:FEATURE",
+    "lumen.features.visitors:FEATURE",
+    "lumen.features.eyes:FEATURE",
+    "lumen.features.ears:FEATURE",
+    "lumen.features.voice:FEATURE",
+    "lumen.features.social:FEATURE",
+    "lumen.features.alerts:FEATURE",
+    "lumen.features.show:FEATURE",
+    "lumen.features.answers:FEATURE",
+    "lumen.features.skills:FEATURE",
+    "lumen.features.journal:FEATURE",
+    "lumen.features.mcap:FEATURE",
+    "lumen.features.reload:FEATURE",
+    "lumen.features.console:FEATURE",
+    "lumen.features.editor:FEATURE",
+    "lumen.features.fleet:FEATURE",
+    "lumen.features.formats_charts:FEATURE",
+    "lumen.features.formats_motion:FEATURE",
+    "lumen.features.formats_fuzzy:FEATURE",
+    "lumen.features.formats_robots:FEATURE",
+    "lumen.features.formats_routes:FEATURE",
+)
+"""The manifests that come with Lumen, in the order in which their rows take part."""
+
+
+class FeatureFault(NamedTuple):
+    """Why a feature of an installed distribution, or a row of it, is ignored."""
+
+    distribution: Distribution
+    message: str
+
+
+class Found(NamedTuple):
+    """All features, the distributions of those that do not come with Lumen by the feature's name, and what is wrong."""
+
+    features: tuple[Feature, ...]
+    installed: Mapping[str, Distribution]
+    faults: tuple[FeatureFault, ...]
+
+
+def resolve(where: str) -> Any:
+    """Return what an import string names: a module, or with `:NAME` an object of it.
+
+    Raises ImportError if there is no such module, AttributeError if the module has no such object.
+    """
+    module, _, name = where.partition(":")
+    found = import_module(module)
+    return getattr(found, name) if name else found
+
+
+def features() -> tuple[Feature, ...]:
+    """Return the manifests of all features, those that come with Lumen first."""
+    return found().features
+
+
+def rows(kind: str) -> Iterator[tuple[Feature, Any]]:
+    """Iterate over the rows of a kind, such as `extras`, each with its feature; a row of a mapping is a pair.
+
+    Of two rows with the same name, the second is left out.
+    """
+    names: set[str] = set()
+    for feature in features():
+        rows_of = getattr(feature, kind)
+        if isinstance(rows_of, Mapping):
+            yield from ((feature, row) for row in rows_of.items() if row[0] not in names)
+            names.update(rows_of)
+        else:
+            yield from ((feature, row) for row in rows_of)
+
+
+@cache
+def table(kind: str) -> Mapping[str, Any]:
+    """Return the rows of a kind that is a mapping, by name."""
+    return {name: row for _, (name, row) in rows(kind)}
+
+
+@cache
+def owner(kind: str, name: str) -> Feature:
+    """Return the feature that the row of this name belongs to; `kind` is a mapping and has the row."""
+    return next(feature for feature, (key, _) in rows(kind) if key == name)
+
+
+def distribution_of(feature: Feature) -> Distribution | None:
+    """Return the distribution that a feature was installed with; None if it comes with Lumen."""
+    return found().installed.get(feature.name)
+
+
+@cache
+def found() -> Found:
+    """Return all features, and what is wrong with those that do not come with Lumen."""
+    built_in = tuple(resolve(where) for where in BUILT_IN)
+    others: dict[str, tuple[Feature, Distribution]] = {}
+    faults: list[FeatureFault] = []
+    names = {feature.name: "Lumen" for feature in built_in}
+    for distribution in distributions():
+        feature, fault = _manifest(distribution)
+        if feature and feature.name in names:
+            fault = f"its feature has the name `{feature.name}`, as one of {names[feature.name]} has"
+        if feature and not fault:
+            names[feature.name] = str(distribution)
+            others[feature.name] = feature, distribution
+        else:
+            faults.append(FeatureFault(distribution, fault))
+    features = (*built_in, *(feature for feature, _ in others.values()))
+    installed = {name: distribution for name, (_, distribution) in others.items()}
+    return Found(features, installed, (*faults, *(_repeated(features, installed) if installed else ())))
+
+
+def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
+    """Return the feature of a distribution, or None and what is wrong with its manifest."""
+    try:
+        feature = resolve(distribution.manifest)
+        if not isinstance(feature, Feature):
+            return None, f"its entry point names `{distribution.manifest}`, which is no `Feature`"
+        if feature.api != API:
+            return None, f"its manifest is written for API {feature.api}, and this Lumen has API {API}"
+        return feature, next(wrong_rows(feature), "")
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # of code that is not ours: even SystemExit
+        return None, f"its manifest `{distribution.manifest}` raised {described(error)}"
+
+
+def described(error: BaseException) -> str:
+    """Return the type and the message of an error."""
+    return f"{type(error).__name__}: {error}"
+
+
+def _repeated(features: tuple[Feature, ...], installed: Mapping[str, Distribution]) -> Iterator[FeatureFault]:
+    """Iterate over the rows that are left out because an earlier feature has one of that name."""
+    owners: dict[tuple[str, str], str] = {}
+    for feature in features:
+        distribution = installed.get(feature.name)
+        for kind in kinds():
+            named = getattr(feature, kind)
+            for name in named if isinstance(named, Mapping) else ():
+                owner = owners.setdefault((kind, name), feature.name)
+                if distribution and owner != feature.name:
+                    yield FeatureFault(
+                        distribution, f"its row `{name}` of `{kind}` is ignored: the feature `{owner}` has that name"
+                    )

@@ -1,0 +1,102 @@
+"""The world around a robot: the hall with its visitors, and the time."""
+
+from collections.abc import Mapping
+from typing import Any, Protocol, runtime_checkable
+
+from lumen.language.stories import Visitor
+
+
+@runtime_checkable
+class Hall(Protocol):
+    """A world in which visitors can be placed; a robot with these methods is its own hall.
+
+    `FeelsTouch`, `HearsVisitors`, `PretendsSkills` and `HasCharger` are abilities that only some halls have.
+    """
+
+    def place(self, visitor: Visitor | None) -> None:
+        """Place or move a visitor, or (None) remove them."""
+        ...
+
+    def face(self) -> tuple[float, float] | None:
+        """The position of the visitor's face in the top camera's image now [px], None if it can't be seen."""
+        ...
+
+
+@runtime_checkable
+class FeelsTouch(Protocol):
+    """A hall whose visitors can touch the robot."""
+
+    def touch(self, sensor: str, pressed: bool) -> None:
+        """Press or release a tactile sensor. Raises UsageError if that is impossible."""
+        ...
+
+
+@runtime_checkable
+class HearsVisitors(Protocol):
+    """A hall whose robot notices that a visitor speaks."""
+
+    def sound(self) -> None:
+        """Let the visitor be heard: a robot that hears from where may look there."""
+        ...
+
+
+@runtime_checkable
+class PretendsSkills(Protocol):
+    """A hall whose robot performs the verbs of features and projects without their code, as a story says."""
+
+    def set_skills(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
+        """Have verbs end so from now on: with a result, or by `fails` or `hangs`."""
+        ...
+
+
+@runtime_checkable
+class HasCharger(Protocol):
+    """A hall with a charger for the robot."""
+
+    def plug(self, plugged: bool) -> None:
+        """Plug the charger in, or unplug it. Raises UsageError if that is impossible."""
+        ...
+
+
+@runtime_checkable
+class Clock(Protocol):
+    """The exhibition's time."""
+
+    def now(self) -> float:
+        """[s], never going back."""
+        ...
+
+    def wait(self, until: float) -> None:
+        """Return when `now()` has reached `until`; a simulated clock simulates the time in between."""
+        ...
+
+
+@runtime_checkable
+class Dozes(Protocol):
+    """A clock that can sleep in real time and be woken."""
+
+    def doze(self, until: float) -> float:
+        """Sleep until `now()` would be `until` [s], or until `hurry`; return the time [s]."""
+        ...
+
+    def hurry(self) -> None:
+        """End the sleep or the wait that is under way, from any thread."""
+        ...
+
+
+@runtime_checkable
+class HasSpeed(Protocol):
+    """A clock that runs at a multiple of real time."""
+
+    speed: float | None
+    """The multiple; None for as fast as possible."""
+
+
+@runtime_checkable
+class MeasuresPace(Protocol):
+    """A clock that measures how much of its speed the machine keeps."""
+
+    @property
+    def realtime(self) -> float:
+        """The part of its speed that it kept of late: 1 if it kept all."""
+        ...
