@@ -18,6 +18,16 @@ ALONE: Mapping[str, str] = {
     "features/simulation/tactile_sensors.py": "with it the robot's own file would have more than 450 lines",
 }
 """Small modules with one reader, and why they are files of their own."""
+SHARED: Mapping[str, str] = {
+    "motion/gait/capture.py": "part of the gait, which the simulation follows",
+    "project/formats/behavior_data.py": "what every reader of charts of other tools needs, also one of a package",
+    "project/formats/encodings.py": "what every reader of text files of other tools needs, also one of a package",
+    "project/formats/foreign_json.py": "what every reader of JSON of other tools needs, also one of a package",
+    "project/message_fields.py": "the fields of a route's schema, which belong to the project",
+    "run/captions.py": "the words of a transcript, which pictures of charts show too",
+    "run/new_saying.py": "saved files, as `run/new_passage.py`, beside which it is read",
+}
+"""Modules of the core that only one feature imports, and why they are core."""
 
 
 def imports_by_core(files: Sequence[SourceFile]) -> Iterator[Place]:
@@ -58,6 +68,39 @@ def small_modules(files: Sequence[SourceFile]) -> Iterator[Place]:
             reader = next(iter(only))
             if reader.rpartition("/")[0] == path.rpartition("/")[0] and not reader.endswith("__init__.py"):
                 yield Place(path, 1, f"has {lines} lines, and only {reader} imports it")
+
+
+def files_elsewhere(files: Sequence[SourceFile]) -> Iterator[Place]:
+    """The modules of the core that belong to one feature: only modules in its folder name them, without a reason."""
+    paths = {file.module: file.path for file in files}
+    readers: dict[str, set[str | None]] = defaultdict(set)
+    for file in files:
+        for name in _named(file):
+            if (path := paths.get(name)) is not None and path != file.path:
+                readers[path].add(_feature(file.path))
+    for path, features in readers.items():
+        core = _feature(path) is None and path not in SHARED and not path.endswith("__init__.py")
+        if core and len(features) == 1 and (feature := next(iter(features))) is not None:
+            yield Place(path, 1, f"belongs to features/{feature}: nothing else imports it")
+
+
+def elsewhere_by_feature(files: Sequence[SourceFile]) -> dict[str, list[str]]:
+    """Each feature with the files of it that are not in its folder."""
+    found: dict[str, list[str]] = {name: [] for file in files if (name := _feature(file.path)) is not None}
+    for place in files_elsewhere(files):
+        found[place.why.removeprefix("belongs to features/").partition(":")[0]].append(place.path)
+    return found
+
+
+def _named(file: SourceFile) -> Iterator[str]:
+    """The modules that a file may name: by an import, or by an import string."""
+    for node in ast.walk(file.tree):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            yield from (node.module, *(f"{node.module}.{alias.name}" for alias in node.names))
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value.partition(":")[0]
 
 
 def _imports(files: Sequence[SourceFile]) -> Iterator[tuple[str, int, str]]:

@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 from callables import Callables
 from closed_lists import closed_lists, closed_on_purpose
-from features import imports_by_core, imports_by_features, small_modules
+from features import files_elsewhere, imports_by_core, imports_by_features, small_modules
+from one_meaning import names_of_two_meanings
 from scopes import Package, Place, parameters
 from source_files import SourceFile, statements
 from wiring import added_callables, assigned_callables, composition_sites, seam_probes, storing_methods
@@ -53,6 +54,8 @@ def figures(files: Sequence[SourceFile]) -> dict[str, Figure]:
         "imports of features by the core": _number(imports_by_core(files)),
         "imports of features by features": _number(imports_by_features(files)),
         "small modules with one reader": _number(small_modules(files)),
+        "names of two meanings": _number(names_of_two_meanings(files)),
+        "files of features elsewhere": _number(files_elsewhere(files)),
         "wide functions": _number(wide_functions(package)),
         "unformatted statements": _number(unformatted_statements(files)),
         "statements": Figure(sizes.total(), [f"{size:>7,} in {folder}" for folder, size in sizes.most_common()]),

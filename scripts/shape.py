@@ -27,6 +27,7 @@ from pathlib import Path
 from statistics import median_low
 from typing import NamedTuple
 
+from features import elsewhere_by_feature
 from figures import Figure, compared, figures, values
 from source_files import SourceFile, read, statements, top_level
 
@@ -389,7 +390,15 @@ def _report(shape: Shape, files: Sequence[SourceFile], asked: argparse.Namespace
     elif asked.json or asked.markdown:
         print(json.dumps(asdict(shape), indent=2) if asked.json else table(shape))
     else:
-        print(f"{report(shape)}\n\n{values(figures(files))}")
+        print(f"{report(shape)}\n{_elsewhere(files)}\n\n{values(figures(files))}")
+
+
+def _elsewhere(files: Sequence[SourceFile]) -> str:
+    """A line for each feature: its files that are not in its folder."""
+    found = elsewhere_by_feature(files)
+    return _listed(
+        "features, each with its files elsewhere", (f"{n}: {', '.join(p) or 'none'}" for n, p in found.items())
+    )
 
 
 def _places(name: str, found: Mapping[str, Figure]) -> str:
