@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 from lumen.feature import VerbRow, table
 from lumen.language.commands import BodyCommand, Do
@@ -11,6 +11,16 @@ from lumen.language.events import RESULT
 
 UNUSABLE = VerbRow("")
 """The row of a verb whose file is faulty, which is reported there: a behaviour may say anything of the verb."""
+
+
+@runtime_checkable
+class PerformedByModule(Protocol):
+    """The details of a row (`VerbRow.details`) whose verb a module may perform, over the bus."""
+
+    @property
+    def module(self) -> str:
+        """The name of the module; empty if another program performs the verb."""
+        ...
 
 
 @cache

@@ -10,7 +10,9 @@ import yaml
 from jsonschema import Draft202012Validator
 
 from lumen.cli.main import main
+from lumen.feature import VerbRow
 from lumen.features.formats_routes.asyncapi import write_asyncapi
+from lumen.features.skills.manifest import Skill
 from lumen.language.projects import Project
 from tests import ROOT
 from tests.exhibits import project
@@ -74,6 +76,43 @@ def test_no_password_gets_into_the_document() -> None:
     text = write_asyncapi(replace(project(), bus="amqps://lumen:secret@broker.hall/"))
     assert "secret" not in text
     assert "broker.hall:5671" in text
+
+
+PUMP = VerbRow(
+    "",
+    "Pumps water",
+    {"required": ["litres"], "properties": {"litres": {"type": "number"}}},
+    {"properties": {"left": {"type": "number"}}},
+    details=Skill("module", ("pump",)),
+)
+
+
+def with_skills(before: Project) -> Project:
+    return replace(before, verbs={"fill": PUMP, "blink": PUMP._replace(details=Skill("python", ("skills/blink.py",)))})
+
+
+def test_the_calls_and_answers_of_skills_that_modules_perform_are_listed() -> None:
+    document = yaml.safe_load(write_asyncapi(with_skills(project())))
+    own = {name: each["address"] for name, each in document["channels"].items() if name.startswith("skill")}
+    assert own == {"skill.pump": "lumen.{robot}.skill.pump", "skill_answer": "lumen.{robot}.skill_answer"}
+    assert {name: document["operations"][name]["action"] for name in own} == {
+        "skill.pump": "send",
+        "skill_answer": "receive",
+    }
+    orders, answers = (Draft202012Validator(document["components"]["messages"][name]["payload"]) for name in own)
+    assert orders.is_valid({"call": "a", "skill": "fill", "arguments": {"litres": 1}})
+    assert orders.is_valid({"call": "a", "cancel": True})
+    assert not orders.is_valid({"call": "a", "skill": "fill", "arguments": {"liters": 1}})
+    assert not orders.is_valid({"call": "a", "skill": "blink", "arguments": {"litres": 1}})
+    assert answers.is_valid({"call": "a", "result": {"left": 2}})
+    assert not answers.is_valid({"call": "a", "result": {"left": "much"}})
+    assert not answers.is_valid({"result": {"left": 2}})
+
+
+def test_asyncapis_own_parser_accepts_skills_of_modules() -> None:
+    (found,) = parsed(replace(with_skills(project()), routes={}, messages={}))
+    assert found["errors"] == []
+    assert set(found["channels"]) == {"skill.pump", "skill_answer"}
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ from urllib.parse import urlsplit
 
 import yaml
 
+from lumen.features.formats_routes.skill_channels import add_skills
 from lumen.language.addresses import fault_of_broker
 from lumen.language.projects import Project
 from lumen.language.routes import Carried, Direction, Route
@@ -33,7 +34,7 @@ def document(project: Project) -> dict[str, Any]:
     """Return the document as plain data."""
     routes = project.routes.values()
     old = [route for route in routes if route.alias and project.aliases is not False]
-    return {
+    made: dict[str, Any] = {
         "asyncapi": ASYNCAPI_VERSION,
         "info": {
             "title": project.name,
@@ -55,6 +56,8 @@ def document(project: Project) -> dict[str, Any]:
             },
         },
     }
+    add_skills(made, project, channel)
+    return made
 
 
 def _server(url: str) -> dict[str, Any]:
@@ -65,9 +68,14 @@ def _server(url: str) -> dict[str, Any]:
 
 
 def _channel(route: Route, robot: str) -> dict[str, Any]:
-    channel: dict[str, Any] = {
-        "address": route.key,
-        "messages": {route.name: {"$ref": f"#/components/messages/{route.name}"}},
+    return channel(route.key, route.name, robot)
+
+
+def channel(key: str, message: str, robot: str) -> dict[str, Any]:
+    """Return the channel of a routing key that carries the message of that name."""
+    made: dict[str, Any] = {
+        "address": key,
+        "messages": {message: {"$ref": f"#/components/messages/{message}"}},
         "bindings": {
             "amqp": {
                 "is": "routingKey",
@@ -76,9 +84,9 @@ def _channel(route: Route, robot: str) -> dict[str, Any]:
             }
         },
     }
-    if "{robot}" in route.key:
-        channel["parameters"] = {"robot": {"description": "The robot's name", "default": robot}}
-    return channel
+    if "{robot}" in key:
+        made["parameters"] = {"robot": {"description": "The robot's name", "default": robot}}
+    return made
 
 
 def _old(route: Route) -> str:
@@ -87,8 +95,8 @@ def _old(route: Route) -> str:
 
 
 def _alias_channel(route: Route) -> dict[str, Any]:
-    channel = _channel(replace(route, key=route.alias), "")
-    return {**channel, "description": f"A second key of `{route.name}`, used while only one robot is on the broker."}
+    alias = _channel(replace(route, key=route.alias), "")
+    return {**alias, "description": f"A second key of `{route.name}`, used while only one robot is on the broker."}
 
 
 def _operation(route: Route, channel: str) -> dict[str, Any]:

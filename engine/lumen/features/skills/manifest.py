@@ -48,6 +48,11 @@ class Skill:
     warm: bool = False
     memory: float = DEFAULT_MEMORY
 
+    @property
+    def module(self) -> str:
+        """The name of the module that performs it; empty if another program does."""
+        return self.target[0] if self.kind == "module" else ""
+
 
 def build_skill(data: Any, report: DocumentReport, *, name: str, languages: Sequence[str] = ()) -> VerbRow | None:
     """Return the row of the verb that the data of `skills/NAME.yaml` describe, None if it can't be used.

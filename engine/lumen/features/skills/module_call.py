@@ -11,11 +11,9 @@ from typing import Any
 from lumen.errors import BusError, RobotFailedError
 from lumen.language.projects import Project
 from lumen.language.routes import DEFAULT_COMMAND_TTL
-from lumen.language.routing_keys import key_of_robot
+from lumen.language.routing_keys import SKILL_ANSWER, SKILL_CALL, key_of_robot
 from lumen.ports import Bus, Message
 
-ORDERS, ANSWERS = "lumen.{robot}.skill.{module}", "lumen.{robot}.skill_answer"
-"""The routes on which a module receives calls and answers them."""
 ACCEPTING = 5.0
 """The time that a module has for its first answer to a call [s]."""
 MAX_UNREAD_ANSWERS = 1_000
@@ -25,7 +23,7 @@ class ModuleAnswers:
     """Hears what modules answer to the calls of one robot, from the first call of a module on."""
 
     def __init__(self, project: Project, bus: Bus) -> None:
-        self._key, self._bus = key_of_robot(ANSWERS, project.robot), bus
+        self._key, self._bus = key_of_robot(SKILL_ANSWER, project.robot), bus
         self._open: dict[str, ModuleCall] = {}
         self._lock = threading.Lock()
         self._undo: Callable[[], None] | None = None
@@ -58,7 +56,7 @@ class ModuleCall:
     def __init__(self, project: Project, bus: Bus, module: str, answers: ModuleAnswers) -> None:
         self.id, self.ended = uuid.uuid4().hex[:12], ""
         self.title = f"the module `{module}`"
-        self._key = key_of_robot(ORDERS, project.robot).replace("{module}", module)
+        self._key = key_of_robot(SKILL_CALL, project.robot).replace("{module}", module)
         self._bus, self._answers = bus, answers
         self._messages: deque[Mapping[str, Any]] = deque(maxlen=MAX_UNREAD_ANSWERS)
         self._changed = threading.Condition()
