@@ -17,6 +17,7 @@ from lumen.project import settings
 from lumen.project.document import Document
 from lumen.project.files import read_files
 from tests import ROOT
+from tests.copying import copied_project
 from tests.tables import for_each
 
 BASE = ROOT / "tests/lint/base"
@@ -65,6 +66,16 @@ def test_words_are_rewritten_where_they_stand_and_comments_stay() -> None:
         "motions/wave.yaml:1 `when: now` is `when: please` now",
         "lumen.yaml:2 the vocabulary is now 3",
     ]
+
+
+def test_a_key_of_manifests_of_skills_is_renamed_and_their_code_stays(tmp_path: Path) -> None:
+    root = copied_project(ROOT / "tests/features/skills/project", tmp_path)
+    after, done = upgraded(read_files(root), {1: (renamed_key("skills/*.yaml", ("in", "required"), "needs"),)}, 2)
+    assert b"in:\n  needs: [duration]" in after["skills/spray.yaml"]
+    assert [f"{each.place.file}:{each.place.line} {each.why}" for each in done[:1]] == [
+        "skills/spray.yaml:3 `required` is now called `needs`"
+    ]
+    assert not [file for file in after if file.endswith(".py")]
 
 
 def test_steps_begin_at_the_number_that_the_files_say_and_once_is_enough() -> None:

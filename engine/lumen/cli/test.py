@@ -44,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add("-o", "--output", metavar="FILE", type=Path, help="write to this file instead of printing")
     add("-x", "--exitfirst", action="store_true", help="stop at the first story that fails")
     add("-v", "--verbose", action="store_true", help="print everything that happens in each story")
-    add("--coverage", action="store_true", help="list the states and transitions that were never used")
+    add("--coverage", action="store_true", help="list the states, transitions and skills that were never used")
     add("--fail-under", metavar="N", type=float, help="fail if less than N %% is covered (implies --coverage)")
     add("--real-skills", action="store_true", help="run the programs of skills instead of only letting their time pass")
     add("--explore", action="store_true", help="search the behaviour for dead ends instead of playing the stories")

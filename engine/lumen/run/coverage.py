@@ -1,9 +1,10 @@
-"""The coverage of a number of runs: states entered, transitions taken, and those that were not."""
+"""The coverage of a number of runs: states entered, transitions taken, skills used, and what is left."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from lumen.language.commands import Command, Do, Start
 from lumen.language.diagnostics import NodePath, Place
 from lumen.language.machines import MachineDefinition, State, StateKind, Transition
 from lumen.language.projects import Project
@@ -13,7 +14,7 @@ from lumen.statechart.nesting import behavior_of
 
 
 class Gap(NamedTuple):
-    """A state that was never entered or a transition that was never taken, with its place."""
+    """A state that was never entered, a transition that was never taken, or a skill that was never used."""
 
     place: Place
     what: str
@@ -21,13 +22,13 @@ class Gap(NamedTuple):
 
 @dataclass
 class Coverage:
-    """States and transitions that a number of runs went through, for each behaviour that ran."""
+    """States entered, by name, and transitions taken, by their places, for each behaviour that ran; and skills used."""
 
     project: Project
     entered: dict[str, set[str]] = field(default_factory=dict)
     """Names of the entered states, by behaviour."""
     taken: dict[str, set[NodePath]] = field(default_factory=dict)
-    """Places of the taken transitions in their files, by behaviour."""
+    used: set[str] = field(default_factory=set)
 
     def of(self, behavior: str) -> Observer:
         """Return an observer that counts the steps of a run of a behaviour."""
@@ -53,13 +54,35 @@ class Coverage:
         return sum(where in self.taken[b] for b, where in wanted), len(wanted)
 
     @property
+    def skills(self) -> tuple[int, int]:
+        """How many of the project's own skills were used, and how many there are."""
+        return len(self.used.intersection(self.project.verbs)), len(self.project.verbs)
+
+    @property
+    def counts(self) -> dict[str, tuple[int, int]]:
+        """What was covered and what there is, of each kind; `skills` only in a project that has some."""
+        counts = {"states": self.states, "transitions": self.transitions}
+        return {**counts, "skills": self.skills} if self.project.verbs else counts
+
+    @property
     def percent(self) -> float:
-        """The smaller of both shares [%]."""
-        return min(100.0 * some / every if every else 100.0 for some, every in (self.states, self.transitions))
+        """The smallest of these, in percent."""
+        return min(100.0 * some / every if every else 100.0 for some, every in self.counts.values())
 
     def gaps(self) -> list[Gap]:
-        """Return what was not covered, sorted by file and line."""
-        return sorted(gap for behavior in self.entered for gap in self._gaps(behavior))
+        """What is left, by file and line."""
+        unused = (
+            Gap(Place(f"skills/{name}.yaml"), f"skill `{name}` is never used")
+            for name in self.project.verbs
+            if name not in self.used
+        )
+        return sorted([*unused, *(gap for behavior in self.entered for gap in self._gaps(behavior))])
+
+    def use(self, command: Command) -> None:
+        """Count a command that a run is about to perform."""
+        match command:
+            case Start(_, Do(skill)):
+                self.used.add(skill)
 
     def _gaps(self, behavior: str) -> Iterator[Gap]:
         machine, file = self.project.behaviors[behavior], f"behaviors/{behavior}.yaml"
@@ -78,6 +101,9 @@ class _Watcher(Observer):
 
     def stepped(self, step: Step) -> None:
         self._coverage.note(self._behavior, step)
+
+    def performing(self, command: Command, now: float) -> None:
+        self._coverage.use(command)
 
 
 def described(machine: MachineDefinition, transition: Transition) -> str:

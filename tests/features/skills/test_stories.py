@@ -86,3 +86,16 @@ def test_real_skills_run_in_the_time_of_the_story(tmp_path: Path, capsys: pytest
     assert ["0:00.2", "spray", "spraying with the left nozzle"] in lines
     assert ["0:03.2", "state", "sprayed  (done)"] in lines
     assert main(["test", str(root)]) == 1
+
+
+def test_coverage_counts_the_skills_that_stories_use(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    unused = "performed-by: {python: skills/spray.py}\n"
+    root = project_in(tmp_path, {"skills/mist.yaml": ("", unused)})
+    assert main(["test", str(root), "--coverage", "--fail-under", "51"]) == 1
+    shown = capsys.readouterr().out
+    assert "skills/mist.yaml:1:1: skill `mist` is never used" in shown
+    assert "transitions and 1 of 2 skills: 50 %, less than the required 51 %" in shown
+    (root / STORY).write_text("steps: [{wait: 1s}]\n", "utf-8")
+    main(["test", str(root), "--coverage", "--format", "json"])
+    coverage = json.loads(capsys.readouterr().out)["coverage"]
+    assert coverage["skills"] == {"covered": 0, "of": 2}

@@ -84,10 +84,9 @@ def _tried(trial: QuestionTrial) -> dict[str, Any]:
 
 
 def _coverage(coverage: Coverage) -> dict[str, Any]:
-    counts = {"states": coverage.states, "transitions": coverage.transitions}
     return {
         "percent": round(coverage.percent, 1),
-        **{what: {"covered": some, "of": every} for what, (some, every) in counts.items()},
+        **{what: {"covered": some, "of": every} for what, (some, every) in coverage.counts.items()},
         "gaps": [{**_place(gap.place), "message": gap.what} for gap in coverage.gaps()],
     }
 

@@ -54,8 +54,7 @@ def _example(one: JudgedExample) -> JunitCase:
 def _properties(verdict: Verdict) -> dict[str, str]:
     if verdict.coverage is None:
         return {}
-    counts = {"states": verdict.coverage.states, "transitions": verdict.coverage.transitions}
-    return {f"coverage.{what}": f"{some} of {every}" for what, (some, every) in counts.items()}
+    return {f"coverage.{what}": f"{some} of {every}" for what, (some, every) in verdict.coverage.counts.items()}
 
 
 def _uncovered(verdict: Verdict) -> Iterator[JunitCase]:

@@ -123,15 +123,10 @@ def _line(time: float, who: str, text: str, coloured: bool) -> str:
 def _coverage(verdict: Verdict, coverage: Coverage, coloured: bool) -> Iterator[str]:
     for gap in coverage.gaps():
         yield f"{paint(str(gap.place), 'bold', on=coloured)}: {gap.what}"
-    counted = [f"{some} of {every} {what}" for (some, every), what in _counts(coverage)]
+    *most, last = (f"{some} of {every} {what}" for what, (some, every) in coverage.counts.items())
     percent = paint(f"{coverage.percent:.0f} %", "bold", "red" if verdict.uncovered else "green", on=coloured)
     wanted = f", less than the required {verdict.wanted:g} %" if verdict.uncovered else ""
-    yield f"\nCovered: {' and '.join(counted)}: {percent}{wanted}"
-
-
-def _counts(coverage: Coverage) -> Iterator[tuple[tuple[int, int], str]]:
-    yield coverage.states, "states"
-    yield coverage.transitions, "transitions"
+    yield f"\nCovered: {', '.join(most)} and {last}: {percent}{wanted}"
 
 
 def _explored(explored: Explored, coloured: bool) -> Iterator[str]:
