@@ -94,7 +94,7 @@ SCHEMAS = {
     FleetHouse: (f"{FLEET} $defs/house/properties", set()),
     FleetGroup: (f"{FLEET} $defs/group/properties", set()),
     FleetMeasure: (f"{FLEET} $defs/measure/properties", set()),
-    Button: ("behavior $defs/button/properties", set()),
+    Button: ("behavior $defs/button/properties", {"actions"}),
     Passage: ("knowledge properties", {"as-of", "description"}),
     QuestionSet: ("questions properties", {"description"}),
     GestureLibrary: ("gestures properties", {"units", "description"}),

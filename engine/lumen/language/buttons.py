@@ -1,6 +1,7 @@
 """The buttons that an operator can press while a state is active."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -11,7 +12,12 @@ Confirmation = Literal["hold", "ask", ""]
 
 @dataclass(frozen=True, slots=True)
 class Button:
-    """A button that raises an event while its state, or one within it, is active."""
+    """A button that raises an event while its state, or one within, is active.
+
+    One that the file gives `actions` instead raises an event that `button_events` names.
+    `label` has its texts by language; under the empty one stands what is the same in all. `confirm` is whether it has
+    to be held down or asked for again, `key` the one key that presses it.
+    """
 
     label: Mapping[str, str]
     """Its texts by language; a text that serves all languages has the empty code."""
@@ -31,3 +37,13 @@ class Button:
         """Return True if it replaces another one further out: by its label or key, or by its event and data."""
         same = (self.event, self.data) == (other.event, other.data)
         return same or self.label == other.label or bool(self.key and self.key == other.key)
+
+
+def button_events(state: str, labels: Sequence[Mapping[str, str]]) -> tuple[str, ...]:
+    """Return the events of buttons with actions: `button.STATE.LABEL`, each different, for the buttons of one state."""
+    found: list[str] = []
+    for number, label in enumerate(labels, 1):
+        text = re.sub(r"\W+", "_", next(iter(label.values()), "").casefold()).strip("_")
+        event = f"button.{state}.{text or number}"
+        found.append(f"{event}_{number}" if event in found else event)
+    return tuple(found)

@@ -10,16 +10,15 @@ from typing import Any, NamedTuple
 from lumen.expressions import unparse
 from lumen.expressions.expression_findings import UNKNOWN_CONTEXT_KEY, UNKNOWN_STATE
 from lumen.expressions.own_functions import KnownFunctions
-from lumen.language.buttons import Button
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.shared import SHARED, SharedKey, first_values, shared_schema
 from lumen.project.actions import Actions
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
+from lumen.project.buttons import read_buttons
 from lumen.project.common_words import COMMON
 from lumen.project.document_report import DocumentReport
 from lumen.project.expressions import Expressions
-from lumen.project.field_reader import read_fields
 from lumen.project.invocations import check_ids, invocations
 from lumen.project.known_words import WordFiles, known_words
 from lumen.project.outline import BehaviorOutline, OutlinedState
@@ -27,23 +26,6 @@ from lumen.project.properties import build_properties
 from lumen.project.rounds import NOTHING_YET, Rounds, unrolled
 from lumen.project.shapes import check_shapes
 from lumen.project.transitions import TransitionReader
-
-
-def buttons(data: Any, where: NodePath) -> tuple[Button, ...]:
-    """Return the buttons that have a label and an event, in the order of the file."""
-    rows = ((row, (*where, number)) for number, row in enumerate(data or ()))
-    return tuple(
-        read_fields(Button, row, label=_label(row["label"]), key=str(row.get("key", "")), where=place)
-        for row, place in rows
-        if isinstance(row, Mapping) and row.get("label") and row.get("event")
-    )
-
-
-def _label(texts: Any) -> dict[str, str]:
-    """Return the label by language code; a text that serves all languages has the empty code."""
-    table = {"": texts} if isinstance(texts, str) else texts
-    return {"" if language == "any" else language: str(text) for language, text in table.items()}
-
 
 NOT_WITHIN = Code("not-within", "statecharts", ERROR, "the state named in `initial` is not one of the inner states")
 
@@ -195,7 +177,7 @@ class _Builder:
             resume=data.get("resume", ""),
             life=data.get("life", ""),
             gestures=data.get("gestures", ""),
-            buttons=buttons(data.get("buttons"), (*where, "buttons")),
+            buttons=tuple(row.button for row in read_buttons(data.get("buttons"), (*where, "buttons"), entry.name)),
             where=where,
         )
 

@@ -9,6 +9,7 @@ from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.hours import Schedule
 from lumen.language.machines import Approval, Hears, StateKind, Transition
 from lumen.project.actions import Actions
+from lumen.project.buttons import read_buttons
 from lumen.project.document_report import DocumentReport
 from lumen.project.expressions import Expressions
 from lumen.project.hears_keys import HearsKeys
@@ -67,6 +68,8 @@ class TransitionReader:
             case "on":
                 for event, rows in body.items():
                     yield from self._candidates(entry, rows, (*where, event), event=event)
+            case "buttons":
+                yield from self._pressed(entry, body, where)
             case "hears":
                 for row, rows in body.items():
                     yield from self._heard(entry, row, rows, (*where, row))
@@ -86,6 +89,13 @@ class TransitionReader:
                 yield from self._candidates(entry, body, where, event=f"done.{kind}.{entry.name}", exact=True)
             case "onError":
                 yield from self._candidates(entry, body, where, event=f"error.do.{entry.name}", exact=True)
+
+    def _pressed(self, entry: OutlinedState, body: Any, where: NodePath) -> Iterator[Transition]:
+        """The transitions of buttons with `actions`: they perform these, and the state stays."""
+        for button, data in read_buttons(body, where, entry.name):
+            if data is not None:
+                actions = self.actions.block(data, (*button.where, "actions"))
+                yield Transition(entry.path, button.event, (), None, actions, where=button.where)
 
     def _heard(self, entry: OutlinedState, key: str, body: Any, where: NodePath) -> Iterator[Transition]:
         """Yield the candidates of a row of `hears`."""
