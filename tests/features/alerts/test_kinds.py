@@ -3,6 +3,7 @@
 import shutil
 from collections import namedtuple
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,14 +12,16 @@ import lumen
 from lumen.cli.main import main
 from lumen.errors import BusUnreachableError
 from lumen.features.alerts import part as alerting
-from lumen.features.alerts.part import room
+from lumen.features.alerts.part import AlertPart, room
 from lumen.features.alerts.settings import KINDS, Alerts
 from lumen.language.events import Event
+from lumen.language.modules import ModuleSettings
 from lumen.project.home import Home
 from lumen.run import claiming, node, presence, services
 from lumen.run.recovery.run_directory import RunDirectory
 from tests.features.alerts.halls import Hall
 from tests.features.alerts.servers import Web
+from tests.tables import for_each
 from tests.waiting import until
 
 Usage = namedtuple("Usage", "total used free")
@@ -66,6 +69,28 @@ def test_a_robot_whose_connection_is_lost(hall: Hall) -> None:
     hall.happen("robot.back", seconds=12.0)
     hall.until(lambda: len(hall.web.of("lost")) == 2)
     assert hall.web.of("lost")[1]["text"].endswith("the robot is back after 12 s")
+
+
+@for_each(
+    ("event", "told"),
+    [
+        ("mood.lost", ("lost", "the module mood no longer responds", "mood")),
+        ("mood.found", ("lost", "the module mood is back", "mood.found")),
+        ("mood.changed", None),
+        ("pump.lost", None),
+    ],
+)
+def test_a_module_of_ones_own_that_is_lost_and_found(event: str, told: tuple[str, str, str] | None) -> None:
+    assert alerting.told_of_own(Event(event, {"seconds": 2, "reason": "a text of its own"}), ("mood",)) == told
+
+
+def test_the_loss_of_a_module_of_ones_own_in_a_run(hall: Hall) -> None:
+    shown = hall.whole()
+    shown.services[AlertPart].use(
+        replace(shown.project, modules={"mood": ModuleSettings(command=("python3", "mood.py"))})
+    )
+    hall.happen("mood.lost", seconds=2.0, reason="it ended")
+    assert hall.told("lost") == "the module mood no longer responds"
 
 
 def test_a_battery_and_motors(hall: Hall) -> None:

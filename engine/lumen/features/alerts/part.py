@@ -3,7 +3,7 @@
 import shutil
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 from lumen.bus.validated import ValidatedBus
@@ -12,6 +12,7 @@ from lumen.features.alerts.desk import AlertDesk
 from lumen.features.alerts.settings import Alerts
 from lumen.language.commands import Command, Posture, Start, Wake
 from lumen.language.events import Event
+from lumen.language.modules import own_modules
 from lumen.language.projects import Project
 from lumen.ports import BlockableBus, UsesBroker
 from lumen.project.home import home_of
@@ -116,9 +117,9 @@ BRAIN_PATIENCE = 5.0
 class AlertPart(Part, Observer):
     """Reports trouble with the robot, the brain, the broker and the disk to an alert desk, which it owns.
 
-    It watches the brain's loop if that is in this process. A robot whose brain is elsewhere reports about itself only
-    if no brain is connected. `kept` returns why the run's records can't be written, `stopped` whether a person stopped
-    the robot.
+    It watches the loop of the brain, where that is here. A robot whose brain is somewhere else tells of itself only
+    where there is none. `own` are the modules of the project's own. `kept` says why the records of the run can't be
+    written, `stopped` whether a person stopped the robot.
     """
 
     patient = True
@@ -134,10 +135,12 @@ class AlertPart(Part, Observer):
         kept: Callable[[], str] = lambda: "",
         clock: Callable[[], float] = time.monotonic,
         stopped: Callable[[], bool] = lambda: False,
+        own: Collection[str] = (),
     ) -> None:
         self._desk, self._parts, self._presence = desk, parts, presence
         self._broker, self._blockable = bus.ability(UsesBroker), bus.ability(BlockableBus)
         self._kept, self._clock, self._person_stopped = kept, clock, stopped
+        self._own = own
         self._falls, self._disk = FallWatch(), DiskWatch(folder)
         self._now = 0.0
         self._away: float | None = None
@@ -159,6 +162,8 @@ class AlertPart(Part, Observer):
         """Report a stop by a person."""
         if step.event and step.event.name == "stop" and _by_person(step.event):
             self._desk("stopped", "a person stopped it")
+        if step.event and (found := told_of_own(step.event, self._own)):
+            self._desk(*found)
 
     def performing(self, command: Command, now: float) -> None:
         """Follow a command that begins."""
@@ -193,6 +198,7 @@ class AlertPart(Part, Observer):
     def use(self, project: Project) -> None:
         """Use the recipients of another bundle."""
         self._desk.use(project.section(Alerts))
+        self._own = own_modules(project.modules)
 
     def helpless(self, reason: str) -> None:
         """Report that the robot rests because Lumen could not be stopped any more."""
@@ -275,7 +281,16 @@ def make(services: Services) -> AlertPart:
         return not plan.brain and robot is not None and robot.stopped()
 
     folder = home_of(root, plan.project.one_of_several)
-    return AlertPart(desk, services.bus, folder, parts, services.presence, kept, stopped=stopped)
+    return AlertPart(
+        desk,
+        services.bus,
+        folder,
+        parts,
+        services.presence,
+        kept,
+        stopped=stopped,
+        own=own_modules(plan.project.modules),
+    )
 
 
 def tell_of_failure(failure: RunFailure) -> Callable[[], None]:
@@ -307,6 +322,16 @@ def told_of(event: Event) -> tuple[str, str, str] | None:
         case "motors", "hot":
             return "hot", f"a motor is at {_number(event, 'temperature')} °C", ""
     return None
+
+
+def told_of_own(event: Event, modules: Collection[str]) -> tuple[str, str, str] | None:
+    """As `told_of`, of the loss and the return of a module of the project's own."""
+    module, _, what = event.name.partition(".")
+    if module not in modules:
+        return None
+    if what == "lost":
+        return "lost", f"the module {module} no longer responds", module
+    return ("lost", f"the module {module} is back", event.name) if what == "found" else None
 
 
 def _number(event: Event, key: str) -> str:
