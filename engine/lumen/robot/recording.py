@@ -123,6 +123,7 @@ class RecordingRobot(ExecutingRobot):
         }
         self._executor = Executor(self._begin, lambda command: parts_of(command, body), self._skill)
         self._runner = runner
+        self.runs_no_skills = runner is None
         self._part = part_of(body)
         self._life = LifeLayer(body)
         self._bounds = CommandBounds(body)

@@ -14,6 +14,7 @@ from lumen.language.added_verbs import whole_result
 from lumen.language.commands import Do
 from lumen.language.sections import section_of
 from lumen.ports import SkillPerformer
+from lumen.project.added_verbs import time_taken
 from lumen.project.schema import faults
 from lumen.robot.command_table import added_verb, check_arguments
 from lumen.upkeep.threads import WatchedThread
@@ -35,12 +36,19 @@ class SkillRunner:
     def __init__(self, *, lockstep: bool = False) -> None:
         self._calls: list[RunningSkill] = []
         self._lockstep = lockstep
+        self._ends: dict[str, Mapping[str, Any] | str] = {}
         self._begun: SimpleQueue[RunningSkill | None] = SimpleQueue()
         self._starter = WatchedThread("lumen-skills", self._start)
 
-    def begin(self, command: Do, now: float) -> "RunningSkill":
+    def set_ends(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
+        """Have verbs end so from now on, without their code: with a result, or by `fails` or `hangs`."""
+        self._ends |= ends
+
+    def begin(self, command: Do, now: float) -> "RunningSkill | PretendedSkill":
         """Begin a verb at `now` [s]. Raises RobotError if no feature has it, or if its last call does not end."""
         verb = added_verb(command)
+        if (end := self._ends.get(command.skill)) is not None:
+            return PretendedSkill(command, verb, end, now)
         self._calls = [call for call in self._calls if not call.over]
         if any(call.skill == command.skill and call.cancelled for call in self._calls):
             raise RobotRefusedError(f"`{command.skill}` was cancelled and has not ended yet: try again later")
@@ -61,6 +69,22 @@ class SkillRunner:
         """Start the thread of each call: ten in one tick would be too slow."""
         while (call := self._begun.get()) is not None:
             call.thread.start()
+
+
+class PretendedSkill:
+    """A verb that a story has end in some way: an activity that runs no code. Raises RobotFailedError for `fails`."""
+
+    def __init__(self, command: Do, verb: VerbRow, end: Mapping[str, Any] | str, now: float) -> None:
+        if end == "fails":
+            raise RobotFailedError(f"{command.skill} fails in this story")
+        self.result = whole_result(verb, {} if isinstance(end, str) else end)
+        self._until = inf if end == "hangs" else now + time_taken(command)
+
+    def advance(self, now: float) -> bool:
+        return now >= self._until
+
+    def cancel(self) -> None:
+        self._until = 0.0
 
 
 class RunningSkill:

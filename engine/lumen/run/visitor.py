@@ -77,7 +77,9 @@ class VisitorActor:
     def set_skills(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
         """Set how skills end from now on. Raises UsageError if this robot can't simulate them."""
         if not isinstance(self._hall, PretendsSkills):
-            raise UsageError("this robot performs skills itself: play a story with `skills:` on the recording robot")
+            raise UsageError(
+                "this robot performs skills itself: play a story with `skills:` on the recording or the simulated robot"
+            )
         self._hall.set_skills(ends)
 
     def tick(self, now: float) -> None:

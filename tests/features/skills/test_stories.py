@@ -99,3 +99,12 @@ def test_coverage_counts_the_skills_that_stories_use(tmp_path: Path, capsys: pyt
     main(["test", str(root), "--coverage", "--format", "json"])
     coverage = json.loads(capsys.readouterr().out)["coverage"]
     assert coverage["skills"] == {"covered": 0, "of": 2}
+
+
+@pytest.mark.slow
+@pytest.mark.physics
+def test_the_simulated_robot_ends_a_skill_as_the_story_says(tmp_path: Path) -> None:
+    root = project_in(tmp_path, {CODE: ("    print", "    raise SystemExit\n    print")})
+    steps = "[{skills: {spray: {litres: 0.5}}}, {visitor: arrives}, {expect: {context: {litres: 0.5}}}]"
+    (root / STORY).write_text(f"steps: {steps}\n", "utf-8")
+    assert main(["run", str(root), "--story", "visitor", "--robot", "simulation", "--speed", "max"]) == 0

@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cached_property
 from math import degrees
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -286,6 +287,13 @@ class SimulatedRobot(ExecutingRobot):
         self._skill_runner.close()
         if self._camera:
             self._camera.close()
+
+    @property
+    def runs_no_skills(self) -> bool:
+        return False
+
+    def set_skills(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
+        self._skill_runner.set_ends(ends)
 
     def place(self, visitor: Visitor | None) -> None:
         """Put the visitor there, or remove it with None."""

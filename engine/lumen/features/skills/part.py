@@ -90,7 +90,8 @@ class SkillsPart(Part):
 def skills(services: Services) -> SkillsPart | None:
     """Make the part; None in a story and on a recording robot, which pretend what skills do."""
     plan = services.plan
-    pretends = plan.story is not None or isinstance(services.setup.hall, PretendsSkills)
+    hall = services.setup.hall
+    pretends = plan.story is not None or (isinstance(hall, PretendsSkills) and hall.runs_no_skills)
     if pretends and not plan.options.get(REAL_SKILLS):
         return None
     if (behavior := services.get(LiveBehavior)) is None:
