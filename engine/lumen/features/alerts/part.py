@@ -118,7 +118,7 @@ class AlertPart(Part, Observer):
     """Reports trouble with the robot, the brain, the broker and the disk to an alert desk, which it owns.
 
     It watches the loop of the brain, where that is here. A robot whose brain is somewhere else tells of itself only
-    where there is none. `use` names the modules of the project's own. `kept` says why the records of the run can't be
+    where there is none. `own` are the modules of the project's own. `kept` says why the records of the run can't be
     written, `stopped` whether a person stopped the robot.
     """
 
@@ -133,13 +133,13 @@ class AlertPart(Part, Observer):
         parts: Sequence[str],
         presence: Presence | None = None,
         kept: Callable[[], str] = lambda: "",
-        clock: Callable[[], float] = time.monotonic,
         stopped: Callable[[], bool] = lambda: False,
+        own: Collection[str] = (),
     ) -> None:
         self._desk, self._parts, self._presence = desk, parts, presence
         self._broker, self._blockable = bus.ability(UsesBroker), bus.ability(BlockableBus)
-        self._kept, self._clock, self._person_stopped = kept, clock, stopped
-        self._own: Collection[str] = ()
+        self._kept, self._clock, self._person_stopped = kept, time.monotonic, stopped
+        self._own = own
         self._falls, self._disk = FallWatch(), DiskWatch(folder)
         self._now = 0.0
         self._away: float | None = None
@@ -280,9 +280,8 @@ def make(services: Services) -> AlertPart:
         return not plan.brain and robot is not None and robot.stopped()
 
     folder = home_of(root, plan.project.one_of_several)
-    made = AlertPart(desk, services.bus, folder, parts, services.presence, kept, stopped=stopped)
-    made.use(plan.project)
-    return made
+    own = own_modules(plan.project.modules)
+    return AlertPart(desk, services.bus, folder, parts, services.presence, kept, stopped=stopped, own=own)
 
 
 def tell_of_failure(failure: RunFailure) -> Callable[[], None]:
