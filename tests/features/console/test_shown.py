@@ -112,11 +112,11 @@ def test_a_roll_back_restores_the_file_and_names_the_newer_one(viewer: Viewer, o
     viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="author")
     tour.write_text(text.replace(SORRY, LATER), "utf-8")
     viewer.shows("See you tomorrow, perhaps", ".changes ins")
-    viewer.click(".saved .strong")
+    viewer.click(".saved [data-verb=apply]")
     viewer.click("dialog .strong")
     viewer.shows("active", ".saved .badge")
     until(lambda: LATER in tour.read_text("utf-8") and hosted.exhibition.project.hash, HANG)
-    viewer.click(".saved .actions button:last-child")
+    viewer.click(".saved [data-verb=rollback]")
     viewer.click("dialog .strong")
     viewer.shows("behaviors/tour.yaml is as it was before; the newer version is in .lumen/rolled-back/", ".saved")
     assert tour.read_text("utf-8") == text
@@ -179,3 +179,34 @@ def test_an_answer_is_asked_for_in_all_languages_of_the_project(own: tuple[Hoste
         viewer.shows("saved as knowledge/what-is-the-meaning-of-life.yaml", ".unanswered")
     text = (hosted.root / "knowledge" / "what-is-the-meaning-of-life.yaml").read_text("utf-8")
     assert all(words in text for words in ("Forty-two.", "apa arti hidup", "Empat puluh dua."))
+
+
+def test_an_operator_reads_sentences_and_an_author_all_transitions(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
+    """Operators see no guard, path or data on Now and in a why; an author sees all of it."""
+    hosted, served = own
+    visit(hosted, "Budi")
+    viewer.open(served.console.address, "robot/NAO", ready=".leaf", mode="operator")
+    viewer.shows("You press “End the visit”: the robot goes on to “goodbye”", ".next")
+    assert "context." not in viewer.text(".ways") + viewer.text(".states")
+    viewer.click(".entry button")
+    until(lambda: viewer.all(".chain .link"), HANG)
+    for selector in ("main", "dialog"):
+        shown = viewer.text(selector)
+        assert [sign for sign in (".yaml", "context.", "event.data", '{"', "lumen.NAO") if sign in shown] == []
+    viewer.open(served.console.address, "robot/NAO", ready=".leaf", mode="author")
+    viewer.click(".all-ways summary")
+    viewer.shows("behaviors/tour.yaml:", ".ways")
+
+
+def test_files_tell_an_author_what_buttons_do_and_an_operator_no_path(
+    viewer: Viewer, own: tuple[Hosted, Served]
+) -> None:
+    hosted, served = own
+    tour = hosted.root / "behaviors" / "tour.yaml"
+    viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="author")
+    assert "Nothing waits" in viewer.text(".file-actions")
+    tour.write_text(tour.read_text("utf-8").replace(SORRY, LATER), "utf-8")
+    viewer.shows("Makes the saved files active", ".file-actions")
+    viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="operator")
+    viewer.shows("is shown to authors", ".saved")
+    assert "behaviors/" not in viewer.text("main")

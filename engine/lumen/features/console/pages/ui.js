@@ -119,4 +119,3 @@ export function Dialog({ title, onClose, children, actions = null }) {
 
 /** `behaviors/tour.yaml:205`, short enough to stand beside something. */
 export const place = (file, line) => file ? `${file}${line ? `:${line}` : ""}` : "";
-export const Place = ({ file, line }) => file ? html`<span class="place">${place(file, line)}</span>` : null;

@@ -50,18 +50,31 @@ function Replay({ replay }) {
       <dl class="differ"><dt>${t("files.was")}</dt><dd><${Quote} text=${one.was} named=${false} /></dd><dt>${t("files.here")}</dt><dd><${Quote} text=${one.is} named=${false} /></dd></dl></li>`)}</ul></${Part}>`;
 }
 
+const ASKED = new Set(["apply", "rollback"]); // what is asked once more before it is done
+
+/** A button of saved files: what it does is written below it, or why it can't be used now. */
+function Action({ name, verb, label, strong = false, grey = null, ask }) {
+  const press = () => grey === null && (ASKED.has(verb) ? ask(verb) : command(name, verb));
+  return html`<li><button type="button" class=${strong ? "strong" : ""} data-verb=${verb}
+      aria-disabled=${grey === null ? null : "true"} onClick=${press}>${t(label)}</button>
+    <p class="reason">${grey ?? t(`${label}.does`)}</p></li>`;
+}
+
 function Actions({ name, files }) {
   const [asking, ask] = useState(null);
   const waits = Boolean(files.staged?.length || files.waiting);
+  const nothing = waits ? null : t(files.mode === "off" ? "files.grey.off" : "files.grey.nothing");
   const go = () => { command(name, asking); ask(null); };
-  return html`<div class="actions"><button type="button" onClick=${() => command(name, "dry-run")}>${t("files.look")}</button>
-    <button type="button" onClick=${() => command(name, "reload")}>${t("files.read")}</button>
-    <button type="button" class="strong" aria-disabled=${waits ? null : "true"} onClick=${() => waits && ask("apply")}>${t("files.apply")}</button>
-    <button type="button" aria-disabled=${waits ? null : "true"} onClick=${() => waits && command(name, "try")}>${t("files.try")}</button>
-    <button type="button" aria-disabled=${waits ? null : "true"} onClick=${() => waits && command(name, "refuse")}>${t("files.refuse")}</button>
-    <button type="button" onClick=${() => ask("rollback")}>${t("files.back")}</button></div>
-    ${asking && html`<${Dialog} title=${t(asking === "apply" ? "files.apply.ask" : "files.back.ask")} onClose=${() => ask(null)}
-      actions=${html`<button type="button" class="strong" onClick=${go}>${t(asking === "apply" ? "files.apply" : "files.back")}</button>`}>
+  const action = (verb, label, more = {}) => html`<${Action} name=${name} verb=${verb} label=${label} ask=${ask}
+    ...${more} />`;
+  return html`<ul class="file-actions">
+      ${action("dry-run", "files.look")}${action("reload", "files.read")}
+      ${action("apply", "files.apply", { strong: true, grey: nothing })}
+      ${action("try", "files.try", { grey: nothing })}${action("refuse", "files.refuse", { grey: nothing })}
+      ${action("rollback", "files.back")}</ul>
+    ${asking && html`<${Dialog} title=${t(asking === "apply" ? "files.apply.ask" : "files.back.ask")}
+      onClose=${() => ask(null)} actions=${html`<button type="button" class="strong" onClick=${go}>
+        ${t(asking === "apply" ? "files.apply" : "files.back")}</button>`}>
       <p><${Quote} text=${files.waiting || files.reason || ""} /></p></${Dialog}>`}`;
 }
 
@@ -78,9 +91,12 @@ export default function FilesPage({ name }) {
   const lines = [...(files.last?.lines ?? []), ...(files.last?.notes ?? [])];
   return html`<h1>${t("page.files")}</h1>
     <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge" data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}>${t(`verdict.${verdict}`)}</span>
-        ${" "}<${Quote} text=${files.last?.reason ?? ""} /> <${Quote} text=${report.hint ?? ""} /> ${verdict === "refused" && t("files.goes.on")}</p>
-      ${lines.length > 0 && html`<${InEnglish} />
+        ${" "}${may("author") && html`<${Quote} text=${files.last?.reason ?? ""} /> <${Quote} text=${report.hint ?? ""} />`} ${verdict === "refused" && t("files.goes.on")}</p>
+      ${may("author") && lines.length > 0 && html`<${InEnglish} />
         <ul class="lines" lang="en">${lines.map((line) => html`<li>${line}</li>`)}</ul>`}
-      <p class="quiet"><${Quote} text=${files.reason ?? ""} /></p>${may("author") && html`<${Actions} name=${name} files=${files} />`}</${Part}>
-    <div class="files"><${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} /><${Changes} report=${report} mode=${files.mode} /><${Replay} replay=${files.replay} /></div>`;
+      ${may("author") ? html`<p class="quiet"><${Quote} text=${files.reason ?? ""} /></p>
+        <${Actions} name=${name} files=${files} />` : html`<p class="quiet">${t("files.authors")}</p>`}</${Part}>
+    <div class="files">${may("author") && html`
+      <${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} />`}
+      ${(may("author") || !report.changes?.length) && html`<${Changes} report=${report} mode=${files.mode} />`}<${Replay} replay=${files.replay} /></div>`;
 }

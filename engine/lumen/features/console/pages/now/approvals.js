@@ -1,8 +1,9 @@
 // Transitions that wait for a person's GO, with the time after which they go or don't; and how far the robot goes alone.
 import { command } from "../commands.js";
+import { Place, Values } from "../places.js";
 import { inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
-import { Part, Place, Until, Usable, html, t } from "../ui.js";
+import { Part, Until, Usable, html, t } from "../ui.js";
 import { isHere } from "../live.js";
 
 /** What a command of a robot is called: its verb, and the first text that says which. */
@@ -16,8 +17,7 @@ function Matter({ robot, one }) {
   const { result, ...data } = one.data ?? {}, would = one.would ?? [];
   return html`${typeof result === "string" && html`<p class="bubble visitor-said">
       <span class="speaker">${t("visitor.said")}</span> <span>“${result}”</span></p>`}
-    ${Object.keys(data).length > 0 && html`<p class="values">${Object.entries(data).map(([name, value]) => html`
-      <span>${name} = <b>${JSON.stringify(value)}</b></span> `)}</p>`}
+    <${Values} values=${data} />
     <p>${t(would.length ? "approve.would" : "approve.would.nothing")}</p>
     ${would.length > 0 && html`<ul class="would">${would.map((deed) => html`<li>
       ${deed.verb === "say" ? html`${t("approve.says")} <b lang=${deed.language}>“${deed.text}”</b>`

@@ -1,17 +1,30 @@
 // The latest of what happened; each opens its why.
 import { JOB, get, live } from "../live.js";
+import { Place, Values } from "../places.js";
 import { InEnglish, Quote, reasonOf, translated } from "../quoted.js";
-import { Dialog, Part, Place, clock, html, lineOf, t, useEffect, useState } from "../ui.js";
+import { may } from "../session.js";
+import { Dialog, Part, clock, html, lineOf, t, useEffect, useState } from "../ui.js";
 import en from "../texts/en.js";
 import { isTrouble } from "./troubles.js";
 
 const SHOWN = 80;
 
+/** The text of a link without a guard and without data: for people who write no files. */
+function plainly(text) {
+  const heard = /^heard \{"result": "((?:[^"\\]|\\.)*)"/.exec(text);
+  if (heard) return `heard “${heard[1].replaceAll('\\"', '"')}”`;
+  return text.replace(/, as (?!soon as possible)[^]*$/, "").replace(/ \{[^]*\}$/, "");
+}
+
+/** What of a chain a person is shown: an author all of it, others no messages of the bus, guards or data. */
+const shownOf = (chain) => (may("author") ? chain : chain.filter((link) => link.kind !== "message")
+  .map((link) => ({ ...link, text: plainly(link.text), values: null })));
+
 function Link({ link }) {
-  const values = Object.entries(link.values ?? {});
-  return html`<li class="link"><p><span class="badge" data-state="kind">${t(`kind.${link.kind}`)}</span> <${Quote} text=${link.text} named=${false} /></p>
+  return html`<li class="link"><p><span class="badge" data-state="kind">${t(`kind.${link.kind}`)}</span>
+      ${" "}<${Quote} text=${link.text} named=${false} /></p>
     <p class="place">${clock(link.at)} <${Place} file=${link.file} line=${link.line} /></p>
-    ${values.length > 0 && html`<p class="values">${values.map(([name, value]) => html`<span>${name} = <b>${JSON.stringify(value)}</b></span> `)}</p>`}</li>`;
+    <${Values} values=${link.values} /></li>`;
 }
 
 /** Why something was done: asked of the robot when it opens. */
@@ -19,9 +32,12 @@ export function Why({ robot, what, at, text, onClose }) {
   const [found, set] = useState(null), [failed, fail] = useState("");
   const then = new Date(Date.parse(at) + 1).toISOString(); // what happened within that millisecond is meant, too
   useEffect(() => { get("/api/why", { robot, what, at: then }, JOB).then((one) => (one.chain ? set(one) : fail(one.reason ?? en["why.none"])), (error) => fail(reasonOf(error))); }, []);
+  const chain = found ? shownOf(found.chain) : [];
   return html`<${Dialog} title=${t("why.of", { text })} onClose=${onClose}>
     ${failed && html`<p class="bad" role="alert"><${Quote} text=${failed} /></p>`}${!found && !failed && html`<p>${t("loading")}</p>`}
-    ${found && html`${found.chain.some((link) => translated(link.text) === null) && html`<${InEnglish} />`}<ol class="chain" tabindex="0" aria-label=${t("why.of", { text })}>${found.chain.map((link, n) => html`<${Link} key=${n} link=${link} />`)}</ol>`}</${Dialog}>`;
+    ${found && html`${chain.some((link) => translated(link.text) === null) && html`<${InEnglish} />`}
+      <ol class="chain" tabindex="0" aria-label=${t("why.of", { text })}>${chain.map((link, n) => html`
+        <${Link} key=${n} link=${link} />`)}</ol>`}</${Dialog}>`;
 }
 
 /** What `lumen why` is asked about for an entry: what it said, else what it did, else the state it entered. */

@@ -1,6 +1,7 @@
 // The active states as boxes in boxes, each with how long it has been active, and the timers that run.
+import { Place } from "../places.js";
 import { inPageLanguage } from "../quoted.js";
-import { Part, Place, Since, Until, html, t } from "../ui.js";
+import { Part, Since, Until, html, t } from "../ui.js";
 
 /** The innermost active states of a tree, one for each region. */
 export function innermost(states) {
