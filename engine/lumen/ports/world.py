@@ -42,7 +42,12 @@ class HearsVisitors(Protocol):
 
 @runtime_checkable
 class PretendsSkills(Protocol):
-    """A hall whose robot performs the verbs of features and projects without their code, as a story says."""
+    """A hall whose robot can perform the verbs of features and projects without their code, as a story says."""
+
+    @property
+    def runs_no_skills(self) -> bool:
+        """Whether it runs their code in no case, also outside of a story."""
+        ...
 
     def set_skills(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
         """Have verbs end so from now on: with a result, or by `fails` or `hangs`."""
