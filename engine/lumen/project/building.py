@@ -141,10 +141,15 @@ def draft(files: Mapping[str, bytes]) -> ProjectDraft:
     _accompany(found)
     found.bodies = {name: replace(body, passages=tuple(passages.values())) for name, body in found.bodies.items()}
     _messages(found)
+    _judge(found)
+    return found
+
+
+def _judge(found: ProjectDraft) -> None:
+    """Set for each file whether it was built whole: nothing of it was left out, and it has no error."""
     torn = {d.place.file for d in found.loose if d.severity is Severity.ERROR}
     for file, report in found.reports.items():
         report.whole = not (report.pruned or file in torn or has_errors(report.diagnostics))
-    return found
 
 
 def _beside(found: ProjectDraft) -> None:
