@@ -14,8 +14,8 @@ from typing import Any
 
 import lumen
 from lumen.language.projects import Project
+from lumen.run.activity_tracker import ActivityTracker
 from lumen.run.approvals import Approvals
-from lumen.run.doings import Doings
 from lumen.run.exhibition import Exhibition
 from lumen.run.now import NowView, moment
 from lumen.statechart import Machine, initial
@@ -53,12 +53,12 @@ def milliseconds(work: Any) -> float:
     return 1000 * median(spent)
 
 
-def line(name: str, project: Project, snapshot: Any, doings: Doings, status: Any) -> None:
+def line(name: str, project: Project, snapshot: Any, activity: ActivityTracker, status: Any) -> None:
     view = NowView()
 
     def take() -> Any:
         return moment(
-            project, snapshot, 1.0, doings, position=1, approvals=Approvals(), model=None, events=0, status=status
+            project, snapshot, 1.0, activity, position=1, approvals=Approvals(), model=None, events=0, status=status
         )
 
     taken, told = milliseconds(take), milliseconds(lambda: view.tell(take()))
@@ -70,16 +70,16 @@ def main() -> None:
     print(ROW.format("", "taken", "told", "size"))
     with tour() as exhibition:
         project, runtime = exhibition.project, exhibition.loop.runtime
-        doings = Doings(lambda: project, lambda: runtime.snapshot, lambda: 1.0)
-        doings.look()
-        line("the shipped tour, in `greet`", project, runtime.snapshot, doings, exhibition.status)
+        activity = ActivityTracker(lambda: project, lambda: runtime.snapshot, lambda: 1.0)
+        activity.look()
+        line("the shipped tour, in `greet`", project, runtime.snapshot, activity, exhibition.status)
     for kind in ("large", "wide"):
         machine = Machine.from_dict(chart(kind))
         snapshot = initial(machine).snapshot
         whole = Project("", "", "NAO", project.body, "", "b", {"b": machine})
-        doings = Doings(lambda whole=whole: whole, lambda snapshot=snapshot: snapshot, lambda: 1.0)  # type: ignore[misc]
-        doings.look()
-        line(f"a {kind} chart of {SIZE:,} states", whole, snapshot, doings, dict)
+        activity = ActivityTracker(lambda whole=whole: whole, lambda snapshot=snapshot: snapshot, lambda: 1.0)  # type: ignore[misc]
+        activity.look()
+        line(f"a {kind} chart of {SIZE:,} states", whole, snapshot, activity, dict)
 
 
 if __name__ == "__main__":

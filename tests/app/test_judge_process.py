@@ -22,13 +22,13 @@ def process() -> Iterator[JudgeProcess]:
 
 
 def test_each_question_has_its_answer_whatever_is_printed(process: JudgeProcess) -> None:
-    assert [process.ask(question) for question in ("one", "two")] == ["one", "two"]
+    assert [process.request(question) for question in ("one", "two")] == ["one", "two"]
 
 
 def test_a_fault_is_an_answer_and_the_next_question_has_one_too(process: JudgeProcess) -> None:
     with pytest.raises(ZeroDivisionError):
-        process.ask("a fault")
-    assert process.ask("one") == "one"
+        process.request("a fault")
+    assert process.request("one") == "one"
 
 
 @pytest.mark.parametrize(
@@ -45,17 +45,17 @@ def test_the_end_of_the_process_is_explained(
     process: JudgeProcess, question: str, fault: Fault, code: int, signal: str
 ) -> None:
     with pytest.raises(NoAnswerError) as raised:
-        process.ask(question)
+        process.request(question)
     assert (raised.value.fault, raised.value.code, raised.value.signal) == (fault, code, signal)
 
 
 def test_a_late_answer_ends_the_process_and_it_starts_again(process: JudgeProcess) -> None:
     with pytest.raises(NoAnswerError) as raised:
-        process.ask("silence", timeout=0.01)
+        process.request("silence", timeout=0.01)
     assert raised.value.fault is Fault.LATE
     assert not process.started
     process.start()
-    assert process.ask("one") == "one"
+    assert process.request("one") == "one"
 
 
 def test_its_end_is_noticed_by_the_thread_that_waits_for_an_answer(process: JudgeProcess) -> None:
@@ -63,7 +63,7 @@ def test_its_end_is_noticed_by_the_thread_that_waits_for_an_answer(process: Judg
 
     def ask() -> None:
         with pytest.raises(NoAnswerError) as raised:
-            process.ask("silence")
+            process.request("silence")
         ended.append(raised.value.fault)
 
     thread = threading.Thread(target=ask)
@@ -77,4 +77,4 @@ def test_a_message_without_an_answer_may_come_too_late(process: JudgeProcess) ->
     process.end()
     process.send("one")
     with pytest.raises(NoAnswerError):
-        process.ask("two")
+        process.request("two")

@@ -13,8 +13,8 @@ from lumen.bus import Bus, connect
 from lumen.language.commands import Look, Play, Say, Start
 from lumen.language.events import Event
 from lumen.ports import Message
+from lumen.run.activity_tracker import ActivityTracker
 from lumen.run.asking import operator_key
-from lumen.run.doings import Doings
 from lumen.run.exhibition import Exhibition
 from lumen.run.raised_events import person_in
 from lumen.statechart.direct_entry import entered_directly
@@ -35,13 +35,13 @@ def asker(exhibition: Exhibition, bus: Bus) -> Asker:
         exhibition.tick()
         return bool(came)
 
-    def ask(what: str, **more: Any) -> dict[str, Any]:
+    def send_request(what: str, **more: Any) -> dict[str, Any]:
         came.clear()
         bus.publish(operator_key("NAO"), {"ask": what, **more}, reply_to=ANSWERS)
         until(answered)
         return dict(came[0])
 
-    return ask
+    return send_request
 
 
 @pytest.mark.slow
@@ -133,21 +133,21 @@ def mine(tmp_path: Path) -> Path:
 def test_a_person_lets_an_event_happen_and_hears_whether_it_was_taken(mine: Path) -> None:
     bus = connect("memory://", sender="panel")
     with lumen.open(mine, bus=bus) as exhibition:
-        ask = asker(exhibition, bus)
-        before = ask("now")
+        send_request = asker(exhibition, bus)
+        before = send_request("now")
         assert (before["events"], before["saying"], before["motion"]) == (["back", "named", "next"], None, None)
         assert [s["name"] for s in before["states"]] == ["waiting"]
-        assert ask("event", event="next", by="Aisyah") == {"verdict": "done", "taken": True}
-        now = ask("now")
+        assert send_request("event", event="next", by="Aisyah") == {"verdict": "done", "taken": True}
+        now = send_request("now")
         assert [s["name"] for s in now["states"]] == ["shown"]
         assert [s["name"] for s in now["states"][0]["children"]] == ["shown.here"]
-        until(lambda: ask("now")["position"] > before["position"])  # it is kept on another thread
-        assert ask("event", event="next", by="Aisyah") == {"verdict": "done", "taken": False}
-        assert ask("event", event="back") == {"verdict": "done", "taken": True}
+        until(lambda: send_request("now")["position"] > before["position"])  # it is kept on another thread
+        assert send_request("event", event="next", by="Aisyah") == {"verdict": "done", "taken": False}
+        assert send_request("event", event="back") == {"verdict": "done", "taken": True}
         assert exhibition.why("waiting")["chain"][-1]["text"] == "panel"
-        closed = next(way for way in ask("now")["ways"] if way["event"] == "next")
+        closed = next(way for way in send_request("now")["ways"] if way["event"] == "next")
         assert (closed["open"], closed["why"]) == (False, "context.n < 1 is false: context.n is 1")
-        assert ask("event", event="named", data={"name": "Budi"}, by="Aisyah")["taken"]
+        assert send_request("event", event="named", data={"name": "Budi"}, by="Aisyah")["taken"]
         assert exhibition.context["who"] == "Budi"
         last = exhibition.why("shown")["chain"][-1]
         assert (last["kind"], last["text"]) == ("person", "Aisyah")
@@ -165,7 +165,7 @@ def test_the_data_of_an_event_is_as_declared_or_refused_with_what_would_be_right
     """By `events:` of the behaviour, by what robots raise, and by the messages of routes."""
     bus = connect("memory://")
     with lumen.open(mine, bus=bus) as exhibition:
-        ask = asker(exhibition, bus)
+        send_request = asker(exhibition, bus)
         right = ". It has `name` (string); `age` (integer), which may be left out"
         for data, wrong in (
             ({"name": 3}, "name: 3 is not of type 'string'"),
@@ -174,33 +174,36 @@ def test_the_data_of_an_event_is_as_declared_or_refused_with_what_would_be_right
             ({"name": "Budi", "age": "old"}, "age: 'old' is not of type 'integer'"),
         ):
             reason = f"the data of `named` is not as declared: {wrong}{right}"
-            assert ask("event", event="named", data=data) == {"verdict": "refused", "reason": reason}
+            assert send_request("event", event="named", data=data) == {"verdict": "refused", "reason": reason}
         assert exhibition.context["who"] == ""
-        assert "'sensor' is a required property" in ask("event", event="touched", data={})["reason"]
-        assert ask("event", event="touched", data={"sensor": "head"})["verdict"] == "done"
-        assert ask("event", event="nobody.declares.this", data=[1])["verdict"] == "done"
-        assert ask("event", event="named", data={"name": "Budi"})["taken"]
+        assert "'sensor' is a required property" in send_request("event", event="touched", data={})["reason"]
+        assert send_request("event", event="touched", data={"sensor": "head"})["verdict"] == "done"
+        assert send_request("event", event="nobody.declares.this", data=[1])["verdict"] == "done"
+        assert send_request("event", event="named", data={"name": "Budi"})["taken"]
 
 
 def test_an_event_of_a_route_has_the_data_of_its_message(copy: Path) -> None:
     bus = connect("memory://")
     with lumen.open(copy, bus=bus) as exhibition:
-        ask = asker(exhibition, bus)
-        assert ask("event", event="face", data={"x": "left", "y": 120})["verdict"] == "refused"
-        assert ask("event", event="face", data={"x": 160, "y": 120})["verdict"] == "done"
+        send_request = asker(exhibition, bus)
+        assert send_request("event", event="face", data={"x": "left", "y": 120})["verdict"] == "refused"
+        assert send_request("event", event="face", data={"x": 160, "y": 120})["verdict"] == "done"
 
 
 def test_what_can_be_no_event_is_refused(mine: Path) -> None:
     bus = connect("memory://")
     with lumen.open(mine, bus=bus) as exhibition:
-        ask = asker(exhibition, bus)
+        send_request = asker(exhibition, bus)
         for event in ("", 3, None, "x" * 101):
-            assert ask("event", event=event) == {"verdict": "refused", "reason": "`event` must be the name of an event"}
+            assert send_request("event", event=event) == {
+                "verdict": "refused",
+                "reason": "`event` must be the name of an event",
+            }
         for event in ("done.command.d1", "shared.changed"):
-            refused = ask("event", event=event)
+            refused = send_request("event", event=event)
             assert refused["verdict"] == "refused"
             assert "only robots send it" in refused["reason"]
-        assert '`{"ask": "now"}`' in ask("nothing")["reason"]
+        assert '`{"ask": "now"}`' in send_request("nothing")["reason"]
 
 
 def test_a_text_of_somebody_else_is_told_as_long_as_it_takes(copy: Path) -> None:
@@ -215,10 +218,10 @@ def test_a_text_of_somebody_else_is_told_as_long_as_it_takes(copy: Path) -> None
 
 
 def test_a_command_waits_until_it_is_answered() -> None:
-    doings = Doings(lambda: lumen.load(ROOT), lambda: None, lambda: 0.0)
+    activity = ActivityTracker(lambda: lumen.load(ROOT), lambda: None, lambda: 0.0)
     for id, command in (("c1", Look()), ("c2", Play("wave")), ("c3", Say("Hello!"))):
-        doings.performing(Start(id, command), 0.0)
-    assert doings.commands == 3
+        activity.performing(Start(id, command), 0.0)
+    assert activity.commands == 3
     for left, id in ((2, "c1"), (1, "c2"), (0, "c3")):
-        doings.answered(Event(f"done.command.{id}", None, 1.0))
-        assert doings.commands == left
+        activity.answered(Event(f"done.command.{id}", None, 1.0))
+        assert activity.commands == left

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from lumen.errors import BusError
 from lumen.project.files import read_files
 from lumen.project.home import ADDRESS_FILE, Home
-from lumen.run.asking import ask
+from lumen.run.asking import send_request
 from lumen.run.reaching import Reached, reach_exhibition
 from lumen.run.reload.requests import COMMAND
 from lumen.run.reload_journal import Journal
@@ -85,7 +85,7 @@ class Exhibition:
 
     def asked(self, key: str, body: Any) -> Any:
         """The first answer. Raises BusError where there is none in time."""
-        return next(ask(self.bus, key, body, ANSWERS, first=PATIENCE))
+        return next(send_request(self.bus, key, body, ANSWERS, first=PATIENCE))
 
     def size(self) -> Size:
         """What its process has now."""

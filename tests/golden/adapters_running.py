@@ -47,7 +47,7 @@ PARTS = {
     "VisitorPart": "visitor",
 }
 OBSERVERS = {
-    "Doings": "doings",
+    "ActivityTracker": "doings",
     "MeasureCounter": "measures of the fleet",
     "Narrator": "narrator",
     "RaisedEvents": "raised events",

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from lumen.errors import LumenError
 from lumen.insight.replay.against import ENDS, MORE_STEPS, MOST_TIMES, SAME, SAYS, played_against
 from lumen.insight.replay.entries import JournalJump
-from lumen.insight.replay.visits import DROPPED, RecordedVisit, home_of, visits
+from lumen.insight.replay.visits import DROPPED, RecordedVisit, visits, waiting_state
 from lumen.language.machines import MachineDefinition
 from lumen.statechart import Machine
 from tests.journal.making import Recorded, bundle
@@ -66,7 +66,7 @@ def visit(tmp_path: Path) -> RecordedVisit:
 
 
 def test_a_visit_is_from_leaving_home_until_back(visit: RecordedVisit) -> None:
-    assert home_of(Machine.from_dict(GUIDE)) == "idle"
+    assert waiting_state(Machine.from_dict(GUIDE)) == "idle"
     assert visit.whole
     assert visit.inputs[0].event.name == "face"
     assert visit.inputs[-1].entered == ("idle",)

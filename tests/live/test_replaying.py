@@ -11,7 +11,7 @@ from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
 from lumen.language.machines import MachineDefinition
 from lumen.lint import check_files
 from lumen.project.files import read_files
-from lumen.run.recovery.recording import record_inputs
+from lumen.run.recovery.journaling import record_inputs
 from lumen.run.snapshot_store import SnapshotStore
 from tests.live.shows import Live
 

@@ -237,7 +237,7 @@ def test_files_that_are_links_are_switched_together(tmp_path: Path, clock: Clock
 
 
 def test_who_asks_gets_an_answer_whether_something_changed_or_not(watched: Watched) -> None:
-    watched.watcher.ask("please")
+    watched.watcher.request("please")
     saved = watched.next()
     assert (saved.asked, saved.changed) == ("please", ())
 

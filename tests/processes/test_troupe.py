@@ -169,13 +169,13 @@ def test_a_robot_that_a_person_stopped_wakes_for_a_hand_on_its_head_and_for_resu
     reports = Collector()
     troupe.ear.subscribe("avatar.NAO.event.command", reports)
 
-    def ask(method: str, **parameter: object) -> None:
+    def send_request(method: str, **parameter: object) -> None:
         troupe.ear.publish("avatar.NAO.stop", {"type": "motion", "method": method, "parameter": parameter}, ttl=2.0)
 
     def hand(*, pressed: bool) -> None:
         troupe.ear.publish("avatar.NAO.hall", {"sensor": "FrontTactil", "pressed": pressed}, ttl=2.0)
 
-    troupe.insist(lambda: ask("rest", by="Ada"), lambda: "stopped" in brain.states)
+    troupe.insist(lambda: send_request("rest", by="Ada"), lambda: "stopped" in brain.states)
     number = count()
 
     def wake() -> None:
@@ -191,8 +191,8 @@ def test_a_robot_that_a_person_stopped_wakes_for_a_hand_on_its_head_and_for_resu
     hand(pressed=False)
     (part,) = [part for part in robot.process.parts if isinstance(part, HostedRobotPart)]
     assert part.server.hold.stopped is None
-    troupe.insist(lambda: ask("rest", by="Ada"), lambda: "stopped" in brain.states)
-    troupe.insist(lambda: ask("resume", by="Bo"), lambda: "watching" in brain.states)
+    troupe.insist(lambda: send_request("rest", by="Ada"), lambda: "stopped" in brain.states)
+    troupe.insist(lambda: send_request("resume", by="Bo"), lambda: "watching" in brain.states)
 
 
 def test_a_new_brain_of_a_robot_that_a_person_stopped_prints_no_command_as_performed(

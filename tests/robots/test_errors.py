@@ -73,12 +73,12 @@ def not_a_nao(project: Project) -> None:
 def lost(project: Project) -> None:
     with session(project) as (nao, one):
         nao.drop()
-        one.ask("ALMotion", "robotIsWakeUp")
+        one.request("ALMotion", "robotIsWakeUp")
 
 
 def no_such_service(project: Project) -> None:
     with session(project) as (_, one):
-        one.ask("ALDance", "dance")
+        one.request("ALDance", "dance")
 
 
 def no_sonars(project: Project) -> None:

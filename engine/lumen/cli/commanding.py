@@ -7,7 +7,7 @@ from typing import Any
 from lumen.cli.formats import print_object
 from lumen.cli.reach import reach
 from lumen.ports import Bus
-from lumen.run.asking import OPERATOR_ANSWERS, ask
+from lumen.run.asking import OPERATOR_ANSWERS, send_request
 from lumen.run.resting import TAKEN
 
 COMMAND_TIMEOUT = 30.0
@@ -25,7 +25,7 @@ def command(options: argparse.Namespace, body: Any, done: str) -> int:
 
 def answered(bus: Bus, key: str, body: Any, timeout: float) -> Any:
     """What the robot says to it. Raises BusError where it says nothing within the timeout [s]."""
-    return next(ask(bus, key, body, OPERATOR_ANSWERS, first=timeout))
+    return next(send_request(bus, key, body, OPERATOR_ANSWERS, first=timeout))
 
 
 def told(options: argparse.Namespace, answer: Any, done: str) -> int:

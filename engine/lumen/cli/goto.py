@@ -11,7 +11,7 @@ from lumen.cli.reach import configure_reach, reach
 from lumen.errors import UsageError
 from lumen.language.events import HELD
 from lumen.language.operator_requests import GOTO
-from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.asking import OPERATOR_ANSWERS, operator_key, send_request
 from lumen.run.reaching import Reached
 
 
@@ -28,12 +28,12 @@ def run(options: argparse.Namespace) -> int:
         raise UsageError("--format json can't ask for confirmation: add --yes")
     reached = reach(options)
     try:
-        way = _ask(reached, options.state, only="check")
+        way = _request(reached, options.state, only="check")
         if way["verdict"] != "refused":
             if not options.yes and not _sure(options.state, way):
                 print("nothing is changed")
                 return 1
-            way = _ask(reached, options.state, by=person())
+            way = _request(reached, options.state, by=person())
     finally:
         reached.bus.close()
     if options.format == "json":
@@ -48,9 +48,9 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _ask(reached: Reached, state: str, **more: str) -> dict[str, Any]:
+def _request(reached: Reached, state: str, **more: str) -> dict[str, Any]:
     question = GOTO(state=state, **more)
-    answer: dict[str, Any] = next(ask(reached.bus, operator_key(reached.robot), question, OPERATOR_ANSWERS))
+    answer: dict[str, Any] = next(send_request(reached.bus, operator_key(reached.robot), question, OPERATOR_ANSWERS))
     return answer
 
 

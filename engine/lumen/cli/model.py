@@ -7,7 +7,7 @@ from lumen.cli.formats import configure_format
 from lumen.cli.person import person
 from lumen.cli.reach import configure_reach, for_each_robot, reach
 from lumen.language.operator_requests import MODEL
-from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.asking import OPERATOR_ANSWERS, operator_key, send_request
 from lumen.run.resting import TAKEN
 
 
@@ -28,7 +28,7 @@ def _switch(options: argparse.Namespace) -> int:
     reached = reach(options)
     try:
         question = MODEL(on=options.state == "on", by=person())
-        answer = next(ask(reached.bus, operator_key(reached.robot), question, OPERATOR_ANSWERS))
+        answer = next(send_request(reached.bus, operator_key(reached.robot), question, OPERATOR_ANSWERS))
     finally:
         reached.bus.close()
     kept = f", {answer['text']}" if answer.get("text") else ""

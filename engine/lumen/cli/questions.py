@@ -11,7 +11,7 @@ from lumen.cli.reach import configure_reach, reach
 from lumen.errors import BusUnreachableError, UsageError
 from lumen.language.iso_time import time_of_day
 from lumen.language.operator_requests import OperatorRequest
-from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.asking import OPERATOR_ANSWERS, operator_key, send_request
 from lumen.run.recalling import answer_from_journal
 
 
@@ -68,7 +68,7 @@ def _asked(options: argparse.Namespace, question: OperatorRequest, at: str | Non
         return answer_from_journal(options.project, question.ask, what, at, str(error), options.robot_name)
     try:
         body = question(what=what, **({"at": at} if at else {}))
-        found: dict[str, Any] = next(ask(reached.bus, operator_key(reached.robot), body, OPERATOR_ANSWERS))
+        found: dict[str, Any] = next(send_request(reached.bus, operator_key(reached.robot), body, OPERATOR_ANSWERS))
     finally:
         reached.bus.close()
     if found.get("kept") == "later":

@@ -5,7 +5,7 @@ import json
 from typing import Any
 
 from lumen.cli.reach import configure_reach, reach
-from lumen.run.asking import ask
+from lumen.run.asking import send_request
 from lumen.run.reload.requests import command_key, status_key
 
 REQUESTS = {
@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> int:
     body = {"command": options.command or "reload", "now": options.now}
     reached = reach(options)
     try:
-        for answer in ask(reached.bus, command_key(reached.robot), body, status_key(reached.robot)):
+        for answer in send_request(reached.bus, command_key(reached.robot), body, status_key(reached.robot)):
             _node(answer, options.format)
             if not isinstance(answer, dict) or answer.get("final", True):
                 return int(not isinstance(answer, dict) or answer.get("verdict") == "refused")

@@ -29,7 +29,7 @@ from lumen.project.home import home_of as home_of_run
 from lumen.project.running_project import is_substituted, project_to_run
 from lumen.robot.bounded_robot import ability
 from lumen.run.audio_track import AudioTrack
-from lumen.run.chosen_stories import home_of
+from lumen.run.chosen_stories import project_of
 from lumen.run.compose import begin, claim
 from lumen.run.loudspeaker import Loudspeaker, Sounds
 from lumen.run.node import Node
@@ -119,7 +119,7 @@ class _OfferedRobots(tuple[str, ...]):
 def run(options: argparse.Namespace) -> int:
     give_back()
     named = () if options.story is None else (options.story,)
-    path = options.project or home_of(named)
+    path = options.project or project_of(named)
     root = project_to_run(path)
     use_model(options.model, [root])
     for broken in broken_features():

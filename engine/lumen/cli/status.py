@@ -12,7 +12,7 @@ from lumen.cli.reach import configure_reach
 from lumen.errors import BusError
 from lumen.language.events import HELD
 from lumen.language.operator_requests import STATUS
-from lumen.run.asking import FIRST_ANSWER_TIMEOUT, OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.asking import FIRST_ANSWER_TIMEOUT, OPERATOR_ANSWERS, operator_key, send_request
 from lumen.run.one_robot import one_robot, robots_of
 from lumen.run.reaching import reach_exhibition
 from lumen.run.recovery.last_run import last_run
@@ -61,7 +61,7 @@ def _status(options: argparse.Namespace, name: str, patience: float) -> dict[str
         return error
     try:
         found: dict[str, Any] = next(
-            ask(reached.bus, operator_key(reached.robot), STATUS(), OPERATOR_ANSWERS, first=patience)
+            send_request(reached.bus, operator_key(reached.robot), STATUS(), OPERATOR_ANSWERS, first=patience)
         )
         return found
     except BusError as error:

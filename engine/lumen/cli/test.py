@@ -23,7 +23,7 @@ from lumen.language.stories import Story
 from lumen.project.own_project import own_project
 from lumen.project.project_folders import MAIN_FILE
 from lumen.retrieval.ranking import QuestionTrial
-from lumen.run.chosen_stories import home_of, tests_of
+from lumen.run.chosen_stories import project_of, tests_of
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored, explored
 from lumen.run.kept_explorations import KeptExplorations
@@ -107,7 +107,7 @@ def _words(words: list[str]) -> tuple[str | None, list[str]]:
     """The project's folder, where the first word is one or a story's file lies in one; and what names stories."""
     if words and (Path(words[0]).is_dir() or Path(words[0]).name == MAIN_FILE):
         return words[0], words[1:]
-    return home_of(words), words
+    return project_of(words), words
 
 
 def _check(options: argparse.Namespace) -> None:

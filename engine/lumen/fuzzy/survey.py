@@ -50,11 +50,11 @@ class Survey:
     def __init__(self, controller: ControllerDefinition, resolution: int = SURVEY_RESOLUTION) -> None:
         self.controller = controller
         self._evaluator = Evaluator(silent(controller, resolution))
-        self.rest = {name: resting(variable) for name, variable in controller.inputs.items()}
+        self.neutral_inputs = {name: resting(variable) for name, variable in controller.inputs.items()}
 
     def at(self, changed: Mapping[str, float]) -> dict[str, float]:
         """The outputs there, NaN where no rule fires; other inputs rest."""
-        return self._evaluator.evaluate({**self.rest, **changed})
+        return self._evaluator.evaluate({**self.neutral_inputs, **changed})
 
     def slices(self) -> Iterator[Slice]:
         """Each output over each input that it depends on and whose range has ends."""

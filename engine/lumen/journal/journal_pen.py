@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from lumen.errors import SnapshotError
 from lumen.insight.replay.digest import StepDigest
 from lumen.insight.replay.entries import How, JournalInput, JournalJump, JumpKind
-from lumen.insight.replay.visits import home_of
+from lumen.insight.replay.visits import waiting_state
 from lumen.journal.journal_file import line_of
 from lumen.language.command_data import command_data
 from lumen.language.commands import Command
@@ -86,7 +86,7 @@ class JournalPen:
     def _jumped(self, told: Jumped) -> list[bytes]:
         kind, project, snapshot, commands, said = told
         if project is not self._project:
-            self._project, self._home = project, home_of(project.machine)
+            self._project, self._home = project, waiting_state(project.machine)
         self._snapshot, self._kept = snapshot, snapshot.at
         try:
             frozen = serialize(project.machine, snapshot)

@@ -11,7 +11,7 @@ from lumen.lint.heard_rows import HeardRows, SaidPhrase, SaidRow, hearing_behavi
 from lumen.lint.naming import looked_up
 from lumen.lint.speech import SHADOWED_ANSWER
 from lumen.lint.statecharts import within
-from lumen.lint.word_tables import home_of
+from lumen.lint.word_tables import declaring_report
 from lumen.project.draft import ProjectDraft
 from lumen.talk.hearing import HEARD, Taken, hearing_of
 from lumen.talk.sample_sentences import of_row
@@ -179,7 +179,7 @@ class _Examples(HeardRows):
     def answers(self) -> None:
         """Report rows of answers each of whose phrases takes another row of their table."""
         for name in dict.fromkeys(name for row in self for name in row.hears.names if name in self.machine.answers):
-            home = home_of(self.draft, self.behavior, "answers", name)
+            home = declaring_report(self.draft, self.behavior, "answers", name)
             for number in range(len(self.machine.answers[name]) if home and name not in self.looked else 0):
                 assert home
                 path: NodePath = ("answers", name, number, "phrases")

@@ -10,7 +10,7 @@ from lumen.language.machines import State, StateKind
 from lumen.lint.buttons import together
 from lumen.lint.heard_rows import HeardRows, SaidRow, hearing_behaviors, remembered, shown
 from lumen.lint.statecharts import within
-from lumen.lint.word_tables import WrittenPhrase, home_of, written_phrases
+from lumen.lint.word_tables import WrittenPhrase, declaring_report, written_phrases
 from lumen.project.draft import ProjectDraft
 from lumen.talk.finder import Find
 from lumen.talk.hearing import Taken, hearing_of
@@ -109,7 +109,9 @@ class _Questions(HeardRows):
         if asked and (within(row.state.path, state.path) or within(state.path, row.state.path)):
             return f"add a row `asked {name}` to {shown(row.state)} with the same target as `else` of {shown(state)}"
         keys = ("phrases", "answers")
-        if not any(home_of(self.draft, self.behavior, k, name) for k in keys if name in getattr(self.machine, k)):
+        if not any(
+            declaring_report(self.draft, self.behavior, k, name) for k in keys if name in getattr(self.machine, k)
+        ):
             remedy = f"write your own phrases for `{name}`, without `{words}`: the current ones come with Lumen"
         else:
             remedy = (

@@ -12,7 +12,7 @@ from lumen.language.machines import Hears, MachineDefinition, State, StateKind, 
 from lumen.lint.events import descriptor_path
 from lumen.lint.naming import heard_rows
 from lumen.lint.statecharts import within
-from lumen.lint.word_tables import WrittenPhrase, home_of, written_phrases
+from lumen.lint.word_tables import WrittenPhrase, declaring_report, written_phrases
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 from lumen.project.memoization import Same, memoize
@@ -96,12 +96,12 @@ class HeardRows:
         shipped: list[tuple[str, Mapping[str, tuple[str, ...]]]] = []
         for name in names:
             if name in self.machine.phrases:
-                if home := home_of(self.draft, self.behavior, "phrases", name):
+                if home := declaring_report(self.draft, self.behavior, "phrases", name):
                     yield from self.written(home, name, ("phrases", name))
                 else:
                     shipped.append((name, self.machine.phrases[name]))
             for number in range(len(self.machine.answers.get(name, ()))):
-                if home := home_of(self.draft, self.behavior, "answers", name):
+                if home := declaring_report(self.draft, self.behavior, "answers", name):
                     yield from self.written(home, name, ("answers", name, number, "phrases"))
         for name, table in shipped:
             phrases = (phrase for several in table.values() for phrase in several)

@@ -40,7 +40,7 @@ class SurfaceSamples(NamedTuple):
 
     slices: list[Slice]
     steps: list[tuple[Slice, SurfaceJump]]
-    rest: dict[str, float]
+    neutral_inputs: dict[str, float]
     reach: dict[str, tuple[float, float]]
     silent: dict[str, dict[str, float]]
     off: dict[str, float]
@@ -62,7 +62,9 @@ def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
         said = [y for s in slices if s.output == name for y in s.ys] + [outputs[name] for _, outputs in corners]
         sound = [y for y in said if not isnan(y)]
         reach[name] = (min(sound, default=0.0), max(sound, default=0.0))
-        found = next((point for point, outputs in _all(slices, corners, survey.rest, name) if isnan(outputs)), None)
+        found = next(
+            (point for point, outputs in _all(slices, corners, survey.neutral_inputs, name) if isnan(outputs)), None
+        )
         if found is not None:
             silent[name] = found
     return SurfaceSamples(slices, steps, survey.at({}), reach, silent, _off(controller, slices))
@@ -81,11 +83,14 @@ def _corners(controller: ControllerDefinition) -> Iterator[dict[str, float]]:
 
 
 def _all(
-    slices: list[Slice], corners: list[tuple[dict[str, float], dict[str, float]]], rest: dict[str, float], name: str
+    slices: list[Slice],
+    corners: list[tuple[dict[str, float], dict[str, float]]],
+    neutral_inputs: dict[str, float],
+    name: str,
 ) -> Iterator[tuple[dict[str, float], float]]:
     for s in slices:
         if s.output == name:
-            yield from (({**rest, s.input: x}, y) for x, y in zip(s.xs, s.ys, strict=True))
+            yield from (({**neutral_inputs, s.input: x}, y) for x, y in zip(s.xs, s.ys, strict=True))
     yield from ((point, outputs[name]) for point, outputs in corners)
 
 
@@ -209,7 +214,7 @@ def _height(point: tuple[float, float]) -> float:
 
 def _rests(controller: ControllerDefinition, found: Slice, report: DocumentReport, seen: SurfaceSamples) -> None:
     output, variable = controller.outputs[found.output], controller.inputs[found.input]
-    value = seen.rest[output.name]
+    value = seen.neutral_inputs[output.name]
     if abs(value) > REST_SHARE * (output.maximum - output.minimum) and output.minimum <= 0.0 <= output.maximum:
         message = (
             f"at rest, with `{variable.name}` at {variable.neutral:g}, `{output.name}` is {value:.3g} instead of 0"

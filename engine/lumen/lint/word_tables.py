@@ -64,7 +64,7 @@ def is_taken(phrase: str, other: Mapping[str, tuple[str, ...]]) -> bool:
     return all(form.plain and is_heard(" ".join(form.literals), other) for form in forms(phrase))
 
 
-def home_of(draft: ProjectDraft, behavior: str, key: str, name: str) -> DocumentReport | None:
+def declaring_report(draft: ProjectDraft, behavior: str, key: str, name: str) -> DocumentReport | None:
     """The report of the file that gives a behaviour those phrases or answers; None if they come with Lumen."""
     words = draft.behaviors[behavior].borrowed.get((key, name))
     if words is None:

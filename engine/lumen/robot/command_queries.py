@@ -42,7 +42,7 @@ class CommandQueries:
                 since = stopped.since.isoformat(timespec="seconds") if stopped else ""
                 self._reply(message, {"stopped_by": stopped.by if stopped else "", "since": since})
             case method:
-                self._ask(message, method)
+                self._request(message, method)
 
     def _let_go_on(self, message: Message) -> None:
         """In the name of who is `by` it."""
@@ -51,7 +51,7 @@ class CommandQueries:
         self._resume(shown(by) if isinstance(by, str) and by else UNNAMED_PROGRAM)
         self._reply(message, "command finished")
 
-    def _ask(self, message: Message, method: str) -> None:
+    def _request(self, message: Message, method: str) -> None:
         """`cancel` or `outcome` of the command whose `id` the parameter names.
 
         One that is unknown counts as cancelled from then on: it may still be on its way.

@@ -109,7 +109,7 @@ class CommandReceiver:
         self._project, self._robot, self._bus, self._clock = project, robot, bus, clock
         self._listeners = listeners
         self.hold = PersonHold(*listeners)
-        self._came: deque[_Arrival] = deque()
+        self._received: deque[_Arrival] = deque()
         self._own_waiting = self._others_waiting = 0
         self._aims: deque[_Arrival] = deque(maxlen=MAX_WAITING_AIMS)
         self._coming = threading.Lock()
@@ -140,7 +140,7 @@ class CommandReceiver:
     @property
     def waiting(self) -> bool:
         """Whether something has come that is not begun."""
-        return bool(self._came or self._aims)
+        return bool(self._received or self._aims)
 
     def begin(self) -> None:
         """Start what has come, and report what the robot has begun.
@@ -217,7 +217,7 @@ class CommandReceiver:
         with self._coming:
             refusal = ENDED if self._closed else "" if stopping else self._full(own=own)
             if not refusal:
-                self._came.append(_Arrival(message, self._clock()))
+                self._received.append(_Arrival(message, self._clock()))
                 self._own_waiting += own and not stopping
                 self._others_waiting += not own and not stopping
         if refusal:
@@ -237,7 +237,7 @@ class CommandReceiver:
     def _taken_commands(self) -> list[_Arrival]:
         with self._coming:
             self._own_waiting = self._others_waiting = 0
-            return self._taken(self._came)
+            return self._taken(self._received)
 
     def _full(self, *, own: bool) -> str:
         """Why there is no room for one more, of the behaviour (`own`) or of other modules; empty if there is room."""

@@ -91,7 +91,7 @@ class AnsweringThread:
         self._drops = DropLog(_log, "questions")
         self._thread = WatchedThread("lumen-answering", self._run)
 
-    def ask(self, message: Message) -> None:
+    def request(self, message: Message) -> None:
         """Queue a question about past steps, with the steps as they are now."""
         self.answer(message, partial(reply, self._steps(), message.body, self._journal))
 

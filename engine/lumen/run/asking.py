@@ -23,7 +23,7 @@ def operator_key(robot: str) -> str:
     return key_of_robot(OPERATOR_REQUEST, robot)
 
 
-def ask(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_ANSWER_TIMEOUT) -> Iterator[Any]:
+def send_request(bus: Bus, key: str, body: Any, reply_to: str, *, first: float = FIRST_ANSWER_TIMEOUT) -> Iterator[Any]:
     """Publish a message, and yield its answers as they arrive; the caller stops after the last.
 
     Raises BusUnreachableError if no answer arrives within `first` [s], the message comes back undelivered, or the

@@ -23,7 +23,7 @@ class RobotAttendance:
 
     def __init__(self, bus: Bus, project: Project) -> None:
         self._robot, self._here = project.robot, threading.Event()
-        self._modules, self._came = set[str](), threading.Event()
+        self._modules, self._received = set[str](), threading.Event()
         with suppress(BusError):  # a missing permission to read is reported elsewhere
             bus.subscribe(project.key_of(PRESENCE_ROUTE), self._hear)
 
@@ -35,8 +35,8 @@ class RobotAttendance:
         """Return the modules among these that show no sign of life within PRESENCE_TIMEOUT."""
         until = time.monotonic() + PRESENCE_TIMEOUT
         while (left := set(modules) - self._modules) and time.monotonic() < until:
-            self._came.wait(0.1)
-            self._came.clear()
+            self._received.wait(0.1)
+            self._received.clear()
         return left
 
     def _hear(self, message: Message) -> None:
@@ -47,4 +47,4 @@ class RobotAttendance:
                 self._here.set()
             case {"robot": self._robot, "parts": list(parts), "state": str(state)} if state == HERE:
                 self._modules |= set(map(str, parts[:MAX_PARTS]))
-                self._came.set()
+                self._received.set()

@@ -20,7 +20,7 @@ FOLDER = Path(STORIES)
 T = TypeVar("T")
 
 
-def home_of(words: Iterable[str]) -> str | None:
+def project_of(words: Iterable[str]) -> str | None:
     """Return the project of the first file in a `behaviors/stories/` or `sayings/` folder, None without one."""
     for word in words:
         file = Path(os.path.abspath(word))

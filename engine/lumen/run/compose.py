@@ -43,7 +43,7 @@ def claim(exhibitions: Sequence[Services]) -> None:
     """
     waiting = [one.node for one in exhibitions]
     for node in waiting:
-        node.ask()  # ask now: making the parts can take longer than the time for objections
+        node.request()  # ask now: making the parts can take longer than the time for objections
     while waiting := [node for node in waiting if node.claims()]:
         time.sleep(CLAIM_INTERVAL)
 

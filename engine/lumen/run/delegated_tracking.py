@@ -85,15 +85,15 @@ class DelegatedTracking:
         name = command.motion.name
         if not self._able() or self._project.motions.get(name) is not command.motion:
             return False
-        return self._ask({"id": id, "play": name, "bundle": self._project.hash})
+        return self._request({"id": id, "play": name, "bundle": self._project.hash})
 
     def _delegate(self, track: Track) -> None:
         """Ask the motion module to switch a controller, if the controller moves joints or goes off."""
         found = self._project.controllers.get(track.controller)
         if not track.on or (found and found.output_bindings):
-            self._ask({"track": track.controller, "on": track.on})
+            self._request({"track": track.controller, "on": track.on})
 
-    def _ask(self, body: dict[str, Any]) -> bool:
+    def _request(self, body: dict[str, Any]) -> bool:
         try:
             self._bus.publish(motion_key(self._project), body, ttl=MOTION_TTL)
         except BusError as error:

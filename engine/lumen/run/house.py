@@ -81,7 +81,7 @@ class House:
         with ExitStack() as stack:
             for node in going:
                 stack.enter_context(node.napping(going[0]))
-            ticks = going[0].doze(min(most, *(node.rest() for node in going)))
+            ticks = going[0].doze(min(most, *(node.quiet_time() for node in going)))
             for node in going:
                 node.pass_over(ticks)
 

@@ -155,7 +155,7 @@ class Node:
         self._interrupts += times
         self._leaving = leave
 
-    def ask(self) -> None:
+    def request(self) -> None:
         """Start the time within which another process can object to this process's roles."""
         self._asked = time.monotonic()
 
@@ -196,19 +196,19 @@ class Node:
         for thread in self._threads.tick():
             self._lose(thread)
         self._keep_pace()
-        self._heed()
+        self._on_interrupt()
         return self.now
 
     def nap(self, most: float = inf) -> None:
         """Sleep through ticks in which nothing happens, for at most `most` [s], until woken."""
         with self.napping(self):
-            self.pass_over(self.doze(min(most, self.rest())))
+            self.pass_over(self.doze(min(most, self.quiet_time())))
 
     def napping(self, on: "Node") -> AbstractContextManager[None]:
         """Return the context in which to nap on the clock of this node or of another one in this process."""
         return self._nap.on(on._dozes)
 
-    def rest(self) -> float:
+    def quiet_time(self) -> float:
         """Return for how long nothing happens without an input [s]; 0 if that is unknown."""
         if self.presence and not self.presence.settled:
             return 0.0
@@ -235,7 +235,7 @@ class Node:
 
     def _leap(self) -> None:
         """Skip the ticks before the next in which something happens, if all parts know when that is."""
-        if (rest := self.rest()) < inf:
+        if (rest := self.quiet_time()) < inf:
             self.pass_over(ceil(rest / TICK_PERIOD - ROUNDING) - 1)
 
     def use(self, project: Project) -> None:
@@ -323,7 +323,7 @@ class Node:
             self._narrator.line("time", line)
             self._time.paced(self.pace.realtime)
 
-    def _heed(self) -> None:
+    def _on_interrupt(self) -> None:
         """Pass the first interrupt on to the parts; end if none of them handles it."""
         if self._interrupts == 1 and not self._heeded:
             self._heeded = True

@@ -13,8 +13,8 @@ from lumen.language.events import robot_events
 from lumen.language.iso_time import iso_time
 from lumen.language.machines import MachineDefinition, Transition
 from lumen.language.projects import Project
+from lumen.run.activity_tracker import ActivityTracker, Spoken, UnderWay
 from lumen.run.approvals import Approvals, HeldEvent
-from lumen.run.doings import Doings, Spoken, UnderWay
 from lumen.statechart import Snapshot
 
 Status = dict[str, Any]
@@ -56,7 +56,7 @@ def moment(
     project: Project,
     snapshot: Snapshot,
     at: float,
-    doings: Doings,
+    activity: ActivityTracker,
     *,
     position: int,
     approvals: Approvals,
@@ -65,21 +65,21 @@ def moment(
     status: Callable[[], Status],
 ) -> PresentMoment:
     """Return the present state, without computing anything from it yet."""
-    said, moved = doings.saying, doings.motion
+    said, moved = activity.saying, activity.motion
     return PresentMoment(
         project,
         snapshot,
         at,
         position,
-        doings.since,
+        activity.since,
         said,
         moved,
-        doings.heard,
+        activity.heard,
         approvals.waiting,
         approvals.autonomy,
         model,
         events,
-        doings.commands,
+        activity.commands,
         status,
     )
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lumen.errors import BusError
 from lumen.expressions.json_schema import JsonSchema
-from lumen.insight.replay.visits import home_of
+from lumen.insight.replay.visits import waiting_state
 from lumen.language.causes import Cause, MessageOrigin
 from lumen.language.commands import Ask
 from lumen.language.events import Event
@@ -66,7 +66,7 @@ class Questions:
         self._fillers: Mapping[str, str] = {}
         self._patience = FILLER_AFTER
         self._open: dict[str, OpenQuestion] = {}
-        self._came: deque[tuple[Message, float]] = deque(maxlen=MAX_ANSWERS)
+        self._received: deque[tuple[Message, float]] = deque(maxlen=MAX_ANSWERS)
         self._key = ""
         self._undo: Callable[[], None] = _nothing
         self._retriever: Retriever | None = None
@@ -78,7 +78,7 @@ class Questions:
         options = project.modules[ANSWERS].options if ANSWERS in project.modules else {}
         filler = options.get("filler") or {}
         self._fillers, self._patience = filler.get("say") or {}, float(filler.get("after", FILLER_AFTER))
-        self._home = home_of(project.machine) if ANSWERS in project.modules else ""
+        self._home = waiting_state(project.machine) if ANSWERS in project.modules else ""
         key = project.key_of(ANSWER_ROUTE) if ANSWERS in project.modules else ""
         if key != self._key:
             undo, self._key = self._undo, key
@@ -127,13 +127,13 @@ class Questions:
     @property
     def empty(self) -> bool:
         """Whether no answer waits, and no filler is due later."""
-        return not self._came and not any(one.filler_at < inf for one in self._open.values())
+        return not self._received and not any(one.filler_at < inf for one in self._open.values())
 
     def drain(self, now: float) -> list[Event]:
         """Return the answers to open questions, each with its message as the cause; log and drop the others."""
         events = []
-        while self._came:
-            message, at = self._came.popleft()
+        while self._received:
+            message, at = self._received.popleft()
             body = message.body if isinstance(message.body, dict) else {}
             id = body.get("id")
             if not isinstance(id, str) or id not in self._open:
@@ -176,7 +176,7 @@ class Questions:
         return _unanswered(id, now, "the answer raises an event that was not offered")
 
     def _take(self, message: Message) -> None:
-        self._came.append((message, time()))
+        self._received.append((message, time()))
 
     def _passages(self, project: Project, language: str) -> "Retriever":
         from lumen.retrieval.retriever import Retriever  # imports numpy, which only questions need

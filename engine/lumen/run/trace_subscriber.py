@@ -57,14 +57,14 @@ class TraceSubscriber:
     def __init__(self, project: Project, bus: Bus, happen: Callable[[Event], None]) -> None:
         self.project, self.bus, self.happen = project, bus, happen
         self.watchers: list[TraceListener] = []
-        self._came: deque[Message] = deque(maxlen=MAX_PENDING_TRACES)
+        self._received: deque[Message] = deque(maxlen=MAX_PENDING_TRACES)
         self._guard = MessageGuard(_log, "a listener of the behaviour's trace")
-        self._undo = bus.subscribe(project.key_of(TRACE_ROUTE), self._came.append)
+        self._undo = bus.subscribe(project.key_of(TRACE_ROUTE), self._received.append)
 
     def tick(self, now: float) -> None:
         """Pass all received messages on to the watchers."""
-        while self._came:
-            message = self._came.popleft()
+        while self._received:
+            message = self._received.popleft()
             body = message.body
             if isinstance(body, dict) and body.get("robot") == self.project.robot:
                 with self._guard(message.key):

@@ -104,7 +104,7 @@ class FileWatcher(Generic[T]):
         for thread in self._threads:
             thread.start()
 
-    def ask(self, what: object) -> None:
+    def request(self, what: object) -> None:
         """Check the present files, changed or not; `what` is returned with the result."""
         self._asked.put(what)
         self._hint.set()

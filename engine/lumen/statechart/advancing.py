@@ -33,10 +33,10 @@ _SENTENCE = re.compile(r"(?<=[.!?…])\s+")
 
 def rest_of(command: BodyCommand, elapsed: float) -> BodyCommand:
     """A command that begins again, `elapsed` [s] after it first began: of what is said, that sentence and the rest."""
-    return replace(command, text=_rest(command.text, elapsed)) if isinstance(command, Say) else command
+    return replace(command, text=_remaining(command.text, elapsed)) if isinstance(command, Say) else command
 
 
-def _rest(text: str, elapsed: float) -> str:
+def _remaining(text: str, elapsed: float) -> str:
     sentences = _SENTENCE.split(text)
     said = max(elapsed - DOUBT, 0.0) * SPEECH_RATE
     while len(sentences) > 1 and len(sentences[0]) < said:

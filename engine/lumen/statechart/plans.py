@@ -127,13 +127,13 @@ class MicrostepPlanner:
 
     def beginning(self) -> MicrostepPlan:
         """The microstep that enters a machine."""
-        return self.passage(self.nothing, set(), StateSets(self.chart, {}).beginning(), {})
+        return self.forced_plan(self.nothing, set(), StateSets(self.chart, {}).beginning(), {})
 
     def end(self, start: Configuration) -> MicrostepPlan:
         """The microstep that leaves every state (`exitInterpreter`)."""
-        return self.passage(start, start.nodes, set(), {})
+        return self.forced_plan(start, start.nodes, set(), {})
 
-    def passage(
+    def forced_plan(
         self, start: Configuration, left: AbstractSet[StateNode], entered: AbstractSet[StateNode], history: History
     ) -> MicrostepPlan:
         """The microstep that leaves and enters these states, though no transition says so."""

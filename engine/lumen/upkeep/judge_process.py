@@ -90,7 +90,7 @@ class JudgeProcess:
             start_new_session=True,  # so that Ctrl-C does not reach it
         )
 
-    def ask(self, question: Any, timeout: float = threading.TIMEOUT_MAX) -> Any:
+    def request(self, question: Any, timeout: float = threading.TIMEOUT_MAX) -> Any:
         """Return the answer, or raise it if it is an exception.
 
         Raises NoAnswerError if the process ends without one, or is killed after `timeout` [s].

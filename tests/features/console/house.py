@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from lumen.errors import BusError
-from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.asking import OPERATOR_ANSWERS, operator_key, send_request
 from lumen.run.reaching import Reached, reach_exhibition
 from tests.features.console.pages import Browser
 from tests.guarded import DEVNULL, STDOUT, Guarded
@@ -128,7 +128,7 @@ class House:
     def _answer(self, key: Callable[[Reached], str], body: Any) -> Any:
         try:
             reached = self._reached()
-            return next(ask(reached.bus, key(reached), body, OPERATOR_ANSWERS, first=ANSWER))
+            return next(send_request(reached.bus, key(reached), body, OPERATOR_ANSWERS, first=ANSWER))
         except BusError:
             self._let_go()
             return None

@@ -22,7 +22,7 @@ def observed(url: str) -> dict[str, Any]:
 
     def note(name: str, method: str, path: str, body: Any = None) -> Any:
         try:
-            answer = api.ask(method, path, body)
+            answer = api.request(method, path, body)
             found[name] = shape(answer)
         except RobotFailedError as error:
             answer, found[name] = None, str(error).partition(": ")[2].split()[0]
@@ -42,17 +42,17 @@ def observed(url: str) -> dict[str, Any]:
     note("enable", "POST", "/api/motors/set_mode/enabled")
     note("wake", "POST", "/api/move/play/wake_up")
     note("wake runs", "GET", "/api/move/running")
-    until(lambda: not api.ask("GET", "/api/move/running"), what="it is awake")
+    until(lambda: not api.request("GET", "/api/move/running"), what="it is awake")
     found["awake"] = settled(api)
     found["target"] = note("set target", "POST", "/api/move/set_target", TARGET)
     move = note("goto", "POST", "/api/move/goto", GOTO)
     until(lambda: note("ignored", "POST", "/api/move/set_target", TARGET)["status"] == "ignored", what="the move runs")
-    found["ignored"] = api.ask("POST", "/api/move/set_target", TARGET)
+    found["ignored"] = api.request("POST", "/api/move/set_target", TARGET)
     note("stop", "POST", "/api/move/stop", move)
     note("stop unknown", "POST", "/api/move/stop", UNKNOWN)
     found["messages"] = messages(api.address)
     note("sleep", "POST", "/api/move/play/goto_sleep")
-    until(lambda: not api.ask("GET", "/api/move/running"), what="it sleeps")
+    until(lambda: not api.request("GET", "/api/move/running"), what="it sleeps")
     found["asleep"] = settled(api)
     return found
 
@@ -62,7 +62,7 @@ def settled(api: DaemonApi) -> dict[str, Any]:
     poses: list[dict[str, Any]] = []
 
     def still() -> bool:
-        poses.append(rounded(api.ask("GET", "/api/state/full")))
+        poses.append(rounded(api.request("GET", "/api/state/full")))
         return poses[-3:] == [poses[-1]] * 3
 
     until(still, what="the robot stays where it is", every=0.3)

@@ -66,9 +66,9 @@ class RealDaemon:
     def _runs(self) -> bool:
         assert self.process.poll() is None, self.log.read_text()[-2000:]
         try:
-            state = self.api.ask("GET", "/api/daemon/status")["state"]
+            state = self.api.request("GET", "/api/daemon/status")["state"]
             assert state != "error", self.log.read_text()[-2000:]
-            return bool(state == "running" and self.api.ask("GET", "/api/state/full"))
+            return bool(state == "running" and self.api.request("GET", "/api/state/full"))
         except RobotError:
             return False
 

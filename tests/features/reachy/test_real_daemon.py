@@ -38,7 +38,7 @@ def robot(project: Project, daemon: RealDaemon) -> Iterator[Driven]:
     assert one.answer("wake", Wake()).name == "done.command.wake"
     yield one
     one.answer("rest", Rest())
-    one.until(lambda: daemon.api.ask("GET", "/api/move/running") == [], "it lies")
+    one.until(lambda: daemon.api.request("GET", "/api/move/running") == [], "it lies")
     one.close()
 
 
@@ -86,9 +86,9 @@ def test_a_second_program_is_noticed(robot: Driven, daemon: RealDaemon, project:
     robot.robot.start("d", Perform(project.motions["dance"]))
     robot.tick()
     body = {"head_pose": {"yaw": 0.8}, "duration": 3.0}
-    daemon.api.ask("POST", "/api/move/goto", body)
+    daemon.api.request("POST", "/api/move/goto", body)
     assert "another program moves the robot" in robot.answer("d").data["reason"]
-    robot.until(lambda: daemon.api.ask("GET", "/api/move/running") == [], "that move has ended")
+    robot.until(lambda: daemon.api.request("GET", "/api/move/running") == [], "that move has ended")
     robot.until(lambda: not robot.robot._yields, "Lumen goes on")
     assert robot.answer("l", Look(0.1)).name == "done.command.l"
 

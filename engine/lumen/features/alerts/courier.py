@@ -40,7 +40,7 @@ class Ration:
             self._given[key] = now
             yield self._held.pop(key)
 
-    def rest(self) -> Iterator[Alert]:
+    def remaining(self) -> Iterator[Alert]:
         """Yield all alerts that are held back."""
         while self._held:
             yield self._held.pop(next(iter(self._held)))
@@ -88,7 +88,7 @@ class Courier:
         self.recipient = recipient
         self._deliver, self._tell, self._clock, self._day = deliver, tell, clock, day
         self._ration = Ration(interval)
-        self._came: deque[Alert] = deque(maxlen=MAX_PENDING_ALERTS)
+        self._received: deque[Alert] = deque(maxlen=MAX_PENDING_ALERTS)
         self._changed = threading.Condition()
         self._ending = self._failing = False
         self._until = 0.0
@@ -99,7 +99,7 @@ class Courier:
         """Deliver an alert if the recipient wants its kind."""
         if alert.kind in self.recipient.kinds:
             with self._changed:
-                self._came.append(alert)
+                self._received.append(alert)
                 self._changed.notify_all()
 
     def end(self, until: float) -> None:
@@ -120,19 +120,19 @@ class Courier:
     def _ended(self) -> bool:
         """Wait until there is something to do; return whether that is to end."""
         with self._changed:
-            if not (self._came or self._ending):
+            if not (self._received or self._ending):
                 self._changed.wait(self._ration.wait(self._clock()))
-            return self._ending and not self._came and self._ration.wait(self._clock()) is None
+            return self._ending and not self._received and self._ration.wait(self._clock()) is None
 
     def _due(self) -> list[Alert]:
         with self._changed:
-            came = list(self._came)
-            self._came.clear()
+            came = list(self._received)
+            self._received.clear()
         for alert in came:
             self._ration.take(alert)
         quiet = self.recipient.quiet is not None and self.recipient.quiet.hold(self._day())
         if self._ending:
-            rest = list(self._ration.rest())
+            rest = list(self._ration.remaining())
             return [] if quiet else rest
         return list(self._ration.due(self._clock(), quiet=quiet))
 

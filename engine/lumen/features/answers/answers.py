@@ -107,7 +107,7 @@ class Answers(Module):
 
     def hears(self) -> Mapping[str, MessageHandler]:
         """Return the handler of questions."""
-        return {"ask": self._ask}
+        return {"ask": self._request}
 
     def use(self, project: Project) -> None:
         """Use the settings of another bundle."""
@@ -124,7 +124,7 @@ class Answers(Module):
             self.tell(str(error))
             return None
 
-    def _ask(self, message: Message) -> None:
+    def _request(self, message: Message) -> None:
         began = time.monotonic()
         match message.body:
             case {"id": str(id), "question": str(), "language": str(), "within": int() | float() as within}:

@@ -114,7 +114,7 @@ def text_of(entry: Mapping[str, Any], words: EntryPhrases = ENGLISH) -> str:
         return told
     if "jump" in entry:
         return words.jump(str(entry["jump"]))
-    came, did = _came(entry, words), [*_did(entry, words)]
+    came, did = _received(entry, words), [*_did(entry, words)]
     if came.startswith(ENDS):
         return ", ".join(did)[:MAX_TEXT]
     if not did and entry.get("heard") in OFTEN:
@@ -136,7 +136,7 @@ def _noted(said: Mapping[str, Any], words: EntryPhrases) -> str:
     return words.by.format(text, words.person(str(said.get("by", ""))))[:MAX_TEXT]
 
 
-def _came(entry: Mapping[str, Any], words: EntryPhrases) -> str:
+def _received(entry: Mapping[str, Any], words: EntryPhrases) -> str:
     how = next((how for how in HOWS if how in entry), "")
     name, data = str(entry.get(how, "")), entry.get("data")
     cause = entry.get("cause")

@@ -83,7 +83,7 @@ class Exchanges:
         finally:
             del self._open[mark]
 
-    async def ask(self, key: str, body: Any, timeout: float) -> Any:
+    async def request(self, key: str, body: Any, timeout: float) -> Any:
         """The first answer to a question. Raises BusError where there is none within `timeout` [s]."""
         with self.send(key, body, ttl=timeout) as exchange:
             return await exchange.answer(timeout)

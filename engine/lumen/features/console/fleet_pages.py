@@ -40,7 +40,7 @@ class FleetPages:
 
     async def _asked(self, body: dict[str, Any]) -> dict[str, Any]:
         try:
-            said = await self._reception.watch.exchanges.ask(ORDER, body, ANSWER_TIMEOUT)
+            said = await self._reception.watch.exchanges.request(ORDER, body, ANSWER_TIMEOUT)
         except BusError:
             raise DeniedError(503, "no fleet centre answers on this bus: start one with `lumen fleet serve`") from None
         if not isinstance(said, dict):

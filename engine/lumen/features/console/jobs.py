@@ -63,7 +63,7 @@ class Jobs:
 
 async def _answer(process: JudgeProcess) -> bytes:
     try:
-        answer: bytes = await asyncio.to_thread(process.ask, None)
+        answer: bytes = await asyncio.to_thread(process.request, None)
     except (LumenError, NoAnswerError) as error:
         raise DeniedError(404 if isinstance(error, LumenError) else 503, why_none(error)) from None
     return answer

@@ -57,7 +57,7 @@ class Past:
         what = request.query_params.get("what", "")[:MAX_QUESTION]
         at = request.query_params.get("at") or None
         try:
-            said = await self._ask(view, question(what=what, **({"at": at} if at else {})))
+            said = await self._request(view, question(what=what, **({"at": at} if at else {})))
         except DeniedError:  # it does not answer: its journal may
             if not self._is_ours(view):
                 raise
@@ -73,7 +73,7 @@ class Past:
         data = await self._reception.posted(request)
         view = self._reception.robot(data.get("robot"))
         asked: dict[str, Any] = {key: data[key] for key in ("at", "position", "event", "bundle") if key in data}
-        said = await self._ask(view, FORK(**asked))
+        said = await self._request(view, FORK(**asked))
         if said.get("verdict") == "refused" or "would" not in said:
             reason = said.get("reason") if said.get("verdict") == "refused" else None
             raise DeniedError(
@@ -173,10 +173,10 @@ class Past:
         """Which of the robots of the project whose folder we know; the first where it is none of them."""
         return self._watch.keys.home(view.robot) if self._is_ours(view) else ""
 
-    async def _ask(self, view: KnownRobot, body: dict[str, Any]) -> dict[str, Any]:
+    async def _request(self, view: KnownRobot, body: dict[str, Any]) -> dict[str, Any]:
         key = self._watch.keys.of(view.robot).operator
         try:
-            said = await self._watch.exchanges.ask(key, body, QUESTION_TIMEOUT)
+            said = await self._watch.exchanges.request(key, body, QUESTION_TIMEOUT)
         except BusError as error:
             raise DeniedError(503, f"the exhibition does not answer: {error}") from None
         if not isinstance(said, dict):

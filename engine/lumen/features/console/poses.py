@@ -83,7 +83,7 @@ class Poses:
             self._process = self._jobs.begin("poses", self._home)
         process = self._process
         try:
-            answer: bytes = await asyncio.to_thread(process.ask, joints, POSE_TIME)
+            answer: bytes = await asyncio.to_thread(process.request, joints, POSE_TIME)
         except (LumenError, NoAnswerError) as error:
             self._process = None
             process.end()

@@ -130,7 +130,7 @@ class Watch:
             now = time.monotonic()
             if self.link.up:
                 with suppress(BusError):
-                    more = await self._ask(view)
+                    more = await self._request(view)
                     if now - asked > FILES_PERIOD or view.robot in self._news:
                         self._news.discard(view.robot)
                         asked = now
@@ -143,12 +143,12 @@ class Watch:
             if not more:
                 await asyncio.sleep(PERIOD if self.lookers else IDLE_PERIOD)
 
-    async def _ask(self, view: KnownRobot) -> bool:
+    async def _request(self, view: KnownRobot) -> bool:
         """Ask how it is and what happened; whether there is more of that."""
         keys = self.keys.of(view.robot)
-        said = await self.exchanges.ask(keys.operator, NOW(), QUESTION_TIMEOUT)
+        said = await self.exchanges.request(keys.operator, NOW(), QUESTION_TIMEOUT)
         if not isinstance(said, dict) or "robot" not in said:  # an older Lumen
-            said = await self.exchanges.ask(keys.operator, STATUS(), QUESTION_TIMEOUT)
+            said = await self.exchanges.request(keys.operator, STATUS(), QUESTION_TIMEOUT)
         if not isinstance(said, dict):
             return False
         view.answered(said)
@@ -164,7 +164,7 @@ class Watch:
     async def page(self, robot: str, begin: int) -> ToldPage:
         """Entries of the journal from a position on, some. Raises BusError where nobody answers."""
         question = JOURNAL(**{"from": begin})
-        said = await self.exchanges.ask(self.keys.of(robot).operator, question, QUESTION_TIMEOUT)
+        said = await self.exchanges.request(self.keys.of(robot).operator, question, QUESTION_TIMEOUT)
         said = said if isinstance(said, dict) else {}
         entries, epoch = said.get("entries"), said.get("epoch")
         return ToldPage(
@@ -173,7 +173,7 @@ class Watch:
         )
 
     async def _ask_files(self, view: KnownRobot) -> None:
-        said = await self.exchanges.ask(self.keys.of(view.robot).config, {"command": "status"}, QUESTION_TIMEOUT)
+        said = await self.exchanges.request(self.keys.of(view.robot).config, {"command": "status"}, QUESTION_TIMEOUT)
         if isinstance(said, dict):
             view.told(said)
 

@@ -59,7 +59,7 @@ INTERRUPTS = ("stop",)
 """The default phrases that are heard while the robot speaks."""
 TICK = 0.05
 """The accuracy of the time at which a change of listening is published [s]."""
-REST = 0.3
+PADDING = 0.3
 """The silence before and after speech that the recogniser receives [s]."""
 
 
@@ -188,7 +188,7 @@ class Ears(Module):
             spans = self._activity.spans(sound)
             if not spans:
                 return []
-            sound = sound.between(spans[0][0] - REST, spans[-1][1] + REST)
+            sound = sound.between(spans[0][0] - PADDING, spans[-1][1] + PADDING)
         sentences = expected(self.project, self._heard_names(), [u.text for u in own])
         if sentences != self._expected:
             self._expected = sentences

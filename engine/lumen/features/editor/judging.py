@@ -36,7 +36,7 @@ class Judge:
         question = self._number, analysis
         self._process.start()
         try:
-            found: Judgement | None = await asyncio.to_thread(self._process.ask, question)
+            found: Judgement | None = await asyncio.to_thread(self._process.request, question)
         except NoAnswerError:
             return None
         return found

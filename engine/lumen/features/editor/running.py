@@ -6,7 +6,7 @@ from threading import Event
 
 from lumen.errors import LumenError
 from lumen.language.operator_requests import STATUS
-from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.asking import OPERATOR_ANSWERS, operator_key, send_request
 from lumen.run.reaching import Reached, reach_exhibition, runs_here
 
 ASK_EVERY, ANSWER_TIMEOUT = 1.0, 2.0
@@ -52,7 +52,7 @@ class RunningExhibitions:
                 self._reached[root] = reach_exhibition(str(root), None)
             found = self._reached[root]
             key = operator_key(found.robot)
-            status = next(ask(found.bus, key, STATUS(), OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
+            status = next(send_request(found.bus, key, STATUS(), OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
             return tuple(map(str, status["configuration"]))
         except (LumenError, KeyError, TypeError, StopIteration):
             self._lose(root)

@@ -59,18 +59,18 @@ class Centre:
         self.heard: dict[str, HeardPresence] = {}
         self.log, self._stream = log, stream
         self._journal, self._signer, self._bus, self._tell, self._clock = journal, signer, bus, tell, clock
-        self._came: deque[Message] = deque(maxlen=MAX_WAITING)
+        self._received: deque[Message] = deque(maxlen=MAX_WAITING)
         self._told, self._version, self._kept = 0.0, -1, 0.0
         self._sent: dict[tuple[str, str], float] = {}
         self._known = frozenset(fleet.robots)
         heard = (PRESENCE,) if stream else (PRESENCE, *KEPT)
-        self._undo = [bus.subscribe(f"{key}.*.*", self._came.append) for key in heard]
+        self._undo = [bus.subscribe(f"{key}.*.*", self._received.append) for key in heard]
 
     def tick(self) -> None:
         """Process received messages, advance the rollout, and send orders."""
         now = self._clock()
-        while self._came:
-            self._hear(self._came.popleft(), now)
+        while self._received:
+            self._hear(self._received.popleft(), now)
         for entry in self._stream.take() if self._stream else ():
             self._count(entry, now)
         if why := self.log.save():

@@ -27,14 +27,14 @@ class CentreDesk:
 
     def __init__(self, centre: Centre, bus: Bus) -> None:
         self._centre, self._bus = centre, bus
-        self._came: deque[Message] = deque(maxlen=100)
+        self._received: deque[Message] = deque(maxlen=100)
         self._parts = BundleParts()
-        self._undo = bus.subscribe(ORDER, self._came.append)
+        self._undo = bus.subscribe(ORDER, self._received.append)
 
     def tick(self, now: float) -> None:
         """Answer the requests received; `now` is the centre's time [s since 1970]."""
-        while self._came:
-            message = self._came.popleft()
+        while self._received:
+            message = self._received.popleft()
             try:
                 answer = {"ok": True, **self.answer(message.body, now)}
             except (UsageError, ValueError) as error:

@@ -22,7 +22,7 @@ from lumen.language.fleet_keys import ORDER
 from lumen.lint import check_files
 from lumen.project.project_folders import FLEET_FILE
 from lumen.project.units import seconds
-from lumen.run.asking import OPERATOR_ANSWERS, ask
+from lumen.run.asking import OPERATOR_ANSWERS, send_request
 from lumen.run.versions import version
 
 WHATS: Mapping[str, str] = {
@@ -188,7 +188,7 @@ def _asked(options: argparse.Namespace, root: Path, body: Mapping[str, Any], wha
     bus = _connected(url, "lumen fleet")
     question = {"ask": what or options.what, "by": getpass.getuser(), **body}
     try:
-        answer = next(ask(bus, ORDER, question, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
+        answer = next(send_request(bus, ORDER, question, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT))
     except BusUnreachableError:
         raise BusUnreachableError(f"no centre answers on {bus_name(url)}: start it with `lumen fleet serve`") from None
     finally:

@@ -138,10 +138,12 @@ class FleetPart(Part):
             house, self._robot, fleet.key, taker, memory, bundle_folder(root),
             save=lambda memory: keep(home, self._robot, memory), tell=tell, incident=self._incident,
         )  # fmt: skip
-        self._came: deque[Message] = deque(maxlen=MAX_WAITING)
+        self._received: deque[Message] = deque(maxlen=MAX_WAITING)
         self._told, self._as = time.monotonic(), ""
         self._counting, self._numbered = ("", 0.0), time.monotonic()
-        self._undo = [self._bus.subscribe(key, self._came.append) for key in (desired_key(house), bundle_key(house))]
+        self._undo = [
+            self._bus.subscribe(key, self._received.append) for key in (desired_key(house), bundle_key(house))
+        ]
 
     def begin(self, now: float) -> None:
         """Publish the robot's presence."""
@@ -149,8 +151,8 @@ class FleetPart(Part):
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
         """Process received orders and bundles, advance the agent, and publish the presence if it changed or is due."""
-        while self._came:
-            message = self._came.popleft()
+        while self._received:
+            message = self._received.popleft()
             hear = self.agent.order if message.key == desired_key(self._house) else self.agent.bundle
             hear(message.body)
         self.agent.tick()

@@ -32,7 +32,7 @@ from lumen.project.files import read_files
 from lumen.project.home import Home, home_of
 from lumen.project.running_project import project_to_run
 from lumen.project.units import seconds
-from lumen.run.asking import OPERATOR_ANSWERS, ask, operator_key
+from lumen.run.asking import OPERATOR_ANSWERS, operator_key, send_request
 from lumen.run.reaching import Reached
 from lumen.run.snapshot_store import SnapshotStore
 
@@ -90,7 +90,7 @@ def _recover(options: argparse.Namespace) -> int:
 
 
 def _mark(options: argparse.Namespace, reached: Reached) -> int:
-    answer = next(ask(reached.bus, operator_key(reached.robot), MARK(text=options.mark), OPERATOR_ANSWERS))
+    answer = next(send_request(reached.bus, operator_key(reached.robot), MARK(text=options.mark), OPERATOR_ANSWERS))
     done = answer.get("verdict") == "done" if isinstance(answer, dict) else False
     text = str(answer.get("text" if done else "reason", "")) if isinstance(answer, dict) else str(answer)
     _say(options, f"marked: {text}" if done else f"nothing is kept: {text}", marked=done, reason=text)
@@ -152,7 +152,7 @@ def _running_project(root: Path, reached: Reached) -> Project:
     """
     kept: dict[str, bytes] | None = None
     with suppress(BusError, TypeError, KeyError):
-        status = next(ask(reached.bus, operator_key(reached.robot), STATUS(), OPERATOR_ANSWERS))
+        status = next(send_request(reached.bus, operator_key(reached.robot), STATUS(), OPERATOR_ANSWERS))
         kept = SnapshotStore(Home(home_of(root, reached.home))).files(str(status["bundle"]))
     project = check_files(root, as_robot(kept or read_files(root), reached.home))[0]
     if project is None:

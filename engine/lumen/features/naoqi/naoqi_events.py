@@ -47,7 +47,7 @@ class NaoqiEvents:
         self.pressed = dict.fromkeys(sensors, False)
         self.heard = 0
         self._since = dict.fromkeys(self.pressed, 0.0)
-        self._came: deque[tuple[str, bool]] = deque(maxlen=1_000)
+        self._received: deque[tuple[str, bool]] = deque(maxlen=1_000)
         self._sounds: deque[tuple[float, float]] = deque(maxlen=1)
         self._kept: list[Any] = []
 
@@ -84,10 +84,10 @@ class NaoqiEvents:
         if felt:
             for name, value in zip(felt.names, felt.values, strict=True):
                 if felt.time > self._since[name] + EVENT_SETTLE_TIME and self.pressed[name] != bool(value):
-                    self._came.append((name, bool(value)))
+                    self._received.append((name, bool(value)))
         changed = []
-        while self._came:
-            name, value = self._came.popleft()
+        while self._received:
+            name, value = self._received.popleft()
             if name not in self.pressed or self.pressed[name] != value:
                 if name in self.pressed:
                     self.pressed[name], self._since[name] = value, now
@@ -105,7 +105,7 @@ class NaoqiEvents:
         self.heard += 1
 
     def _hear(self, name: str, value: Any) -> None:
-        self._came.append((name, bool(value)))
+        self._received.append((name, bool(value)))
         self.heard += 1
 
 

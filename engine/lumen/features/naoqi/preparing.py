@@ -39,8 +39,8 @@ def prepare(session: NaoqiSession, body: Body, *, again: bool) -> None:
     _find(session)
     _check_version(session)
     _check_joints(session, body)
-    if session.has("ALAutonomousLife") and session.ask("ALAutonomousLife", "getState") != "disabled":
-        session.ask("ALAutonomousLife", "setState", "disabled", patience=AUTONOMOUS_LIFE_TIMEOUT)
+    if session.has("ALAutonomousLife") and session.request("ALAutonomousLife", "getState") != "disabled":
+        session.request("ALAutonomousLife", "setState", "disabled", patience=AUTONOMOUS_LIFE_TIMEOUT)
     if again:
         halt(session, list(body.joints))
     _protect(session)
@@ -66,7 +66,7 @@ def _find(session: NaoqiSession) -> None:
 def _check_version(session: NaoqiSession) -> None:
     if not session.has("ALSystem"):
         return
-    text = str(session.ask("ALSystem", "systemVersion"))
+    text = str(session.request("ALSystem", "systemVersion"))
     found = re.match(r"(\d+)\.(\d+)", text)
     if found is None:
         _log.warning("the robot reports the NAOqi version `%s`, which Lumen cannot read", text[:40])
@@ -80,7 +80,7 @@ def _check_version(session: NaoqiSession) -> None:
 
 def _check_joints(session: NaoqiSession, body: Body) -> None:
     """Raise RobotError if the robot lacks a joint: a body without hands is another model."""
-    names = list(map(str, session.ask("ALMotion", "getBodyNames", "Body")))
+    names = list(map(str, session.request("ALMotion", "getBodyNames", "Body")))
     for joint in body.joints:
         if joint not in names:
             raise RobotModelError(

@@ -121,7 +121,7 @@ class NaoqiRobot(ExecutingRobot):
         self._naoqi_events.listen(self._session)
         self._sensors.begin()
         if not again:
-            self._area.meet(self._session.ask("ALMotion", "getRobotPosition", True))
+            self._area.meet(self._session.request("ALMotion", "getRobotPosition", True))
 
     def _feel(self, now: float) -> None:
         """Process changes of the connection, touches, falls, sounds, battery and heat since the last tick."""

@@ -75,7 +75,7 @@ class NaoqiSensors:
         self._handle, self._numb = "", False
         self._behind.clear()
         if self._session.has("ALVideoDevice"):
-            for handle in self._session.ask("ALVideoDevice", "getSubscribers") or ():
+            for handle in self._session.request("ALVideoDevice", "getSubscribers") or ():
                 if str(handle).startswith(SUBSCRIBER_NAME):
                     self._session.post("ALVideoDevice", "unsubscribe", handle)
         if self._session.has("ALSonar"):
@@ -90,8 +90,8 @@ class NaoqiSensors:
     def joints(self) -> Joints:
         """Return the joints' angles and stiffness, with the robot's other internal senses."""
         now = self._clock()
-        angles = self._numbers(self._session.ask("ALMotion", "getAngles", self._names, True), "getAngles")
-        stiffness = self._numbers(self._session.ask("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
+        angles = self._numbers(self._session.request("ALMotion", "getAngles", self._names, True), "getAngles")
+        stiffness = self._numbers(self._session.request("ALMotion", "getStiffnesses", self._names), "getStiffnesses")
         felt = *self._feelings(), self._whereabouts(), self._life()
         return Joints(now, tuple(self._names), angles, stiffness, *felt)
 
@@ -128,7 +128,7 @@ class NaoqiSensors:
             self._size = self._wanted
         handle = self._handle or self._subscribe()
         try:
-            found = self._session.ask("ALVideoDevice", "getImageRemote", handle)
+            found = self._session.request("ALVideoDevice", "getImageRemote", handle)
             pixels, stamp = self._pixels(found)
         except RobotError:
             self._handle = ""
@@ -167,7 +167,7 @@ class NaoqiSensors:
     def _whereabouts(self) -> Whereabouts | None:
         """Return the robot's place by its odometry; None if that is unavailable."""
         try:
-            found = self._session.ask("ALMotion", "getRobotPosition", True)
+            found = self._session.request("ALMotion", "getRobotPosition", True)
             return self._place([float(found[i]) for i in range(3)])
         except (RobotError, TypeError, ValueError, IndexError):
             return None
@@ -182,7 +182,7 @@ class NaoqiSensors:
         if self._size not in RESOLUTIONS:
             raise SenseError(f"the robot's camera has no images of {self._size}")
         arguments = (SUBSCRIBER_NAME, TOP_CAMERA, RESOLUTIONS[self._size], RGB_COLOUR_SPACE, CAMERA_RATE)
-        self._handle = str(self._session.ask("ALVideoDevice", "subscribeCamera", *arguments) or "")
+        self._handle = str(self._session.request("ALVideoDevice", "subscribeCamera", *arguments) or "")
         if not self._handle:
             raise SenseError("cannot subscribe to the camera: too many programs use it")
         return self._handle
@@ -199,7 +199,7 @@ class NaoqiSensors:
         return bytes(pixels), float(seconds) + float(microseconds) / 1e6
 
     def _memory(self, keys: list[str]) -> list[Any]:
-        found = self._session.ask("ALMemory", "getListData", keys)
+        found = self._session.request("ALMemory", "getListData", keys)
         if not isinstance(found, Sequence) or len(found) != len(keys):
             raise SenseError("ALMemory did not answer for every key")
         return list(found)

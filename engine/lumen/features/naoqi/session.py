@@ -173,7 +173,7 @@ class NaoqiSession:
             self._serving[name] = self._called(future)
         return self._serving[name]
 
-    def ask(self, service: str, method: str, *arguments: Any, patience: float = 0.0) -> Any:
+    def request(self, service: str, method: str, *arguments: Any, patience: float = 0.0) -> Any:
         """Call a method and return NAOqi's answer; only for threads that may wait, at most `patience` [s] if that is
         longer.
 
@@ -191,7 +191,7 @@ class NaoqiSession:
 
         It ends when the returned object is released. Raises RobotError.
         """
-        subscriber = self.ask("ALMemory", "subscriber", event)
+        subscriber = self.request("ALMemory", "subscriber", event)
         try:
             subscriber.signal.connect(heard)
         except (AttributeError, RuntimeError) as error:

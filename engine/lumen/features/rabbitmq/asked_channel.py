@@ -10,7 +10,7 @@ class AskedConnection(Protocol):
 
     def until(self, done: Callable[[], object]) -> None: ...
 
-    def rest(self, seconds: float) -> None: ...
+    def pause(self, seconds: float) -> None: ...
 
     def asking(self) -> "AbstractContextManager[AskedChannel]": ...
 
@@ -27,7 +27,7 @@ class AskedChannel:
         channel.add_on_close_callback(lambda _, reason: self._closed.append(reason))
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
-        return lambda *args, **kwargs: self._ask(getattr(self._channel, name), *args, **kwargs)
+        return lambda *args, **kwargs: self._request(getattr(self._channel, name), *args, **kwargs)
 
     def send(self, exchange: str, key: str, properties: Any) -> None:
         """Send an empty message; if the broker refuses it, the next question raises."""
@@ -38,7 +38,7 @@ class AskedChannel:
         if self._channel.is_open:
             self._channel.close()
 
-    def _ask(self, method: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+    def _request(self, method: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
         answers: list[Any] = []
         method(*args, callback=answers.append, **kwargs)
         self.connection.until(lambda: answers or self._closed)

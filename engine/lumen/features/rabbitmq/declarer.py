@@ -79,7 +79,7 @@ class QueueDeclarer:
         if not _exists(channel, queue.name):
             self.settling.add(queue.name)
             channel.queue_declare(queue.name, durable=True, arguments=queue.arguments)
-            channel.connection.rest(QUORUM_SETTLE_TIME)
+            channel.connection.pause(QUORUM_SETTLE_TIME)
             self.settling.discard(queue.name)
         return _declare(channel, queue)
 

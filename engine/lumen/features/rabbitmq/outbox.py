@@ -57,7 +57,7 @@ class Outbox:
 
     def __init__(self, came: Callable[[], None] = lambda: None) -> None:
         self.drops = DropLog(_log)
-        self._came = came
+        self._received = came
         self._must: deque[OutgoingMessage] = deque()
         self._may: deque[OutgoingMessage | str] = deque()
         self._newest: dict[str, deque[OutgoingMessage]] = {}
@@ -77,7 +77,7 @@ class Outbox:
             self._weigh(message, +1)
             while len(self._may) > MAX_PENDING_MESSAGES or self._bytes[False] > MAX_PENDING_BYTES:
                 self.drops.add(self._pop().key, "too many messages are waiting to be sent")
-        self._came()
+        self._received()
 
     def take(self, limit: int) -> list[OutgoingMessage]:
         """Remove and return the next messages that have not expired, at most `limit`."""

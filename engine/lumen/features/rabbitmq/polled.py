@@ -104,7 +104,7 @@ class PolledConnection:
         finally:
             channel.close()
 
-    def ask(self, method: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
+    def request(self, method: Callable[..., Any], *args: Any, **kwargs: Any) -> None:
         """Call a method of the channel and wait for the broker's answer."""
         answers: list[Any] = []
         method(*args, callback=answers.append, **kwargs)
@@ -125,7 +125,7 @@ class PolledConnection:
             lacks(frame.method.delivery_tag, frame.method.multiple)
 
         self._has = has
-        self.ask(self.channel.confirm_delivery, refused)
+        self.request(self.channel.confirm_delivery, refused)
 
     def consume(self, queue: str, reader: MessageReader, arguments: Mapping[str, Any] | None = None) -> str:
         """Start to consume a queue, wait for the broker's answer, and return the tag with which to `cancel`."""
@@ -138,7 +138,7 @@ class PolledConnection:
     def cancel(self, tag: str) -> None:
         """Stop consuming; messages that arrive in the meantime return to the queue."""
         if self._connection.readers.pop(tag.encode(), None):
-            self.ask(self.channel.basic_cancel, tag)
+            self.request(self.channel.basic_cancel, tag)
 
     def until(self, done: Callable[[], object]) -> None:
         """Turn until `done` is true, at most for the broker's time to answer. Raises at once if the broker accepts
@@ -203,7 +203,7 @@ class PolledConnection:
         """Run this within a turn after so many seconds; it must not send requests to the broker."""
         self._loop.call_later(seconds, work)
 
-    def rest(self, seconds: float) -> None:
+    def pause(self, seconds: float) -> None:
         """Process events for so many seconds."""
         rung: list[bool] = []
         self.call_later(seconds, lambda: rung.append(True))

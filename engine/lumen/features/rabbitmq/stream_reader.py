@@ -44,7 +44,7 @@ class StreamReader(BrokerConnection):
         """Start to read at the next offset."""
         self.channel.basic_qos(prefetch_count=PREFETCH)
         self.channel.add_on_cancel_callback(self._cancelled)
-        self.connection.consume(self._stream, self._came, arguments={"x-stream-offset": self._next})
+        self.connection.consume(self._stream, self._received, arguments={"x-stream-offset": self._next})
 
     def serve(self) -> bool:
         """Process events for a turn; return False once the end is requested."""
@@ -54,7 +54,7 @@ class StreamReader(BrokerConnection):
         self.process(TURN)
         return not self.ending.is_set()
 
-    def _came(self, number: int, _: bool, name: bytes, properties: MessageProperties, data: bytes) -> None:
+    def _received(self, number: int, _: bool, name: bytes, properties: MessageProperties, data: bytes) -> None:
         self._last = number
         offset = properties.offset if properties.offset >= 0 else self._next
         if offset < self._next:  # the broker sends whole chunks of a stream

@@ -81,11 +81,11 @@ class DaemonApi:
 
     def post(self, path: str, body: Any = None) -> DaemonCall:
         """Begin a POST; it follows those that were begun before."""
-        return self.later(lambda: self.ask("POST", path, body))
+        return self.later(lambda: self.request("POST", path, body))
 
     def get(self, path: str) -> DaemonCall:
         """Begin a GET."""
-        return self.later(lambda: self.ask("GET", path))
+        return self.later(lambda: self.request("GET", path))
 
     def later(self, work: Callable[[], Any]) -> DaemonCall:
         """Begin any work that waits for the daemon."""
@@ -95,7 +95,7 @@ class DaemonApi:
         self._calls.put(call)
         return call
 
-    def ask(self, method: str, path: str, body: Any = None, patience: float = PATIENCE) -> Any:
+    def request(self, method: str, path: str, body: Any = None, patience: float = PATIENCE) -> Any:
         """Return the JSON data that the daemon answers.
 
         Raises RobotLostError if it can't be reached, RobotFailedError if it refuses.

@@ -20,7 +20,7 @@ def examine(options: Mapping[str, str]) -> Iterator[DoctorFinding]:
         yield "packages", "error", str(error)
     api = DaemonApi(DaemonAddress(options.get("url", ADDRESS)))
     try:
-        status = api.ask("GET", "/api/daemon/status")
+        status = api.request("GET", "/api/daemon/status")
         if not isinstance(status, dict) or "version" not in status:
             yield "daemon", "error", f"what answers at {api.address} is no daemon of a Reachy Mini"
             return
@@ -50,8 +50,8 @@ def _daemon(api: DaemonApi, status: Mapping[str, object]) -> Iterator[DoctorFind
 
 
 def _others(api: DaemonApi) -> Iterator[DoctorFinding]:
-    lock = api.ask("GET", "/api/daemon/robot-app-lock-status")
-    running = api.ask("GET", "/api/move/running")
+    lock = api.request("GET", "/api/daemon/robot-app-lock-status")
+    running = api.request("GET", "/api/move/running")
     if lock.get("state") != "free":
         name = lock.get("holder_name") or lock.get("state")
         yield "other apps", "warning", f"`{name}` has the robot: stop it on the dashboard, else both move it"
@@ -59,7 +59,7 @@ def _others(api: DaemonApi) -> Iterator[DoctorFinding]:
         yield "other apps", "warning", "the daemon plays a move: another program moves the robot"
     else:
         yield "other apps", "ok", "no other app has the robot"
-    telemetry = api.ask("GET", "/api/telemetry")
+    telemetry = api.request("GET", "/api/telemetry")
     if telemetry.get("enabled") and not telemetry.get("disabled_by_env"):
         yield (
             "telemetry",
@@ -69,7 +69,7 @@ def _others(api: DaemonApi) -> Iterator[DoctorFinding]:
 
 
 def _media(api: DaemonApi) -> Iterator[DoctorFinding]:
-    if api.ask("GET", "/api/media/status").get("available"):
+    if api.request("GET", "/api/media/status").get("available"):
         yield "loudspeaker", "ok", "the daemon plays sounds"
     else:
         yield "loudspeaker", "warning", "the daemon runs without its media server: the robot does not speak"

@@ -57,7 +57,7 @@ class DaemonMoves:
 
     def now(self) -> list[str]:
         """Ask the daemon which moves run. Raises RobotError if it does not answer."""
-        running = self._api.ask("GET", "/api/move/running", patience=2.0)
+        running = self._api.request("GET", "/api/move/running", patience=2.0)
         return [str(move.get("uuid")) for move in running if isinstance(move, dict)]
 
     def close(self) -> None:
@@ -69,8 +69,8 @@ class DaemonMoves:
         while not self._ending.wait(LOOK_PERIOD):
             try:
                 running = self.now()
-                lock = self._api.ask("GET", "/api/daemon/robot-app-lock-status", patience=2.0)
-                sound = self._api.ask("GET", "/api/state/doa", patience=2.0)
+                lock = self._api.request("GET", "/api/daemon/robot-app-lock-status", patience=2.0)
+                sound = self._api.request("GET", "/api/state/doa", patience=2.0)
             except RobotError:
                 self._running = frozenset()  # the link reports that the daemon is gone
                 continue

@@ -125,7 +125,7 @@ class ReachyRobot(ExecutingRobot):
     def _find_awake(self) -> None:
         """A robot whose motors are on, and whose head does not lie, was woken before."""
         joints = self._link.measured.joints
-        mode = self._api.ask("GET", "/api/motors/status").get("mode")
+        mode = self._api.request("GET", "/api/motors/status").get("mode")
         self._mover.awake = mode == "enabled" and not lies(joints)
         self._mover.stand(joints)
 

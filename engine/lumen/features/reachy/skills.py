@@ -199,13 +199,13 @@ class ReachySkills:
 
         def stop(move: str) -> None:
             with suppress(RobotFailedError):  # it has ended by itself
-                self._api.ask("POST", "/api/move/stop", {"uuid": move})
+                self._api.request("POST", "/api/move/stop", {"uuid": move})
 
         def begin() -> str:
             for other in self._moves.now():  # the daemon would play both at once
                 if other in self._moves.ours or stops_others:
                     stop(other)
-            move = str(self._api.ask("POST", f"/api/move/play/{name}")["uuid"])
+            move = str(self._api.request("POST", f"/api/move/play/{name}")["uuid"])
             self._moves.ours.add(move)
             if given_up.is_set():
                 stop(move)

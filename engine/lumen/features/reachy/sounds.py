@@ -86,7 +86,7 @@ class RobotSounds:
     def _media(self) -> bool:
         """Return whether the daemon plays sounds: without its media server it answers `ok` and plays nothing."""
         if self._has_media is None:
-            status = self._api.ask("GET", "/api/media/status")
+            status = self._api.request("GET", "/api/media/status")
             self._has_media = isinstance(status, dict) and bool(status.get("available"))
             if not self._has_media:
                 self._warnings(["the robot plays no sounds: its daemon runs without its media server"])

@@ -27,7 +27,7 @@ def take_over(api: DaemonApi, body: Body) -> None:
         raise RobotModelError(f"{body.name} is no Reachy Mini: write `model: reachy_mini` under `robot` of lumen.yaml")
     state = _status(api)
     if state["state"] in ("stopped", "not_initialized"):
-        api.ask("POST", "/api/daemon/start?wake_up=false")
+        api.request("POST", "/api/daemon/start?wake_up=false")
     end = time.monotonic() + START_PATIENCE
     while state["state"] != "running":
         if state["state"] == "error":
@@ -43,7 +43,7 @@ def take_over(api: DaemonApi, body: Body) -> None:
 
 
 def _status(api: DaemonApi) -> dict[str, Any]:
-    status = api.ask("GET", "/api/daemon/status")
+    status = api.request("GET", "/api/daemon/status")
     if not isinstance(status, dict) or "state" not in status:
         raise RobotUnreachableError(f"what answers at {api.address} is no daemon of a Reachy Mini")
     return status

@@ -83,14 +83,14 @@ class _Performance:
             case {"progress": int() | float() as fraction, **more}:
                 tell(skill, f"{fraction:.0%} {str(more.get('text', ''))[:MAX_TEXT]}".strip())
             case {"say": str(text), **more}:
-                self._ask(lambda: self._say(text, str(more.get("language", ""))))
+                self._request(lambda: self._say(text, str(more.get("language", ""))))
             case {"publish": str(route), **more}:
-                self._ask(lambda: self._publish(route, more.get("body")))
+                self._request(lambda: self._publish(route, more.get("body")))
             case _:
                 tell(skill, f"a message of its program can't be used: {str(message)[:MAX_TEXT]}")
         return None
 
-    def _ask(self, request: Callable[[], str]) -> None:
+    def _request(self, request: Callable[[], str]) -> None:
         """Pass a request on to the bus, at most `MAX_REQUESTS` for a call; what can't be sent is reported."""
         self._sent += 1
         if self._sent > MAX_REQUESTS:

@@ -252,13 +252,13 @@ class _Lines:
     """Splits what comes of a stream into lines."""
 
     def __init__(self, take: Callable[[str], None]) -> None:
-        self._line, self._rest = take, b""
+        self._line, self._incomplete_line = take, b""
 
     def take(self, content: bytes) -> None:
         """Take more of the stream; nothing means that it has ended."""
-        *lines, self._rest = (self._rest + content).split(b"\n")
+        *lines, self._incomplete_line = (self._incomplete_line + content).split(b"\n")
         if not content:
-            lines, self._rest = [*lines, self._rest], b""
+            lines, self._incomplete_line = [*lines, self._incomplete_line], b""
         for line in lines:
             self._line(line.decode("utf-8", "replace"))
 

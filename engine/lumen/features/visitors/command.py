@@ -21,7 +21,7 @@ from lumen.project.building import draft, main_settings
 from lumen.project.files import read_files
 from lumen.project.home import home_of
 from lumen.project.settings import Settings
-from lumen.run.asking import OPERATOR_ANSWERS, ask
+from lumen.run.asking import OPERATOR_ANSWERS, send_request
 from lumen.run.forgetting.files import forget_in
 from lumen.run.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
 from lumen.run.one_robot import one_robot
@@ -114,17 +114,19 @@ def _tell_running(options: argparse.Namespace, settings: Settings | None, found:
             found.left.append(ForgottenPlace("the running exhibition", str(error)))
         return "" if within_process(url) else url
     try:
-        _ask(reached.bus, settings or Settings(), options.name, found)
+        _request(reached.bus, settings or Settings(), options.name, found)
     finally:
         reached.bus.close()
     return reached.broker
 
 
-def _ask(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
+def _request(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
     """Request that of the running memory, which notifies the others; without one, notify them here."""
     try:
         answer = next(
-            ask(bus, _key(settings, "fact"), {"method": "forget", "name": name}, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT)
+            send_request(
+                bus, _key(settings, "fact"), {"method": "forget", "name": name}, OPERATOR_ANSWERS, first=ANSWER_TIMEOUT
+            )
         )
     except BusUnreachableError:
         bus.publish(_key(settings, "forgotten"), {"name": name})

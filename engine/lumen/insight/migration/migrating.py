@@ -71,7 +71,7 @@ class _Migration:
             leaving += tuple(outer_command(command, id) for command in verdict.leaving)
             self.notes += verdict.notes
         planner = self.new.planner
-        microstep(after, planner.passage(after.configuration, set(), self.placement.entered, after.history))
+        microstep(after, planner.forced_plan(after.configuration, set(), self.placement.entered, after.history))
         if not is_legal(self.new.chart, after.configuration.nodes):
             names = ", ".join(f"`{name}`" for name in sorted(after.configuration.names))
             return Refusal(f"{names} can't be active together in the new file", "restart the exhibition", "", behavior)
@@ -89,7 +89,7 @@ class _Migration:
         invocations = Invocations(snapshot.invoked)
         context = ExecutionContext.of(self.old, snapshot, None, snapshot.at, invocations)
         context.is_invoked = situation.options.is_invoked
-        microstep(context, self.old.planner.passage(situation.start, self.placement.left, set(), snapshot.history))
+        microstep(context, self.old.planner.forced_plan(situation.start, self.placement.left, set(), snapshot.history))
         for id in situation.ending(self.placement):
             if id in invocations.children:
                 invocations.end(context, id)

@@ -14,7 +14,7 @@ from lumen.insight.explaining.history import RecordedStep
 from lumen.insight.explaining.tracing import retaken
 from lumen.insight.migration import MigrationPlan, plan
 from lumen.insight.replay.entries import JournalInput, JournalJump
-from lumen.insight.replay.visits import RecordedVisit, home_of
+from lumen.insight.replay.visits import RecordedVisit, waiting_state
 from lumen.language.added_verbs import usual_result
 from lumen.language.command_data import command_data, started
 from lumen.language.commands import BodyCommand, Command, Start
@@ -78,7 +78,7 @@ def played_against(
         then = [(entry.event.at, command) for entry in visit.inputs for command in entry.commands]
         if not visit.whole:  # the rest of the visit was not recorded
             del play.done[len(then) :]
-        return _verdict(play, then, "", home_of(old.machine) if visit.whole else "")
+        return _verdict(play, then, "", waiting_state(old.machine) if visit.whole else "")
     other = OtherPlay(beside, takes)
     other.attend(old, home, visit, hurry)
     return _verdict(play, other.done, other.trouble, other.home if visit.whole and other.is_home else "")
@@ -127,7 +127,7 @@ class OtherPlay:
 
     def __init__(self, project: Project, takes: Duration) -> None:
         self._project, self._takes = project, takes
-        self.home, self.steps, self.trouble = home_of(project.machine), 0, ""
+        self.home, self.steps, self.trouble = waiting_state(project.machine), 0, ""
         self.done: list[tuple[float, Any]] = []
         self._asked: list[tuple[Snapshot, Event | None, Command]] = []
         self._counterparts: dict[str, str] = {}

@@ -44,7 +44,7 @@ class RecordedVisit(NamedTuple):
     """Whether a visitor's data was deleted from it."""
 
 
-def home_of(machine: MachineDefinition) -> str:
+def waiting_state(machine: MachineDefinition) -> str:
     """Return the name of the state in which the behaviour waits for a visitor; empty if it can't begin."""
     try:
         active, path = initial(machine).snapshot.configuration, ""
@@ -77,7 +77,7 @@ class VisitWatch:
             case JournalJump(bundle=bundle, behavior=behavior, snapshot=snapshot):
                 self.bundle = bundle
                 if machine and (bundle, behavior) not in self._homes:
-                    self._homes[bundle, behavior] = home_of(machine)
+                    self._homes[bundle, behavior] = waiting_state(machine)
                 self._home = self._homes.get((bundle, behavior), "")
                 if isinstance(snapshot, Mapping):
                     self.away = bool(self._home) and self._home not in snapshot.get("configuration", ())

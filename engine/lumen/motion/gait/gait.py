@@ -103,7 +103,7 @@ class Gait:
         self.angles: Mapping[str, float] = stance.angles
         self._pendulum = Pendulum(self.pace.torso + float(self._offset[2]), dt)
         self._planner = StepPlanner(self.pace, self._pendulum, dt)
-        self._phase = self._rest() if self._arrived(feet) else self._step(standing=True)
+        self._phase = self._settle() if self._arrived(feet) else self._step(standing=True)
 
     def hasten(self, pace: GaitParameters) -> None:
         """Walk at that pace from the next step on: one that carries the torso as this one does."""
@@ -158,7 +158,7 @@ class Gait:
         if stopping or phase.swing is None:
             return
         if self.steps == 0 and not phase.lifted:
-            self._phase = self._rest()
+            self._phase = self._settle()
         elif not phase.lifted or phase.part < _LATEST:
             self._planner.divert(phase, self.feet, self._closing().pose, self._dcm)
 
@@ -167,7 +167,7 @@ class Gait:
         last = self._phase.last
         if self._phase.swing:
             self._land(self._phase.swing.goal, measured, heading)
-            self._phase = self._rest() if last else self._step(standing=False)
+            self._phase = self._settle() if last else self._step(standing=False)
         elif self._stopping or self._arrived(self.feet) or self.steps >= self._most:
             return False
         else:
@@ -203,7 +203,7 @@ class Gait:
             self._speed = self._speed.toward(self.goal, self.pace) if any(self.goal) else Velocity()
         return self._planner.step(self.feet, self._next(), self._dcm, self._zmp, standing=standing)
 
-    def _rest(self) -> GaitPhase:
+    def _settle(self) -> GaitPhase:
         return self._planner.settle(self.feet, self._dcm, self._zmp)
 
     def _next(self) -> list[Footstep]:

@@ -54,7 +54,7 @@ class StepPlanner:
         """
         side, goal = steps[0]
         wait = self._shift if standing else 0
-        rests = rest(feet, other(side), self._pace)
+        rests = bearing_point(feet, other(side), self._pace)
         weight = [zmp] * wait + _ramp(zmp, rests, self._double) + [rests] * self._single
         swing = Swing(side, feet[side], goal, self._pace.lift)
         weight = self._shifted(weight, dcm, self._end(feet, steps), feet[other(side)], self._pace.sole_aside)
@@ -79,9 +79,9 @@ class StepPlanner:
     def _end(self, feet: Feet, steps: Sequence[Footstep]) -> complex:
         """The DCM at the end of the first of these steps."""
         pace, feet = self._pace, {**feet, steps[0].side: steps[0].pose}
-        last, weight = rest(feet, other(steps[0].side), pace), list[complex]()
+        last, weight = bearing_point(feet, other(steps[0].side), pace), list[complex]()
         for side, pose in steps[1:]:
-            rests = rest(feet, other(side), pace)
+            rests = bearing_point(feet, other(side), pace)
             weight += _ramp(last, rests, self._double) + [rests] * self._single
             feet, last = {**feet, side: pose}, rests
         end = between(feet, pace)
@@ -96,14 +96,14 @@ class StepPlanner:
         return [point + complex(x, y) * foot.ahead for point in zmp]
 
 
-def rest(feet: Feet, side: Side, pace: GaitParameters) -> complex:
+def bearing_point(feet: Feet, side: Side, pace: GaitParameters) -> complex:
     """Where the weight rests on that foot."""
     return feet[side].place + complex(pace.ahead, -sign(side) * pace.inside) * feet[side].ahead
 
 
 def between(feet: Feet, pace: GaitParameters) -> complex:
     """Where the weight rests on both feet."""
-    return (rest(feet, "L", pace) + rest(feet, "R", pace)) / 2
+    return (bearing_point(feet, "L", pace) + bearing_point(feet, "R", pace)) / 2
 
 
 def _ramp(start: complex, end: complex, ticks: int) -> list[complex]:

@@ -90,7 +90,7 @@ class RemoteRobot:
         self._delegate, self._bounds = delegate, CommandBounds(project.body)
         self._pending: dict[str, _Pending] = {}
         self._forsaken: deque[str] = deque(maxlen=1_000)
-        self._came: deque[Message] = deque(maxlen=MAX_PENDING_REPORTS)
+        self._received: deque[Message] = deque(maxlen=MAX_PENDING_REPORTS)
         self._events: list[Event] = []
         self._begun: list[str] = []
         self._readings: dict[str, tuple[OtherReading, float]] = {}
@@ -100,7 +100,10 @@ class RemoteRobot:
     def use(self, project: Project) -> None:
         """Go by the routes of this project from now on; what is new is listened to before what is gone is not."""
         self._project = project
-        wanted = {project.key_of(REPORT_ROUTE): self._came.append, project.key_of(NOTICED_ROUTE): self._came.append}
+        wanted = {
+            project.key_of(REPORT_ROUTE): self._received.append,
+            project.key_of(NOTICED_ROUTE): self._received.append,
+        }
         for sense, row in table("senses").items():
             if sense in project.routes and row.decode:
                 wanted[project.routes[sense].key_for(project.robot)] = partial(self._sense, sense)
@@ -142,14 +145,14 @@ class RemoteRobot:
                 self._end(whole, "cancelled")
             elif pending.id == id:
                 pending.cancelled, pending.queried = True, self._patience()
-                self._ask("cancel", whole)
+                self._request("cancel", whole)
 
     def recover(self, session: str, ids: Iterable[str]) -> None:
         """Ask what became of commands that another process of that session began; they are answered as our own."""
         now = self._patience()
         for id in ids:
             self._pending[f"{session}.{id}"] = _Pending(id, None, now, now)
-            self._ask("outcome", f"{session}.{id}")
+            self._request("outcome", f"{session}.{id}")
 
     def lose(self, reason: str) -> None:
         """The robot is gone, and with it all that it was doing."""
@@ -157,8 +160,8 @@ class RemoteRobot:
             self._end(whole, "lost", reason)
 
     def poll(self) -> Sequence[Event]:
-        while self._came:
-            self._hear(self._came.popleft())
+        while self._received:
+            self._hear(self._received.popleft())
         self._chase()
         self._release()
         events, self._events = self._events, []
@@ -205,7 +208,7 @@ class RemoteRobot:
                 self._end(whole, "cancelled")
             elif not pending.heard and not isinstance(pending.command, Rest | Stop):
                 pending.cancelled = True
-                self._ask("cancel", whole)
+                self._request("cancel", whole)
 
     def _release(self) -> None:
         """The robot has what stops it, or never will: now send what was held back."""
@@ -217,7 +220,7 @@ class RemoteRobot:
                 pending.held, pending.since, pending.queried = False, now, now
                 self._order(whole, pending.command)
 
-    def _ask(self, method: str, whole: str) -> None:
+    def _request(self, method: str, whole: str) -> None:
         self._send(COMMAND_ROUTE, {"type": "motion", "method": method, "parameter": {"id": whole}}, COMMAND_TTL)
 
     def _send(self, way: str, body: dict[str, Any], ttl: float, cause: str = "") -> None:
@@ -248,7 +251,7 @@ class RemoteRobot:
         pending = self._pending.get(whole)
         if pending is None:
             if whole in self._forsaken and state in (ACCEPTED, STARTED):
-                self._ask("cancel", whole)
+                self._request("cancel", whole)
             return
         pending.queried = self._patience()
         if state == STARTED:
@@ -279,8 +282,8 @@ class RemoteRobot:
             elif quiet > (OUTCOME_QUERY_PERIOD if pending.heard and not pending.cancelled else RESEND_PERIOD):
                 pending.queried = now
                 if pending.cancelled:
-                    self._ask("cancel", whole)
+                    self._request("cancel", whole)
                 elif pending.heard or pending.command is None:
-                    self._ask("outcome", whole)
+                    self._request("outcome", whole)
                 else:
                     self._order(whole, pending.command, delegable=False)

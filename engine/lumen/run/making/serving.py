@@ -9,7 +9,7 @@ from lumen.run.parts.hosted_robot import HostedRobotPart, stopped_there
 from lumen.run.parts.operating import OperatorPart, RunState
 from lumen.run.parts.own_module import statuses as own_module_statuses
 from lumen.run.parts.robot import RobotPart
-from lumen.run.recovery.recording import record_inputs
+from lumen.run.recovery.journaling import record_inputs
 from lumen.run.recovery.run_directory import RunDirectory
 from lumen.run.reload.records import RunRecords
 from lumen.run.reload.reloader import Reloader, ReloadOptions

@@ -32,10 +32,10 @@ from lumen.language.operator_requests import (
 from lumen.ports import Message, Sense
 from lumen.robot.person_hold import StoppedBy
 from lumen.robot.robot_routes import TEXT_ROUTE
+from lumen.run.activity_tracker import ActivityTracker
 from lumen.run.answering import AnsweringThread
 from lumen.run.asking import operator_key
 from lumen.run.decisions import DecisionRecords, Decisions
-from lumen.run.doings import Doings
 from lumen.run.live_behavior import LiveBehavior
 from lumen.run.loop import Observer
 from lumen.run.model_switch import ModelSwitch
@@ -104,25 +104,25 @@ class OperatorPart(Part, Observer):
         self.needs, self._behavior, self._narrator, self._record = needs, behavior, narrator, records.write
         self._run, self._marking = run, marking
         self._since = 0.0
-        self._came: deque[Message] = deque(maxlen=MAX_PENDING_REQUESTS)
+        self._received: deque[Message] = deque(maxlen=MAX_PENDING_REQUESTS)
         self._bus = behavior.loop.bus
         runtime = behavior.loop.runtime
         self.steps = StepMemory(lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None)
         self._journal = journal
         self._answering = AnsweringThread(self._bus, self.steps.steps, journal)
         self._pages = AnsweringThread(self._bus, list, journal)  # so that consoles do not wait for a `why`
-        self._undo = self._bus.subscribe(operator_key(behavior.project.robot), self._came.append)
+        self._undo = self._bus.subscribe(operator_key(behavior.project.robot), self._received.append)
         self._view = NowView()
-        self._doings = Doings(
+        self._activity = ActivityTracker(
             lambda: runtime.project, lambda: runtime.snapshot if runtime.begun else None, behavior.loop.clock.now
         )
         self._ears: Mapping[str, Any] | None = None
-        self._unheed = self._bus.subscribe(behavior.project.key_of("listening"), self._heed)
-        self._unsay = self._bus.subscribe(behavior.project.key_of(TEXT_ROUTE), self._doings.told.append)
+        self._stop_listening = self._bus.subscribe(behavior.project.key_of("listening"), self._on_listening)
+        self._unsay = self._bus.subscribe(behavior.project.key_of(TEXT_ROUTE), self._activity.told.append)
         told = [behavior.trace.approval] if behavior.trace in behavior.loop.observers else []
         self._decisions = Decisions(runtime.approvals, narrator, records.write, records.keep_decisions, *told)
-        runtime.approvals.watchers.append(self._doings)
-        behavior.forgetters += [self.steps, self._doings, runtime.approvals]
+        runtime.approvals.watchers.append(self._activity)
+        behavior.forgetters += [self.steps, self._activity, runtime.approvals]
         self.model = ModelSwitch(behavior.loop.performer.questions, lambda: runtime.project, records.write, kept)
         self._raising = RaisedEvents(behavior.loop, self._reply)
         self._requests = RequestChecks()
@@ -135,7 +135,7 @@ class OperatorPart(Part, Observer):
             MODEL.ask: lambda m, _: self.model.switch(person_in(m), on=m.body["on"]),
             GOTO.ask: self._goto,
         }
-        behavior.loop.observers += [self.steps, self._doings, self._raising]
+        behavior.loop.observers += [self.steps, self._activity, self._raising]
 
     def begin(self, now: float) -> None:
         self._since = now
@@ -144,7 +144,7 @@ class OperatorPart(Part, Observer):
         if step.entered or step.exited or any(inner.entered or inner.exited for _, inner in step.invoked):
             self._since = step.snapshot.at
 
-    def _heed(self, message: Message) -> None:
+    def _on_listening(self, message: Message) -> None:
         """Store whether the ears listen and why; they publish each change."""
         match message.body:
             case {"listening": bool(listening), "because": str(because)}:
@@ -154,23 +154,23 @@ class OperatorPart(Part, Observer):
         if any(change.name == EARS_LOST for change in changes):
             self._ears = None
         self.steps.look()
-        self._doings.look()
+        self._activity.look()
         self._raising.look()
-        while self._came:
-            message = self._came.popleft()
+        while self._received:
+            message = self._received.popleft()
             if not (request := self._requests.valid(message.body)):
                 self._reply(message, refusal(self._requests.fault(message.body)))
             elif request in (EVENT, PRESS):
                 self._raising.happen(message, now)
             elif request in (WHY, WHY_NOT):
-                self._answering.ask(message)
+                self._answering.request(message)
             elif request is FORK:
                 from lumen.run.forking import forked  # imports the whole check of files
 
                 running = self._behavior.loop.runtime.project
                 self._answering.answer(message, partial(forked, self._journal, running, message.body))
             elif request is JOURNAL:
-                self._pages.ask(message)
+                self._pages.request(message)
             elif request is NOW:
                 self._pages.answer(message, partial(self._view.tell, self._moment()))
             else:
@@ -179,7 +179,7 @@ class OperatorPart(Part, Observer):
     def close(self) -> None:
         self._undo()
         self._unsay()
-        self._unheed()
+        self._stop_listening()
         self._answering.close()
         self._pages.close()
 
@@ -216,7 +216,7 @@ class OperatorPart(Part, Observer):
             runtime.project,
             runtime.snapshot,
             loop.clock.now(),
-            self._doings,
+            self._activity,
             position=self._journal.tail.next - 1,
             approvals=runtime.approvals,
             model=self.model.state,

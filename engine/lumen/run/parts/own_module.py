@@ -54,8 +54,8 @@ class OwnModulePart(Part):
         self._tell, self._happen = tell, happen
         self._key = project.key_of(PRESENCE_ROUTE)
         self._session = uuid.uuid4().hex[:12]
-        self._came: deque[Message] = deque(maxlen=MAX_PENDING_PRESENCES)
-        self._undo = bus.subscribe(self._key, self._came.append)
+        self._received: deque[Message] = deque(maxlen=MAX_PENDING_PRESENCES)
+        self._undo = bus.subscribe(self._key, self._received.append)
         self._process: SupervisedProcess | None = None
         if self._settings.here:
             folder, words = Path(project.root).absolute(), self._settings.command
@@ -123,8 +123,8 @@ class OwnModulePart(Part):
 
     def _listen(self, clock: float) -> None:
         """Read the signs of life that arrived."""
-        while self._came:
-            match self._came.popleft().body:
+        while self._received:
+            match self._received.popleft().body:
                 case {"robot": self._robot, "parts": list(parts), "state": str(state), "session": str(session)} if (
                     self.name in parts and session != self._session
                 ):

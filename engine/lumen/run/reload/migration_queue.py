@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from lumen.errors import BusError
 from lumen.insight.changes import Change, changes, live
 from lumen.insight.migration import MigrationDelay, MigrationPlan, Refusal
-from lumen.insight.replay.visits import home_of
+from lumen.insight.replay.visits import waiting_state
 from lumen.language.projects import Project
 from lumen.run.live_behavior import LiveBehavior
 from lumen.run.reload.notifier import ReloadNotifier
@@ -27,7 +27,7 @@ class Trial:
     """
 
     def __init__(self, project: Project) -> None:
-        self._home, self._away = home_of(project.machine), False
+        self._home, self._away = waiting_state(project.machine), False
 
     def over(self, snapshot: Snapshot) -> bool:
         """Return whether the visit has ended; called at each tick with the current snapshot."""
@@ -186,7 +186,7 @@ class MigrationQueue:
     def _go(self, staged: StagedBundle, now: float) -> None:
         """Apply a bundle, let it wait, or refuse it."""
         before, snapshot = self.running, self._behavior.loop.runtime.snapshot
-        if staged.between and (home := home_of(before.machine)) and home not in snapshot.configuration:
+        if staged.between and (home := waiting_state(before.machine)) and home not in snapshot.configuration:
             staged.since = time.monotonic()
             if staged.told != BETWEEN:
                 staged.told = BETWEEN

@@ -92,7 +92,7 @@ class Reloader:
         self._queue = MigrationQueue(behavior, self._notifier, self._records, applied, self._restore)
         self._wake, self._newer_on_disk = wake, ""
         self._bus = behavior.loop.bus
-        self._came: deque[Message] = deque(maxlen=WAITING)
+        self._received: deque[Message] = deque(maxlen=WAITING)
         project = behavior.loop.project
         self._worker = worker or ValidationWorker(Path(project.root))
         self._validator = BundleValidator(self._worker, lambda: self._running, options.budget)
@@ -110,7 +110,7 @@ class Reloader:
             good=lambda judged: isinstance(judged, Validation) and judged.good,
             done=wake,
         )
-        self._undo = self._bus.subscribe(command_key(behavior.project.robot), self._came.append)
+        self._undo = self._bus.subscribe(command_key(behavior.project.robot), self._received.append)
         self._watcher.start()
 
     @property
@@ -188,8 +188,8 @@ class Reloader:
             self._queue.drop()
 
     def _tick(self, now: float) -> None:
-        while self._came:
-            self._hear(self._came.popleft())
+        while self._received:
+            self._hear(self._received.popleft())
         while not self._watcher.results.empty():
             found = self._watcher.results.get()
             if isinstance(found, Validation):
@@ -268,7 +268,7 @@ class Reloader:
         elif order.verb in ("reload", "dry-run"):
             if self._running.section(ReplayCheck).mode:
                 order.answer(self._answer("judging", "playing the recorded visits with the saved files").to_json())
-            self._watcher.ask(order)
+            self._watcher.request(order)
         elif order.verb == "rollback" and (before := queue.rollback_guard.before):
             back = live(self._running, before)
             queue.stage(StagedBundle(back, changes(self._running, back), who="command", back=True), order)

@@ -96,13 +96,13 @@ class ValidationWorker:
 
     def play(self, project: Project, story: str, seconds: float) -> "Rehearsal | None":
         try:
-            found: Rehearsal | None = self._ask("play", story, seconds)
+            found: Rehearsal | None = self._request("play", story, seconds)
         except FatalFilesError:
             return None
         return found
 
     def visits(self, project: Project, running: str, budget: float) -> VisitsCheck:
-        found: VisitsCheck | None = self._ask("visits", str(self._root), running, budget)
+        found: VisitsCheck | None = self._request("visits", str(self._root), running, budget)
         return found or VisitsCheck(trouble="the process that plays them was restarted")
 
     def close(self) -> None:
@@ -112,17 +112,17 @@ class ValidationWorker:
             self._process = JudgeProcess(COMMAND)
 
     def _load(self, files: Mapping[str, bytes]) -> Loaded:
-        parcel, diagnostics = self._ask("load", str(self._root), dict(files))
+        parcel, diagnostics = self._request("load", str(self._root), dict(files))
         return (None if parcel is None else self._receiver.unpack(parcel)), diagnostics
 
-    def _ask(self, *question: Any) -> Any:
+    def _request(self, *question: Any) -> Any:
         """Return its answer, or raise its error. Raises FatalFilesError if the process ended without one."""
         try:
             self._process.start()
         except OSError as error:
             raise FatalFilesError(f"the process that reads the files can't start: {error.strerror}") from None
         try:
-            return self._process.ask(question, self._timeout)
+            return self._process.request(question, self._timeout)
         except NoAnswerError as error:
             how = f"the process that reads these files failed: {_how(error, self._timeout)}"
             raise FatalFilesError(how, overdue=error.fault is Fault.LATE) from None

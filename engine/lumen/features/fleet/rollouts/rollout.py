@@ -96,7 +96,7 @@ def take_over(state: CentreState, heard: HeardRobots) -> CentreState:
     rollout = state.rollout
     if rollout is None or not rollout.under_way:
         return state
-    return _ask(state, rollout, "another centre took over during the rollout")
+    return _pause_for_decision(state, rollout, "another centre took over during the rollout")
 
 
 def allowed(plan: RolloutPlan, at: int, fleet: Fleet) -> int:
@@ -212,17 +212,19 @@ def _judged(
     pause = rollout.plan.pause
     if mostly and len(proved) == len(there) and watched >= pause:
         if rollout.plan.abort_if and _holds(rollout, fleet, heard) is None:
-            return _ask(state, rollout, f"no robot has reported a measure yet for `{rollout.plan.abort_if}`")
+            return _pause_for_decision(
+                state, rollout, f"no robot has reported a measure yet for `{rollout.plan.abort_if}`"
+            )
         return _onward(state, rollout)
     if rollout.waited > 2.0 * pause + PATIENCE:
         late = [robot for robot, each in zip(rollout.assigned, said, strict=True) if not (each and each in proved)]
-        return _ask(
+        return _pause_for_decision(
             state, rollout, f"not proved after {rollout.waited / 60.0:.0f} min: {', '.join(late[:5]) or 'no robot'}"
         )
     return state
 
 
-def _ask(state: CentreState, rollout: Rollout, why: str) -> CentreState:
+def _pause_for_decision(state: CentreState, rollout: Rollout, why: str) -> CentreState:
     return replace(state, rollout=replace(rollout, state=PERSON, reason=why))
 
 

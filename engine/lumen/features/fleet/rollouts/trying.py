@@ -34,11 +34,13 @@ def tried(
     if there and not missing:
         if refused := [f"{robot} ({row['why']})" for robot, row in came.items() if row["verdict"] == REFUSED]:
             share = f"{len(refused)} of {len(came)} robots"
-            return _ask(state, rollout, f"{share} would refuse it: {', '.join(refused[:5])}")
+            return _pause_for_decision(state, rollout, f"{share} would refuse it: {', '.join(refused[:5])}")
         return begin_steps(state, rollout)
     if rollout.waited > TRYING:
         whom = ", ".join(missing[:5]) or "nobody is there"
-        return _ask(state, rollout, f"some robots have not tried it after {rollout.waited / 60.0:.0f} min: {whom}")
+        return _pause_for_decision(
+            state, rollout, f"some robots have not tried it after {rollout.waited / 60.0:.0f} min: {whom}"
+        )
     return replace(state, rollout=rollout)
 
 
@@ -73,5 +75,5 @@ def _there(
     return {robot: said for robot, said in found if said}
 
 
-def _ask(state: CentreState, rollout: Rollout, why: str) -> CentreState:
+def _pause_for_decision(state: CentreState, rollout: Rollout, why: str) -> CentreState:
     return replace(state, rollout=replace(rollout, state=PERSON, reason=why))

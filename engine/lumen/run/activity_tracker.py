@@ -46,7 +46,7 @@ class Spoken(NamedTuple):
     at: float
 
 
-class Doings(Observer):
+class ActivityTracker(Observer):
     """An observer that records the current activity.
 
     `project`, `snapshot` and `now` return the bundle, the snapshot, and the time [s]. A command that waits
