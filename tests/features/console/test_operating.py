@@ -130,6 +130,21 @@ def test_who_signs_in_sees_what_the_role_may_use(viewer: Viewer, console: str, r
     assert viewer.all("rest-button[main] .rest")
 
 
+def test_operators_see_that_files_are_refused_and_neither_findings_nor_paths(
+    viewer: Viewer, mine: Hosted, console: str
+) -> None:
+    sign_in(viewer, console, Role.OPERATOR)
+    behavior = mine.root / "behaviors" / "mine.yaml"
+    try:
+        behavior.write_text(MINE.replace("target: stage", "target: stagge"))
+        viewer.driver.get(console + "robot/NAO/files")
+        viewer.shows("refused", ".saved")
+        viewer.shows("is shown to authors", ".saved")
+        assert [sign for sign in (".yaml", "stagge") if sign in viewer.text("main")] == []
+    finally:
+        behavior.write_text(MINE)
+
+
 @pytest.mark.once
 def test_a_wrong_pin_is_told_and_lets_nobody_in(viewer: Viewer, console: str) -> None:
     viewer.open(console, "robot/NAO", ready=".notice .strong")

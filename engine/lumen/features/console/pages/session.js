@@ -12,6 +12,8 @@ export function mode() {
   return ROLES[Math.min(ROLES.indexOf(role), Math.max(1, ROLES.indexOf(chosen)))];
 }
 export const may = (role) => ROLES.indexOf(mode()) >= ROLES.indexOf(role);
+/** Whether the person has this role, as whatever the page is shown: what is wrong in files concerns authors in any mode. */
+export const holds = (role) => ROLES.indexOf(live.role ?? "nobody") >= ROLES.indexOf(role);
 export function show(as) { keep("lumen.mode", as); redraw(); }
 export function askPin() { asking = true; redraw(); }
 

@@ -2,7 +2,7 @@
 import { command } from "../commands.js";
 import { JOB, get, listen, robotOf } from "../live.js";
 import { InEnglish, Quote, reasonOf } from "../quoted.js";
-import { may } from "../session.js";
+import { holds, may } from "../session.js";
 import { Dialog, Part, clock, fixed, html, place, t, useEffect, useRedraw, useState } from "../ui.js";
 
 const LEVELS = { error: "bad", warning: "warn", info: "kind" };
@@ -91,12 +91,12 @@ export default function FilesPage({ name }) {
   const lines = [...(files.last?.lines ?? []), ...(files.last?.notes ?? [])];
   return html`<h1>${t("page.files")}</h1>
     <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge" data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}>${t(`verdict.${verdict}`)}</span>
-        ${" "}${may("author") && html`<${Quote} text=${files.last?.reason ?? ""} /> <${Quote} text=${report.hint ?? ""} />`} ${verdict === "refused" && t("files.goes.on")}</p>
-      ${may("author") && lines.length > 0 && html`<${InEnglish} />
+        ${" "}${holds("author") && html`<${Quote} text=${files.last?.reason ?? ""} /> <${Quote} text=${report.hint ?? ""} />`} ${verdict === "refused" && t("files.goes.on")}</p>
+      ${holds("author") && lines.length > 0 && html`<${InEnglish} />
         <ul class="lines" lang="en">${lines.map((line) => html`<li>${line}</li>`)}</ul>`}
       ${may("author") ? html`<p class="quiet"><${Quote} text=${files.reason ?? ""} /></p>
-        <${Actions} name=${name} files=${files} />` : html`<p class="quiet">${t("files.authors")}</p>`}</${Part}>
-    <div class="files">${may("author") && html`
+        <${Actions} name=${name} files=${files} />` : !holds("author") && html`<p class="quiet">${t("files.authors")}</p>`}</${Part}>
+    <div class="files">${holds("author") && html`
       <${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} />`}
-      ${(may("author") || !report.changes?.length) && html`<${Changes} report=${report} mode=${files.mode} />`}<${Replay} replay=${files.replay} /></div>`;
+      ${(holds("author") || !report.changes?.length) && html`<${Changes} report=${report} mode=${files.mode} />`}<${Replay} replay=${files.replay} /></div>`;
 }

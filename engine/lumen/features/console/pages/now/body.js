@@ -2,7 +2,7 @@
 import { Part, Since, Usable, clock, fixed, html, percent, t } from "../ui.js";
 import { Quote, inPageLanguage } from "../quoted.js";
 import { consoleNow, isHere } from "../live.js";
-import { may } from "../session.js";
+import { holds } from "../session.js";
 import { Autonomy, Model } from "./approvals.js";
 import { HOT, LOW, batteryOf, greatest, processesOf } from "./troubles.js";
 
@@ -45,6 +45,6 @@ export function Body({ robot }) {
   return html`<${Part} title=${t("body")} kind="body">
     ${!isHere(robot) && html`<p><span class="badge" data-state="warn">${t("last.known")}</span></p>`}<${Senses} robot=${robot} /><${Processes} robot=${robot} />
     ${reload && html`<h3>${t("last.reload")}</h3><p><span class="badge" data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>${" "}
-      <span class="quiet">${clock(reload.at)}</span> ${may("author") && html`<${Quote} text=${reload.text} />`} ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}
+      <span class="quiet">${clock(reload.at)}</span> ${holds("author") && html`<${Quote} text=${reload.text} />`} ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}
     <${Usable} when=${isHere(robot)}><${Autonomy} robot=${robot} /><${Model} robot=${robot} /></${Usable}></${Part}>`;
 }
