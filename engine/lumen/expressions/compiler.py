@@ -1,7 +1,7 @@
 """Expressions as functions.
 
-`a && b` becomes Python's `and`, which is CEL's meaning wherever neither fails. When something fails, the expression
-is run once more with CEL's full rule: `a && b` is false where either is false, even if the other has no value.
+`a && b` becomes Python's `and`, which has CEL's meaning unless an operand fails. If one fails, the expression is
+evaluated again by CEL's full rule: `a && b` is false if either operand is false, even if the other has no value.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,12 +22,12 @@ Evaluate = Callable[[Scope], Any]
 
 
 def both(*operands: Callable[[], Any]) -> bool:
-    """CEL's `&&`: false where any operand is false; else the first fault, if there is one; else true."""
+    """Return CEL's `&&`: False if any operand is False; else raise the first error of an operand; else True."""
     return not _any_is(False, operands)
 
 
 def either(*operands: Callable[[], Any]) -> bool:
-    """CEL's `||`: true where any operand is true; else the first fault, if there is one; else false."""
+    """Return CEL's `||`: True if any operand is True; else raise the first error of an operand; else False."""
     return _any_is(True, operands)
 
 
@@ -49,7 +49,7 @@ _HELPERS = [*OPERATOR_FUNCTIONS.values(), "truth", "negation", "negative", "item
 
 @cache
 def code_names() -> dict[str, Any]:
-    """Return what the code of expressions may name, and nothing else."""
+    """Return all names that compiled code of expressions can use, with their values; Python's built-ins are absent."""
     return (
         {name: getattr(values, name) for name in _HELPERS}
         | {f"call_{name}": function.call for name, function in all_functions().items()}
@@ -60,17 +60,17 @@ def code_names() -> dict[str, Any]:
 
 @lru_cache(maxsize=8192)
 def compile_expression(source: str) -> Evaluate:
-    """The expression as a pure function of a Scope.
+    """Return the expression as a pure function of a Scope.
 
-    Raises ExpressionError where it can't be read; the function raises it where there is no value. Equal sources give
-    the same function.
+    Raise ExpressionError if the source is invalid; the function raises it if the expression has no value. Equal sources
+    give the same function while it is cached.
     """
     return _compile(source, guard=False)
 
 
 @lru_cache(maxsize=8192)
 def compile_guard(source: str) -> Callable[[Scope], bool]:
-    """The expression as a condition: as `compile_expression`, and a value other than true or false is an error."""
+    """Return the expression as a condition: like `compile_expression`, but any value except a boolean is an error."""
     return _compile(source, guard=True)
 
 
@@ -81,7 +81,7 @@ def _compile(source: str, *, guard: bool) -> Evaluate:
     logical = any(isinstance(node, Logic) for node, _ in walk(tree))
 
     def failed(error: Exception, scope: Scope) -> Any:
-        """The value by CEL's full rule where there is `&&` or `||`, else the error explained."""
+        """Return the value by CEL's full rule if the expression has `&&` or `||`; else raise the error, explained."""
         if not logical:
             raise explain(error, source, tree, scope) from None
         if not careful:

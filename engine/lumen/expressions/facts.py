@@ -1,4 +1,4 @@
-"""What a condition makes sure of where it is true, or false."""
+"""Facts that follow from a condition being true, or false."""
 
 from typing import NamedTuple
 
@@ -16,10 +16,12 @@ from lumen.expressions.tree import (
 
 
 class KnownFacts(NamedTuple):
-    """What the conditions around a node make sure of: fields that are there, and which events it can be."""
+    """The facts that the conditions around a node guarantee; `&` combines those of two conditions."""
 
     present: frozenset[tuple[str, ...]] = frozenset()
+    """Paths of the fields that exist."""
     events: frozenset[str] | None = None
+    """Names that the event can have; None if it can have any."""
 
     def __and__(self, other: "KnownFacts") -> "KnownFacts":
         events = [k.events for k in (self, other) if k.events is not None]
@@ -27,7 +29,7 @@ class KnownFacts(NamedTuple):
 
 
 def facts(node: ExpressionNode, value: bool) -> KnownFacts:
-    """What is made sure of where the condition has that value."""
+    """Return the facts that follow if the condition `node` has this value."""
     match node:
         case Unary(sign="!", operand=operand):
             return facts(operand, not value)
@@ -45,7 +47,7 @@ def facts(node: ExpressionNode, value: bool) -> KnownFacts:
 
 
 def prefixes(node: ExpressionNode) -> frozenset[tuple[str, ...]]:
-    """The paths of what the node stands in."""
+    """Return the paths of all values that contain the node's: `a` and `a.b` for `a.b.c`."""
     found = set()
     while isinstance(node, FieldAccess | IndexAccess):
         node = node.base

@@ -1,8 +1,8 @@
-"""JSON Schema (2020-12): whether data fits, at once; and why not, in jsonschema's words.
+"""JSON Schema (2020-12): a fast check whether data fits, and an explanation by jsonschema if it does not.
 
-jsonschema explains; it takes 20 µs for a body of two numbers and a third of lint's time. Nearly all data fits, and
-jsonschema-rs sees that a hundred times as fast (docs/decisions/022). Where it says no, jsonschema is asked. In both a
-pattern is one of Lumen's: its letters are those of every script, and none tries one alternative after another.
+jsonschema explains errors well, but needs 20 µs for a body of two numbers and a third of lint's time. Nearly all data
+fits, and jsonschema-rs confirms that a hundred times as fast (docs/decisions/022); jsonschema runs only if it does not.
+Both use Lumen's patterns: letters are those of every script, and matching never backtracks.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     from jsonschema import ValidationError
 
 _DATA = frozenset(("const", "enum", "default", "examples"))
-"""Keywords whose values are no schemas."""
+"""Keywords whose values are data, not schemas."""
 
 _NAMED = frozenset(("properties", "patternProperties", "dependentSchemas", "$defs"))
-"""Keywords whose values are schemas under names."""
+"""Keywords whose values map names to schemas."""
 
 
 MAX_DATA_DEPTH = 200
-"""Levels of lists and objects that are looked at: jsonschema-rs calls itself for each, until the process ends."""
+"""The most levels of lists and objects in checked data: jsonschema-rs recurses, and too deep data ends the process."""
 
 _FLAT = frozenset((str, int, float, bool, type(None)))
 
 
 def deeper_than(levels: int, data: Any) -> bool:
-    """Whether lists and objects lie within one another in more than so many levels."""
+    """Return whether lists and objects are nested in more than `levels` levels."""
     inner = data.values() if isinstance(data, dict) else data if isinstance(data, list | tuple) else ()
     if _FLAT.issuperset(map(type, inner)):
         return not levels and isinstance(data, dict | list | tuple)
@@ -39,13 +39,13 @@ def deeper_than(levels: int, data: Any) -> bool:
 
 
 class JsonSchema:
-    """A schema, compiled when it is first needed. Where it is unsound itself, nothing fits, and nothing is wrong."""
+    """A schema, compiled on first use. If the schema itself is invalid, `fits` is False and `errors` empty."""
 
     def __init__(self, schema: Any) -> None:
         self.schema = schema
 
     def fits(self, data: Any) -> bool:
-        """Whether the data certainly fits. A no without an error is a yes: nobody else knew what the data is."""
+        """Return True if the data certainly fits; if False, it still fits unless `errors` finds an error."""
         flat = type(data) is dict and _FLAT.issuperset(map(type, data.values()))  # nearly every message
         if not flat and deeper_than(MAX_DATA_DEPTH, data):
             return False
@@ -55,7 +55,7 @@ class JsonSchema:
             return False
 
     def errors(self, data: Any) -> "Iterator[ValidationError]":
-        """What is wrong with the data; raises RecursionError where schema or data lead on and on."""
+        """Return an iterator over the errors of the data; raise RecursionError if data or schema nest too deeply."""
         if deeper_than(MAX_DATA_DEPTH, data):
             raise RecursionError(f"nested more than {MAX_DATA_DEPTH} levels deep")
         if self._only_quick:
@@ -64,12 +64,12 @@ class JsonSchema:
 
     @property
     def is_sound(self) -> bool:
-        """Whether this is a JSON Schema whose patterns and references can be used."""
+        """Whether this is a valid JSON Schema whose patterns and references can be used."""
         return self._quick is not None
 
     @cached_property
     def _quick(self) -> "jsonschema_rs.Validator | None":
-        """jsonschema-rs's validator; None for what it takes for unsound."""
+        """The validator of jsonschema-rs; None if that rejects the schema."""
         from jsonschema_rs import Draft202012Validator, RegexOptions
 
         if deeper_than(MAX_DATA_DEPTH, self.schema):
@@ -89,11 +89,11 @@ class JsonSchema:
 
     @cached_property
     def _only_quick(self) -> bool:
-        """Whether jsonschema would have to look for key patterns by itself, and with `re`."""
+        """Whether only jsonschema-rs is usable: jsonschema would match key patterns with its own code and `re`."""
         return {"unevaluatedProperties", "patternProperties"} <= set(keywords(self.schema))
 
     def _told(self, data: Any) -> "Iterator[ValidationError]":
-        """What is wrong, in jsonschema-rs's words."""
+        """Yield the errors that jsonschema-rs finds, in its words."""
         from jsonschema import ValidationError
 
         for found in self._quick.iter_errors(data) if self._quick else ():
@@ -101,7 +101,7 @@ class JsonSchema:
             yield ValidationError(found.message, "schema", place, instance=instance, schema=self.schema)
 
     def _guessed(self, data: Any) -> "Iterator[ValidationError]":
-        """What is wrong by a schema that jsonschema-rs takes for unsound; nothing where jsonschema agrees."""
+        """Yield the errors by a schema that jsonschema-rs rejects; none if jsonschema rejects it too."""
         from jsonschema import SchemaError
         from referencing.exceptions import Unresolvable
 
@@ -111,7 +111,7 @@ class JsonSchema:
 
 
 def occurs(pattern: str, text: str) -> bool:
-    """Whether the pattern occurs in the text; also where it can't be read, which lint tells."""
+    """Return whether the pattern matches anywhere in the text; True if it is invalid, which lint reports."""
     try:
         return compile_pattern(pattern).search(text)
     except ExpressionError:
@@ -119,7 +119,7 @@ def occurs(pattern: str, text: str) -> bool:
 
 
 def _prepared(schema: Any) -> Any:
-    """The schema with each pattern as the engine has to be given it."""
+    """Return the schema with each pattern in the form that the regex engine needs."""
     if isinstance(schema, list):
         return [_prepared(inner) for inner in schema]
     if not isinstance(schema, dict):
@@ -136,7 +136,7 @@ def _prepared(schema: Any) -> Any:
 
 
 def is_usable_alone(schema: object) -> TypeGuard[dict[str, Any]]:
-    """Return True for a JSON Schema whose patterns can be used, and that refers to no other by `$ref`."""
+    """Return whether this is a valid JSON Schema with usable patterns and without `$ref`."""
     return isinstance(schema, dict) and "$ref" not in keywords(schema) and JsonSchema(schema).is_sound
 
 
@@ -151,8 +151,8 @@ def keywords(schema: Any) -> Iterator[str]:
 
 @cache
 def _validator_class() -> Any:
-    """jsonschema's validator, with patterns that do not try one alternative after another."""
-    from jsonschema import Draft202012Validator  # takes 0.1 s: only where something is wrong
+    """Return the validator class of jsonschema, with patterns that never backtrack."""
+    from jsonschema import Draft202012Validator  # takes 0.1 s: import it only to explain errors
     from jsonschema.validators import extend
 
     ours = {
@@ -180,7 +180,7 @@ def _pattern_properties(
 
 
 def _additional_properties(validator: Any, wanted: Any, data: Any, schema: Any) -> "Iterator[ValidationError]":
-    """jsonschema's own, of the keys that no pattern names."""
+    """Apply the check of jsonschema to the keys that match no pattern."""
     from jsonschema import Draft202012Validator
 
     patterns = schema.get("patternProperties", ())

@@ -15,7 +15,7 @@ _KIND_OF: Mapping[type, str] = {
 
 
 class FaultError(Exception):
-    """An evaluation that can't go on: why, and what would be right."""
+    """The failure of an evaluation: `message` is the reason, `hint` what would be right."""
 
     def __init__(self, message: str, hint: str = "") -> None:
         self.message, self.hint = message, hint
@@ -23,7 +23,7 @@ class FaultError(Exception):
 
 
 class WrongKindError(Exception):
-    """The operand of that number (from 0) of the node that is evaluated is not of a kind `wanted`."""
+    """The error of an operand, counted from 0 in the evaluated node, that has none of the kinds `wanted`."""
 
     def __init__(self, operand: int, value: Any, *wanted: str) -> None:
         self.operand, self.kind, self.wanted = operand, kind_of(value), wanted
@@ -31,7 +31,7 @@ class WrongKindError(Exception):
 
 
 class MismatchError(Exception):
-    """The two operands of a sign don't go together."""
+    """The error of an operator whose two operands have kinds that it cannot combine."""
 
     def __init__(self, left: Any, right: Any) -> None:
         self.left, self.right = kind_of(left), kind_of(right)
@@ -39,7 +39,7 @@ class MismatchError(Exception):
 
 
 def kind_of(value: Any) -> str:
-    """One of KINDS; raises FaultError for what is not JSON data."""
+    """Return the kind of a value, one of KINDS; raise FaultError if it is not JSON data."""
     kind = _KIND_OF.get(type(value))
     if kind is not None:
         return kind

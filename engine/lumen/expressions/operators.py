@@ -30,7 +30,7 @@ _SCALARS = frozenset((type(None), bool, int, float))
 
 
 def truth(value: Any) -> bool:
-    """The operand of `&&`, `||` and `?`, or an answer that has to be yes or no."""
+    """Return a boolean operand of `&&`, `||` or `?`, or the value of a guard; raise WrongKindError for other kinds."""
     if value is True or value is False:
         return bool(value)
     raise WrongKindError(-1, value, BOOLEAN)
@@ -126,7 +126,7 @@ def add(left: Any, right: Any) -> Any:
 
 
 def bounded_text(length: int) -> None:
-    """Raise FaultError where a text of that length must not be built."""
+    """Raise FaultError if a text of this length exceeds MAX_TEXT_LENGTH."""
     if length > MAX_TEXT_LENGTH:
         raise FaultError("the text becomes too long", f"at most {MAX_TEXT_LENGTH:,} characters are allowed")
 
@@ -142,7 +142,7 @@ def multiply(left: Any, right: Any) -> Any:
 
 
 def divide(left: Any, right: Any) -> Any:
-    """The quotient; of two whole numbers without its fraction, towards zero, as in CEL."""
+    """Return the quotient, for two integers rounded towards zero, as in CEL; raise FaultError for a zero divisor."""
     _numbers(left, right)
     if right == 0:
         raise FaultError("this divides by zero")
@@ -153,7 +153,7 @@ def divide(left: Any, right: Any) -> Any:
 
 
 def remainder(left: Any, right: Any) -> Any:
-    """What `divide` leaves; it has the sign of `left`, as in CEL."""
+    """Return the remainder of `divide`, with the sign of `left`, as in CEL; raise FaultError for a zero divisor."""
     _numbers(left, right)
     if right == 0:
         raise FaultError("this divides by zero")

@@ -1,4 +1,4 @@
-"""What an expression can see, and how large it and its values may be."""
+"""The values that an expression can use, and the limits of its size and of its values."""
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
@@ -9,16 +9,16 @@ from lumen.language.machines import Answer, MachineDefinition
 from lumen.talk.folding import MAX_TEXT_EXAMINED as MAX_TEXT_EXAMINED
 
 MAX_EXPRESSION_LENGTH = 2_000
-"""Characters in an expression."""
+"""The most characters of an expression."""
 
 MAX_TREE_DEPTH = 50
-"""Levels of an expression's tree."""
+"""The most levels of an expression's tree."""
 
 MAX_TEXT_LENGTH = 10_000
-"""Characters in a text that an expression or a template builds."""
+"""The most characters of a text that an expression or a template builds."""
 
 MAX_COLLECTION_VALUES = 10_000
-"""Values inside a list or map that an expression builds, those inside them included."""
+"""The most values in a list or map that an expression builds, nested ones included."""
 
 MIN_INT, MAX_INT = -(2**63), 2**63 - 1
 """Whole numbers have 64 bits, as in CEL."""
@@ -31,7 +31,7 @@ def _nowhere(state: str) -> bool:
 
 
 def no_draw(count: int) -> int:
-    """Stands where nothing may be drawn: only an action changes what is drawn next."""
+    """Raise FaultError: the `draw` of scopes without random values, since only actions advance the random state."""
     raise FaultError("random values are not allowed here", "use `shuffle` and `pick` only in `assign`")
 
 
