@@ -1,4 +1,4 @@
-"""What is wrong with an expression, and the declarations by which that is decided."""
+"""The findings about an expression, their codes, and the declarations that the expression is checked against."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
@@ -49,42 +49,48 @@ class ExpressionFinding(NamedTuple):
 CODES_OF_COMPILE_ERRORS = frozenset(
     (UNKNOWN_NAME, UNKNOWN_FUNCTION, WRONG_ARGUMENT_COUNT, UNSAFE_PATTERN, WRONG_ARGUMENT)
 )
-"""The codes of what can't even be compiled."""
+"""The codes of expressions that cannot be compiled."""
 
 
 @dataclass(frozen=True)
 class Declarations:
-    """What is declared around an expression; None where that is not known.
-
-    `context` and `events` hold JSON Schemas, of the keys and of the events' data (None: of any kind); so do `lists`,
-    and the `variables`, which are entries of lists. `functions` are those of the project. `pure` are declarations of a
-    function itself: it reads nothing but its arguments, which are the `variables`.
-    """
+    """The declarations that an expression can refer to; None for each kind that is unknown."""
 
     context: Mapping[str, Any] | None = None
+    """Keys of the context, with the JSON Schema of each."""
+
     events: Mapping[str, Any] | None = None
+    """Names of events, with the JSON Schema of the data of each; None for data of any kind."""
+
     phrases: Collection[str] | None = None
     answers: Collection[str] | None = None
     states: Collection[str] | None = None
     lists: Mapping[str, Any] | None = None
+    """Names of lists, with the JSON Schema of each."""
+
     variables: Mapping[str, Any] = field(default_factory=dict)
+    """Names of entries of lists, or of the arguments of a function, with the JSON Schema of each."""
+
     functions: KnownFunctions = field(default_factory=dict)
+    """The project's own functions."""
+
     pure: bool = False
+    """Whether the expression is the body of a function, which can read only its arguments."""
 
 
 class ExpressionFindings:
-    """Collects what is wrong, each thing once."""
+    """A collection of findings, each kept once, in the order of the reports."""
 
     def __init__(self) -> None:
         self.found: dict[ExpressionFinding, None] = {}
 
     def report(self, code: Code, node: ExpressionNode, message: str, hint: str = "", offset: int | None = None) -> None:
-        """Something is wrong with the node, or with its part from `offset` on."""
+        """Add a finding about the node, or about its part from `offset` on."""
         start = node.offset if offset is None else offset
         self.found[ExpressionFinding(code, start, max(1, node.end - start), message, hint)] = None
 
     def expect(self, node: ExpressionNode, kinds: frozenset[str], wanted: frozenset[str], whose: str) -> bool:
-        """Whether a value of these kinds can be of one that is wanted, saying so where it can't."""
+        """Return whether one of `kinds` is in `wanted`; if none is, report a type mismatch."""
         if kinds & wanted:
             return True
         self.report(TYPE_MISMATCH, node, f"this is {in_words(kinds)}, but {in_words(wanted)} is needed {whose}")
@@ -92,5 +98,5 @@ class ExpressionFindings:
 
 
 def in_words(kinds: frozenset[str]) -> str:
-    """`a number or null`."""
+    """Return the kinds as words, such as `a number or null`."""
     return " or ".join(words for kind, words in KIND_DESCRIPTIONS.items() if kind in kinds)

@@ -1,4 +1,4 @@
-"""What the language does with lists: parts of them, what is drawn from them, and texts in several languages in them."""
+"""Functions of the language for lists: parts of lists, random draws, and texts in several languages."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -38,19 +38,19 @@ def pick(scope: Scope, values: Any) -> Any:
 
 
 def in_language(scope: Scope, value: Any) -> Any:
-    """Of a text in several languages the one in the current language, or the first; another value as it is."""
+    """Return a text by language in the current language, else its first text; return other values unchanged."""
     if not is_text_by_language(value):
         return value
     return value[scope.language] if scope.language in value else next(iter(value.values()))
 
 
 def by_language(value: Any) -> bool:
-    """Whether a value is a map whose keys are languages."""
+    """Return whether a value is a map, not empty, whose keys are all language tags."""
     return isinstance(value, Mapping) and bool(value) and all(map(is_language_tag, value))
 
 
 def is_text_by_language(value: Any) -> bool:
-    """Whether a value is a map from languages to texts."""
+    """Return whether a value is a map, not empty, from language tags to texts."""
     return by_language(value) and all(isinstance(text, str) for text in value.values())
 
 

@@ -1,8 +1,8 @@
-"""Regular expressions that never try one alternative after another: those of `matches` and of every JSON Schema.
+"""Regular expressions without backtracking, for `matches` and for every JSON Schema.
 
-Python's `re` does, so that an innocent pattern can take minutes on a text that a message brought. jsonschema-rs reads
-them; its engine, Rust's `regex`, takes time proportional to the text (docs/decisions/021). What is wrong with a pattern
-it does not say: that is told here.
+Python's `re` backtracks, so a harmless pattern can take minutes on a text from a message. jsonschema-rs compiles the
+patterns instead: its engine, Rust's `regex`, takes time proportional to the text (docs/decisions/021). It does not
+explain why a pattern is invalid; this module does.
 """
 
 import re
@@ -12,7 +12,7 @@ from functools import lru_cache
 from lumen.errors import ExpressionError
 
 _EVERY_SCRIPT = {"w": r"\p{XIDC}", "W": r"\P{XIDC}", "d": r"\p{Nd}", "D": r"\P{Nd}"}
-"""What `\\w` and `\\d` mean here: letters and digits of every script, as in Python; in JSON Schema those of ASCII."""
+"""Escapes that match letters and digits of every script, as in Python; JSON Schema's own match only ASCII."""
 
 _PIECE = re.compile(
     r"\\(?:x[0-9a-fA-F]{2}|u[0-9a-fA-F]{4}|[pP]\{\w*\}|.)|\\"  # an escape
@@ -25,11 +25,11 @@ _PIECE = re.compile(
 _BOUNDS = re.compile(r"\{(\d+),(\d+)\}")
 
 PatternPiece = tuple[str, int]
-"""A character, set, repetition or beginning of a group, and where it stands."""
+"""A character, set, repetition or beginning of a group, with its offset in the source."""
 
 
 class CompiledPattern:
-    """A compiled pattern; `search` tells whether it occurs anywhere in a text."""
+    """A compiled pattern; `search` returns whether it matches anywhere in a text."""
 
     __slots__ = ("_occurs_in",)
 
@@ -45,7 +45,7 @@ class CompiledPattern:
 
 @lru_cache(maxsize=512)
 def compile_pattern(source: str) -> CompiledPattern:
-    """The pattern, ready to search; raises ExpressionError with the offset in `source` for what is not allowed."""
+    """Return the compiled pattern; raise ExpressionError, with the offset in `source`, if it is invalid."""
     pieces = [(found[0], found.start()) for found in _PIECE.finditer(source)]
     _check_repetitions(pieces)
     if (occurs_in := _read(source)) is None:
@@ -56,7 +56,7 @@ def compile_pattern(source: str) -> CompiledPattern:
 
 
 def for_every_script(source: str) -> str:
-    """The pattern as the engine has to be given it, so that its letters and digits are those of every script."""
+    """Return the pattern for Rust's `regex`, with `\\w` and `\\d` extended to letters and digits of every script."""
     return re.sub(r"\\(.)", _meant, source, flags=re.DOTALL)
 
 
@@ -66,8 +66,8 @@ def _meant(escape: re.Match[str]) -> str:
 
 
 def _read(source: str) -> Callable[[str], bool] | None:
-    """What tells whether the pattern occurs in a text; None where the engine can't read the pattern."""
-    from jsonschema_rs import Draft202012Validator, RegexOptions  # takes 40 ms: only where there is a pattern
+    """Return a function that searches a text for the pattern; None if the engine rejects the pattern."""
+    from jsonschema_rs import Draft202012Validator, RegexOptions  # takes 40 ms: import it only for a pattern
 
     try:
         return Draft202012Validator({"pattern": for_every_script(source)}, pattern_options=RegexOptions()).is_valid
@@ -76,7 +76,7 @@ def _read(source: str) -> Callable[[str], bool] | None:
 
 
 def _check_repetitions(pieces: Sequence[PatternPiece]) -> None:
-    """Raise ExpressionError for one of nothing, of another, or that counts downwards."""
+    """Raise ExpressionError for a repetition of nothing or of a repetition, and for bounds that count downwards."""
     before = "("
     for piece, at in pieces:
         sign = piece[0]
@@ -92,7 +92,7 @@ def _check_repetitions(pieces: Sequence[PatternPiece]) -> None:
 
 
 def _check_characters(pieces: Sequence[PatternPiece]) -> None:
-    """Raise ExpressionError for the first escape or set that the engine can't read."""
+    """Raise ExpressionError for the first escape or set that the engine rejects."""
     for piece, at in pieces:
         if piece[0] == "\\" and piece[1:2] in tuple("123456789k"):
             hint = "write out the characters to match"
@@ -107,7 +107,7 @@ def _check_characters(pieces: Sequence[PatternPiece]) -> None:
 
 
 def _check_groups(pieces: Sequence[PatternPiece]) -> None:
-    """Raise ExpressionError for a group that begins as none can, that is not closed, or that was not opened."""
+    """Raise ExpressionError for a group of an unsupported kind, and for brackets that are not closed or not opened."""
     opened: list[int] = []
     for piece, at in pieces:
         if piece[:2] == "(?" and _read(piece.removesuffix(")") + ")") is None:

@@ -1,4 +1,4 @@
-"""What an expression looked at, and what it found there: for who asks why it was true or false."""
+"""The values that an expression read, to explain why it was true or false."""
 
 import re
 from collections.abc import Iterator
@@ -25,10 +25,10 @@ _LOCALIZED = re.compile(r"\bin_language\((heard(?:\.\w+|\['\w+'\])*)\)")
 
 
 def readings(source: str, scope: Scope, shown: str = "") -> dict[str, Any]:
-    """Its paths, and functions such as `hour()` and `In('dance')`, with their values, as the author wrote them.
+    """Return the values of the expression's paths and of functions such as `hour()` and `In('dance')`.
 
-    `shown` is how that is, where it differs from the `source`; what is not written there is left out, and so is what
-    has no value: `has(event.data.name)` asks for that.
+    Keys are the parts as the author wrote them. `shown` is the author's text if it differs from `source`: parts that it
+    lacks are left out. So are parts without a value, such as a missing field in `has(event.data.name)`.
     """
     found: dict[str, Any] = {}
     for node in _looked_at(parse_expression(source)):
@@ -43,12 +43,12 @@ def readings(source: str, scope: Scope, shown: str = "") -> dict[str, Any]:
 
 
 def as_written(source: str) -> str:
-    """An expression of a row of `hears` with `heard`, as the author wrote it, in place of the engine's own function."""
+    """Return the expression of a row of `hears` as the author wrote it: with `heard` for the engine's own function."""
     return _LOCALIZED.sub(r"\1", _CAUGHT.sub("heard", source)) if CAUGHT in source else source
 
 
 def looks_at_what_was_heard(node: ExpressionNode) -> bool:
-    """Whether it is `heard` of a row of `hears`, or something in it."""
+    """Return whether the node is `heard` of a row of `hears`, or a field or element in it."""
     while isinstance(node, FieldAccess | IndexAccess):
         node = node.base
     return isinstance(node, FunctionCall) and node.function == CAUGHT

@@ -1,4 +1,4 @@
-"""Expressions about the entries of lists, as expressions about the context: what `question` stands for is put in."""
+"""Rewrite expressions about entries of lists into expressions about the context: `question` becomes its path."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,14 +19,14 @@ from lumen.expressions.tree import (
 )
 
 _WHOLE = frozenset(("has", "heard"))
-"""The functions that take what stands in a list as it is, in all languages."""
+"""The functions whose arguments from a list keep their texts in all languages."""
 
 
 def substituted(source: str, variables: Mapping[str, str], *, localized: bool = True) -> str:
-    """The source with its `variables` replaced by what they stand for, which are paths such as `context.a.entry`.
+    """Return the source with each of the `variables` replaced by its path, such as `context.a.entry`.
 
-    Where `localized`, a text of such a path, and of one into `lists`, is that of the current language. A source that
-    speaks of neither, or can't be read, is given back as it is.
+    If `localized`, texts at these paths, and at paths into `lists`, are reduced to the current language. A source that
+    contains neither, or that is invalid, is returned unchanged.
     """
     try:
         tree = parse_expression(source)
@@ -40,12 +40,12 @@ def substituted(source: str, variables: Mapping[str, str], *, localized: bool = 
 
 @lru_cache(maxsize=MAX_REMEMBERED_TREES)
 def _roots(source: str) -> frozenset[str]:
-    """What the paths of a sound expression begin with."""
+    """Return the first names of all paths in a valid expression."""
     return frozenset(node.name for node, _ in walk(parse_expression(source)) if isinstance(node, Identifier))
 
 
 def substituted_template(text: str, variables: Mapping[str, str]) -> str:
-    """The text with this done in each of its holes."""
+    """Return the template with `substituted` applied to each of its holes; unchanged if the template is invalid."""
     try:
         parts = split_template(text)
     except ExpressionError:
@@ -61,7 +61,7 @@ class _Substitution:
         self.localized = localized
 
     def of(self, node: ExpressionNode, *, whole: bool = False) -> ExpressionNode:
-        """The node with everything replaced; `whole` where its text is wanted in all languages."""
+        """Return the node with all variables replaced; `whole` keeps its text in all languages."""
         match node:
             case Identifier() | FieldAccess() | IndexAccess():
                 path = self.path(node)
@@ -72,7 +72,7 @@ class _Substitution:
         return rebuilt(node, self.of)
 
     def path(self, node: ExpressionNode) -> ExpressionNode:
-        """A path with its beginning replaced."""
+        """Return a path with its first name replaced, if that is a variable."""
         match node:
             case Identifier(name=name):
                 return self.meant.get(name, node)
@@ -83,7 +83,7 @@ class _Substitution:
         return self.of(node)
 
     def _spoken(self, node: ExpressionNode) -> bool:
-        """Whether it is something in an entry, or in a list."""
+        """Return whether the path leads into an entry or a list, so that its text must be localized."""
         start = node
         while isinstance(start, FieldAccess | IndexAccess):
             start = start.base
