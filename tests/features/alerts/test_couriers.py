@@ -78,7 +78,7 @@ def test_nothing_is_lost_and_nothing_told_too_often(days: list[tuple[float, str,
         now += pause
         ration.take(Alert(kind, "x"))
         told += [(now, alert.kind, alert.times) for alert in ration.due(now, quiet=quiet)]
-    held = sum(alert.times for alert in ration.rest())
+    held = sum(alert.times for alert in ration.remaining())
     assert sum(times for _, _, times in told) + held == len(days)
     for kind in "ab":
         at = [now for now, other, _ in told if other == kind]
@@ -154,7 +154,7 @@ def test_who_tells_waits_for_nobody_and_the_memory_is_bounded(stand: Stand) -> N
     for number in range(10 * MAX_PENDING_ALERTS):
         courier.put(Alert("stopped", "x", str(number)))
     assert stand.tries == 1, "the first is still under way"
-    assert len(courier._came) == MAX_PENDING_ALERTS
+    assert len(courier._received) == MAX_PENDING_ALERTS
     stand.gate.set()
     until(lambda: len(stand.arrived) == 1 + MAX_PENDING_ALERTS)
 

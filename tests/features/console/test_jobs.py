@@ -123,7 +123,7 @@ def test_what_tells_a_job_may_fail() -> None:
 def test_a_process_of_poses_that_has_ended_says_why(error: Exception, reason: str) -> None:
     def begin(job: str, home: str) -> Any:
         assert (job, home) == ("poses", "/home")
-        return Mock(ask=Mock(side_effect=error))
+        return Mock(request=Mock(side_effect=error))
 
     watch = SimpleNamespace(keys=SimpleNamespace(home=lambda robot: "/home"))
     poses = Poses(watch, SimpleNamespace(begin=begin), "NAO")  # type: ignore[arg-type]

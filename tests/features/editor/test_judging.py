@@ -27,7 +27,7 @@ class Outdatable:
 
     def start(self) -> None: ...
 
-    def ask(self, question: tuple[int, Any]) -> None:
+    def request(self, question: tuple[int, Any]) -> None:
         self.asked.append(question[0])
         self._loop.call_soon_threadsafe(self.began.set)
         assert self._sent.wait(HANG)
@@ -45,9 +45,10 @@ def judge(act: Callable[[Judge], Any]) -> Outdatable:
         process = Outdatable()
         judge._process = process  # type: ignore[assignment]
         waiting = asyncio.ensure_future(judge.judge(Analysis(Path(), {})))
-        await process.began.wait()
-        await act(judge)
-        assert await waiting is None
+        async with asyncio.timeout(HANG):
+            await process.began.wait()
+            await act(judge)
+            assert await waiting is None
         return process
 
     return asyncio.run(asked())
