@@ -3,7 +3,7 @@
     python scripts/prose.py                      # hits per 1,000 words; exit code 1 if a limit is exceeded
     python scripts/prose.py --list               # and each hit of the groups that exceed their limit
     python scripts/prose.py docs/lint.md engine/lumen/lint      # each hit in these files
-    python scripts/prose.py --draw 60 --seed 1   # 60 messages and 60 sentences, for a reader who did not write them
+    python scripts/prose.py --draw 60 --seed 1   # 60 messages, docstrings and sentences, for a reader who wrote none
 
 Messages are the string literals of the engine that hold a sentence; the values in an f-string print as `…`. A hit is a
 place to look at, not a verdict: a pattern can be right where it is found. `make check` runs this script.
@@ -256,10 +256,31 @@ def _is_read(file: str) -> bool:
     return file == TEXTS or (file.endswith((".py", ".md")) and not file.startswith(("docs/rules/", "docs/commands/")))
 
 
+def docstrings(file: str) -> Iterator[Prose]:
+    """The docstring of each class and function of a module, after the signature that a reader sees beside it."""
+    for node in ast.walk(ast.parse((ROOT / file).read_text(encoding="utf-8"))):
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)) and (
+            told := ast.get_docstring(node)
+        ):
+            if isinstance(node, ast.ClassDef):
+                signature = f"class {node.name}({', '.join(map(ast.unparse, node.bases))})"
+            else:
+                returned = f" -> {ast.unparse(node.returns)}" if node.returns else ""
+                signature = f"{node.name}({ast.unparse(node.args)}){returned}"
+            yield Prose(file, node.lineno, f"{signature}: {' '.join(told.split())}")
+
+
 def draw(count: int, seed: int) -> None:
-    """Print messages of the engine and sentences of the first pages, numbered, drawn with a seed."""
-    random = Random(seed)
-    for name, drawn in (("Messages", of_engine(files())), ("Sentences", _all(sentences, FRONT))):
+    """Print messages and docstrings of the engine and sentences of the pages, numbered, drawn with a seed."""
+    every, random = files(), Random(seed)
+    engine = [file for file in every if file.startswith(ENGINE) and file.endswith(".py")]
+    written = [file for file in every if file.startswith("docs/") and _is_read(file) and "/decisions/" not in file]
+    for name, drawn in (
+        ("Messages", of_engine(every)),
+        ("Sentences of the first hour", _all(sentences, FRONT)),
+        ("Docstrings", _all(docstrings, engine)),
+        ("Sentences of docs/", _all(sentences, [file for file in written if file.endswith(".md")])),
+    ):
         print(f"{name}, {count} of {len(drawn):,}, seed {seed}:")
         for number, told in enumerate(random.sample(drawn, min(count, len(drawn))), 1):
             print(f"{number:3}. {told.text}   [{told.file}:{told.line}]")
@@ -273,7 +294,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("paths", nargs="*", metavar="PATH", help="list each hit in these files and folders")
     parser.add_argument("--list", action="store_true", help="list each hit of the groups that exceed their limit")
-    parser.add_argument("--draw", type=int, metavar="N", help="print N messages and N sentences, drawn at random")
+    parser.add_argument("--draw", type=int, metavar="N", help="print N drawn messages, docstrings and sentences")
     parser.add_argument("--seed", type=int, default=1, help="of --draw (default: 1)")
     options = parser.parse_args()
     if options.draw:
