@@ -7,6 +7,7 @@ from types import ModuleType
 import pytest
 
 from lumen.lint import edges, endless_chains, events, falling, guards, regions
+from lumen.lint.instant_chains import MAX_STEPS
 from lumen.project.building import draft
 from tests.formats.test_large import calls
 
@@ -74,7 +75,7 @@ def test_events_that_nothing_raises_are_found_in_few_calls() -> None:
 
 
 def test_a_rule_follows_no_event_that_selects_nothing() -> None:
-    raised = "".join(f"      - {{raise: x{i}}}\n" for i in range(2 * endless_chains.MAX_STEPS))
+    raised = "".join(f"      - {{raise: x{i}}}\n" for i in range(2 * MAX_STEPS))
     text = f"states:\n  a: {{on: {{go: b}}}}\n  b:\n    entry:\n{raised}    on: {{go: a}}\n"
     project = draft({"lumen.yaml": PROJECT, "behaviors/hello.yaml": text.encode()})
     endless_chains.check(project)

@@ -1,0 +1,147 @@
+"""What the chains of one machine share: answers about its states and transitions, and the work that is left."""
+
+from collections.abc import Sequence
+
+from lumen.language.actions import PlacedAction, Raise, Send, nested
+from lumen.language.machines import MachineDefinition, StateKind, Transition
+from lumen.lint.events import hears
+from lumen.lint.statecharts import within
+
+MAX_WORK = 30_000
+"""The most states that are visited for the chains of one behaviour; further chains are not followed."""
+
+TRANSITIONS_PER_WORK = 10
+"""The number of transitions that are compared with an event in the time of one visit."""
+
+
+class UncertainError(Exception):
+    """The next transition can't be predicted: it depends on a guard, a list, or unknown states.
+
+    Also raised if following a chain further would take more than MAX_WORK.
+    """
+
+
+class ChainSurvey:
+    """Shared data of all chains of a machine: the order of its states, the situations seen, and the work done.
+
+    Answers about a state or a transition are kept, since each chain asks for them again.
+    """
+
+    def __init__(self, machine: MachineDefinition, ends: dict[tuple[int, int], bool | None]) -> None:
+        self.machine = machine
+        self.ends = ends
+        """Whether an invoked machine ends as soon as it begins, by its `id()` and the depth; None if uncertain."""
+        self.order = {path: number for number, path in enumerate(machine.states)}
+        """The place of each path in the document."""
+        self.seen: set[tuple[object, ...]] = set()
+        self.work = 0
+        self.children = {path: frozenset(state.children) for path, state in machine.states.items()}
+        self._regions: dict[str, list[str]] = {}
+        self._inside: dict[str, tuple[list[Transition], bool]] = {}
+        self._heard: dict[tuple[str, str], bool] = {}
+        self._rows: dict[tuple[str, str], list[Transition]] = {}
+        self._timers: dict[str, list[Transition]] = {}
+        self._left: dict[str, bool] = {}
+        self._domains: dict[int, str] = {}
+        self._final: dict[str, list[str]] = {}
+
+    def spend(self, work: int) -> None:
+        """Count work; raise UncertainError if it is more than MAX_WORK in total."""
+        self.work += work
+        if self.exhausted:
+            raise UncertainError
+
+    @property
+    def exhausted(self) -> bool:
+        return self.work > MAX_WORK
+
+    def regions(self, path: str) -> list[str]:
+        """The regions of a parallel state."""
+        if path not in self._regions:
+            states = self.machine.states
+            self._regions[path] = [c for c in states[path].children if states[c].kind is not StateKind.HISTORY]
+        return self._regions[path]
+
+    def is_heard(self, region: str, event: str) -> bool:
+        """Whether an event selects a transition of any state in a region."""
+        if (region, event) not in self._heard:
+            rows, _ = self._in(region)
+            self.spend(len(rows) // TRANSITIONS_PER_WORK)
+            self._heard[region, event] = any(_selects(row, event) for row in rows)
+        return self._heard[region, event]
+
+    def speaks_at_exit(self, region: str) -> bool:
+        """Whether an `exit` of any state in a region raises or sends an event."""
+        return self._in(region)[1]
+
+    def _in(self, region: str) -> tuple[list[Transition], bool]:
+        """The transitions of all states in a region that an event selects, and whether an exit there speaks."""
+        if region not in self._inside:
+            rows, speaks, waiting = list[Transition](), False, [region]
+            while waiting:
+                state = self.machine.states[waiting.pop()]
+                waiting.extend(state.children)
+                rows += (t for t in state.transitions if t.event and not t.timed)
+                speaks = speaks or sends_event(state.exit)
+            self._inside[region] = rows, speaks
+        return self._inside[region]
+
+    def rows(self, path: str, event: str) -> list[Transition]:
+        """The transitions of a state that an event selects."""
+        if (path, event) not in self._rows:
+            transitions = self.machine.states[path].transitions
+            self.spend(len(transitions) // TRANSITIONS_PER_WORK)
+            self._rows[path, event] = [row for row in transitions if _selects(row, event)]
+        return self._rows[path, event]
+
+    def timers(self, path: str) -> list[Transition]:
+        """Each `after: 0s` of a state."""
+        if path not in self._timers:
+            rows = reversed(self.machine.states[path].transitions)
+            names = {t.event: t for t in rows if t.timed and t.delay == 0}
+            self._timers[path] = list(reversed(names.values()))
+        return self._timers[path]
+
+    def is_left_at_once(self, path: str) -> bool:
+        """Whether an `after: 0s` of a state has a target."""
+        if path not in self._left:
+            self._left[path] = any(t.delay == 0 and t.targets for t in self.machine.states[path].transitions)
+        return self._left[path]
+
+    def domain(self, transition: Transition) -> str:
+        """The state that a transition does not leave."""
+        if id(transition) not in self._domains:
+            self._domains[id(transition)] = transition_domain(self.machine, transition)
+        return self._domains[id(transition)]
+
+    def final(self, path: str) -> list[str]:
+        """The final states among a state and its children."""
+        if path not in self._final:
+            states = self.machine.states
+            self._final[path] = [p for p in (*states[path].children, path) if states[p].kind is StateKind.FINAL]
+        return self._final[path]
+
+
+def transition_domain(machine: MachineDefinition, transition: Transition) -> str:
+    """The state that a transition does not leave: the innermost compound one around its source and its targets."""
+    path = transition.source
+    if transition.reenter:
+        path = machine.states[path].parent or ""
+    while path and not (
+        machine.states[path].kind is StateKind.COMPOUND
+        and all(target != path and within(target, path) for target in transition.targets)
+    ):
+        path = machine.states[path].parent or ""
+    return path
+
+
+def sends_event(block: Sequence[PlacedAction], to: str = "") -> bool:
+    """Whether it raises or sends an event, to that recipient if one is named."""
+    actions = [step.action for step in nested(tuple(block))]
+    return any(isinstance(a, Send) and a.to == to if to else isinstance(a, Raise | Send) for a in actions)
+
+
+def _selects(transition: Transition, event: str) -> bool:
+    if transition.timed or not event or not transition.event:
+        return not event and not transition.event
+    return transition.event == event if transition.exact else hears(transition.event, event)

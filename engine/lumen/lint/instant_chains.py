@@ -1,0 +1,345 @@
+"""A machine that is followed while no time passes and each next transition is certain."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from lumen.expressions.tree import Identifier, walk
+from lumen.language.actions import (
+    PARENT,
+    Assign,
+    CancelSend,
+    If,
+    LogText,
+    Parallel,
+    PlacedAction,
+    PublishBody,
+    Raise,
+    Send,
+    Wait,
+    nested,
+)
+from lumen.language.machines import MachineDefinition, State, StateKind, Transition
+from lumen.lint.chain_survey import ChainSurvey, UncertainError, sends_event
+from lumen.lint.logic import tree
+from lumen.lint.statecharts import within
+
+MAX_STEPS = 1000
+"""The most events and transitions of a chain that are followed: as many as the engine processes without a rest."""
+
+STATES_PER_WORK = 10
+"""The number of states, regions or actions that are looked at in the time of one visit."""
+
+EVENTS_PER_WORK = 100
+"""The number of waiting events that are copied in the time of one visit."""
+
+MAX_INVOKED = 4
+"""The depth of invoked behaviours that are followed."""
+
+_INSTANT = (Assign, CancelSend, If, LogText, Parallel, PublishBody, Raise, Send, Wait)
+
+
+TakenTransition = tuple[Transition, str]
+"""A transition and the event that selected it; empty for `always`."""
+
+
+@dataclass
+class InstantChain:
+    """A machine that is followed while no time passes and each next transition is certain.
+
+    `active` are the paths of the active states, `begun` those whose `do` and `invoke` have begun; `unknown` are regions
+    parallel to the active states in which any state may be active.
+    """
+
+    survey: ChainSurvey
+    depth: int = MAX_INVOKED
+    active: set[str] = field(default_factory=set)
+    begun: set[str] = field(default_factory=set)
+    unknown: set[str] = field(default_factory=set)
+    internal: tuple[str, ...] = ()
+    timers: list[Transition | str] = field(default_factory=list)
+    """Each `after: 0s` and each sent event, in their order: they come after the internal events, in the same moment."""
+    taken: list[TakenTransition] = field(default_factory=list)
+    asked: list[tuple[int, str]] = field(default_factory=list)
+    """Guards of `always` that are assumed false, each with the number of transitions taken before it, and as shown."""
+    assigned: int = -1
+    """The number of transitions taken before the last change of the context."""
+    over: bool = False
+
+    @property
+    def machine(self) -> MachineDefinition:
+        return self.survey.machine
+
+    def situation(self) -> tuple[object, ...]:
+        """Everything that decides the next transition."""
+        timers = tuple(timer if isinstance(timer, str) else id(timer) for timer in self.timers)
+        return frozenset(self.active), frozenset(self.begun), self.internal, timers
+
+    def stand_around(self, path: str) -> None:
+        """Mark the states around that one as active, as if they had been active for a while."""
+        while (outer := self.machine.states[path].parent) is not None:
+            if self.machine.states[outer].kind is StateKind.PARALLEL:
+                regions = self.survey.regions(outer)
+                self.survey.spend(len(regions) // STATES_PER_WORK)
+                self.unknown.update(regions)
+                self.unknown.discard(path)
+            self.active.add(outer)
+            path = outer
+        self.begun |= self.active
+
+    def enter(self, targets: Iterable[str], domain: str | None) -> None:
+        """Enter these states, those around them up to the domain, and what begins with them."""
+        states, found = self.machine.states, set[str]()
+
+        def add(path: str | None, top: str | None) -> None:
+            while path is not None and path != top and path not in found:
+                found.add(path)
+                path = states[path].parent
+
+        for target in targets:
+            add(target, domain)
+        before = -1
+        while before < len(found):
+            before = len(found)
+            self.survey.spend(before // STATES_PER_WORK)
+            for path in tuple(found):
+                state = states[path]
+                if state.kind is StateKind.PARALLEL:
+                    found.update(self.survey.regions(path))
+                elif state.kind is StateKind.COMPOUND and found.isdisjoint(self.survey.children[path]):
+                    for first in state.initial:
+                        add(first, path)
+        for state in self._in_order(found):
+            if state.kind is StateKind.HISTORY or state.for_each:
+                raise UncertainError
+            self.active.add(state.path)
+            self.timers += self.survey.timers(state.path)
+            self._note(state.entry)
+            if state.kind is StateKind.FINAL:
+                self._end(state)
+
+    def step(self) -> bool:
+        """Take the enabled transitions, or those of the next event; return False if the machine rests, or is over."""
+        if self.over:
+            return False
+        waiting = len(self.internal) + len(self.timers)
+        self.survey.spend(len(self.active) + waiting // EVENTS_PER_WORK)
+        event, found = "", self.selected("")
+        if not found:
+            if not self.internal:
+                self._begin()
+            if self.internal:
+                event, *rest = self.internal
+                self.internal = tuple(rest)
+            elif self.timers:
+                timer = self.timers.pop(0)
+                if not isinstance(timer, str):
+                    self.take([timer] if self._holds(timer) else [], timer.event)
+                    return True
+                if any(self.machine.states[path].invoke for path in self.active):
+                    raise UncertainError  # they receive it, too
+                event = timer
+            else:
+                return False
+            found = self.selected(event)
+        self.take(found, event)
+        return True
+
+    def take(self, transitions: Sequence[Transition], event: str) -> None:
+        """Take these in one step; of two that leave the same states only the inner or the earlier one."""
+        kept: list[Transition] = []
+        for transition in transitions:
+            self.survey.spend(len(kept) // STATES_PER_WORK)
+            rivals = [other for other in kept if self._conflict(transition, other)]
+            if all(transition.source != o.source and within(transition.source, o.source) for o in rivals):
+                kept = [*(other for other in kept if other not in rivals), transition]
+        transitions = kept
+        self.taken += [(transition, event) for transition in transitions]
+        moves = [(t, self.survey.domain(t)) for t in transitions if t.targets]
+        for _, domain in moves:
+            self._leave(domain)
+        for transition in transitions:
+            self._note(transition.actions)
+        for transition, domain in moves:
+            self.enter(transition.targets, domain)
+
+    def _conflict(self, one: Transition, other: Transition) -> bool:
+        if not (one.targets and other.targets):
+            return False
+        inner, outer = self.survey.domain(one), self.survey.domain(other)
+        return within(inner, outer) or within(outer, inner)
+
+    def _leave(self, domain: str) -> None:
+        self.survey.spend((len(self.active) + len(self.unknown) + len(self.timers)) // STATES_PER_WORK)
+        leaving = self._in_order(path for path in self.active if path != domain and within(path, domain))
+        for state in reversed(leaving):
+            self._note(state.exit)
+        left = {state.path for state in leaving}
+        self.active -= left
+        self.begun -= left
+        self.timers = [timer for timer in self.timers if isinstance(timer, str) or timer.source not in left]
+        regions = {region for region in self.unknown if within(region, domain)}
+        if any(map(self.survey.speaks_at_exit, regions)):
+            raise UncertainError
+        self.unknown -= regions
+
+    def _begin(self) -> None:
+        """Begin each `do`, up to its first action that takes time, and each invoked behaviour."""
+        for state in [s for s in self._in_order(self.active) if s.path not in self.begun]:
+            self.begun.add(state.path)
+            for invoke in state.invoke:
+                self.survey.spend(1)
+                other = self.machine.invoked.get(invoke.behavior)
+                if other is None:
+                    raise UncertainError
+                if _is_over_at_once(other, self.depth - 1, self.survey.ends):
+                    self.internal += (f"done.invoke.{invoke.id}",)
+            instant = 0
+            while instant < len(state.do) and all(_is_instant(step) for step in nested((state.do[instant],))):
+                self.survey.spend(1)
+                instant += 1
+            self._note(state.do[:instant])
+            if state.do and instant == len(state.do):
+                self.internal += (f"done.do.{state.name}",)
+
+    def _end(self, final: State) -> None:
+        """Note which states end with a final one: the compound one around it, and parallel ones as a whole."""
+        path = final.parent or ""
+        while self.machine.states[path].kind is not StateKind.PARALLEL or self._is_final(path):
+            state = self.machine.states[path]
+            if state.kind is StateKind.COMPOUND and path != final.parent:
+                return
+            if not path:
+                self.over = True
+                return
+            self.internal += (f"done.state.{state.name}",)
+            path = state.parent or ""
+
+    def _is_final(self, path: str) -> bool:
+        """Whether a state has ended; raises UncertainError if a region of it is unknown."""
+        state = self.machine.states[path]
+        if path in self.unknown:
+            raise UncertainError
+        if state.kind is StateKind.PARALLEL:
+            self.survey.spend(len(self.survey.regions(path)) // STATES_PER_WORK)
+            return all(map(self._is_final, self.survey.regions(path)))
+        return not self.active.isdisjoint(self.survey.final(path))
+
+    def selected(self, event: str) -> list[Transition]:
+        """The first transition of each innermost state that the event selects."""
+        states, found, asked = self.machine.states, list[Transition](), set[str]()
+        self.survey.spend(len(self.unknown) // STATES_PER_WORK)
+        if event and any(self.survey.is_heard(region, event) for region in self.unknown):
+            raise UncertainError
+        for leaf in self._in_order(self.active):
+            children = self.survey.children[leaf.path]
+            path: str | None = (
+                leaf.path if self.active.isdisjoint(children) and self.unknown.isdisjoint(children) else None
+            )
+            while path is not None and path not in asked:
+                asked.add(path)
+                if (first := next(filter(self._holds, self.survey.rows(path, event)), None)) is not None:
+                    found.append(first)
+                    break
+                path = states[path].parent
+        return found
+
+    def _holds(self, transition: Transition) -> bool:
+        """Whether a selected transition is taken; a guard of `always` that uses only the context may be false."""
+        if transition.hears or transition.approve:
+            raise UncertainError
+        if transition.guard is None:
+            return True
+        names = {node.name for node, _ in walk(tree(transition.guard.source)) if isinstance(node, Identifier)}
+        if transition.event or names != {"context"} or "In(" in transition.guard.source:
+            raise UncertainError
+        self.asked.append((len(self.taken), transition.guard.shown))
+        return False
+
+    def _note(self, block: Sequence[PlacedAction]) -> None:
+        """Note the events of a block, and whether it changes the context."""
+        steps = list(nested(tuple(block)))
+        self.survey.spend(len(steps) // STATES_PER_WORK)
+        if any(isinstance(step.action, Assign) for step in steps):
+            self.assigned = len(self.taken)
+        for step in block:
+            match step.action:
+                case Raise(event):
+                    self.internal += (event,)
+                case Send(event, delay=0.0, to=""):
+                    self.timers.append(event)
+                case Send():
+                    pass
+                case _ if sends_event((step,)):
+                    raise UncertainError
+
+    def _in_order(self, paths: Iterable[str]) -> list[State]:
+        return [self.machine.states[path] for path in sorted(paths, key=self.survey.order.__getitem__)]
+
+
+def round_of(chain: InstantChain) -> list[TakenTransition]:
+    """The transitions of a round back to a situation, or without end; empty if the chain rests or is uncertain."""
+    seen: dict[tuple[object, ...], int] = {}
+    try:
+        for _ in range(MAX_STEPS):
+            now = chain.situation()
+            if now in seen:
+                return _settled(chain, chain.taken[seen[now] :])
+            if now in chain.survey.seen or chain.survey.exhausted:
+                return []
+            chain.survey.seen.add(now)
+            seen[now] = len(chain.taken)
+            if not chain.step():
+                return []
+    except UncertainError:
+        return []
+    if not chain.taken:
+        return []  # more events wait than are followed, and none selects a transition
+    *before, last = chain.taken  # the number of events grows without end
+    back = next((i for i, (other, _) in enumerate(reversed(before)) if other is last[0]), 0)
+    return _settled(chain, chain.taken[-back - 1 :])
+
+
+def _settled(chain: InstantChain, around: list[TakenTransition]) -> list[TakenTransition]:
+    """Return a round, unless it changes the context of a guard, or has only `always` of atomic states."""
+    asked = asked_guards(chain, len(around))
+    if asked and chain.assigned > len(chain.taken) - len(around):
+        return []
+    states = chain.machine.states
+    own = asked or any(event or states[t.source].kind is not StateKind.ATOMIC for t, event in around)
+    return around if own else []
+
+
+def asked_guards(chain: InstantChain, number: int) -> list[str]:
+    """The guards on which the last transitions depend."""
+    return list(dict.fromkeys(shown for before, shown in chain.asked if before >= len(chain.taken) - number))
+
+
+def _is_over_at_once(machine: MachineDefinition, depth: int, ends: dict[tuple[int, int], bool | None]) -> bool:
+    """Whether an invoked behaviour ends as soon as it begins; raises UncertainError if that is not certain."""
+    key = id(machine), depth
+    if key not in ends:
+        try:
+            ends[key] = _ends(machine, depth, ends)
+        except UncertainError:
+            ends[key] = None
+    if (over := ends[key]) is None:
+        raise UncertainError
+    return over
+
+
+def _ends(machine: MachineDefinition, depth: int, ends: dict[tuple[int, int], bool | None]) -> bool:
+    if any(sends_event((*s.entry, *s.do, *s.exit), PARENT) for s in machine.states.values()):
+        raise UncertainError
+    chain = InstantChain(ChainSurvey(machine, ends), depth)
+    chain.enter(("",), None)
+    for _ in range(MAX_STEPS):
+        if chain.asked or chain.timers or not depth:
+            break
+        if not chain.step():
+            return chain.over
+    raise UncertainError
+
+
+def _is_instant(step: PlacedAction) -> bool:
+    """Whether an action of a `do` ends at once."""
+    return isinstance(step.action, _INSTANT) and (not isinstance(step.action, Wait) or step.action.seconds == 0)
