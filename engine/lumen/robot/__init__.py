@@ -9,6 +9,7 @@
 How a command is performed:
 
     command_table.py      what every robot knows of each command: a row for each
+    command_checks.py     how it is read from the bus, and which values a body can perform
     command_bounds.py     each command is brought within the limits and speeds of the body
     joint_ways.py         to the posture that a motion begins in, and back after a cancel
     executor.py           a command waits until its parts are free, then runs until it is done

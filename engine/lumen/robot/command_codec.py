@@ -14,8 +14,9 @@ from lumen.language.commands import Language, Move, Posture, Stop
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.ports import Aim, Perform, RobotCommand
+from lumen.robot.command_checks import aimed
 from lumen.robot.command_parameters import CommandParameters, PoseSource, lowered, shown
-from lumen.robot.command_table import COMMANDS, aimed, row_of
+from lumen.robot.command_table import COMMANDS, row_of
 
 MOTION_NAMES_2015 = {"dancing": "dance", "singing": "sing", "photopose": "photo"}
 STOPPING_METHODS = ("rest", "stopmove", "stop")

@@ -16,7 +16,8 @@ from lumen.language.added_verbs import added_verbs
 from lumen.language.commands import Do, Move, Posture, Rest, Stop, Wake
 from lumen.language.events import MISSED, RESULT, Event
 from lumen.ports import NativeCommand, RobotCommand
-from lumen.robot.command_table import check_arguments, row_of
+from lumen.robot.command_checks import check_arguments
+from lumen.robot.command_table import row_of
 
 FOREIGN = "m"
 """The prefix of the ids of commands that are not from the behaviour."""

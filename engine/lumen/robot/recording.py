@@ -19,7 +19,8 @@ from lumen.motion.dead_reckoning import DeadReckoning, beyond
 from lumen.motion.projection import Vector3, centring, seen
 from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
 from lumen.robot.command_bounds import CommandBounds
-from lumen.robot.command_table import added_verb, parts_of, row_of
+from lumen.robot.command_checks import added_verb
+from lumen.robot.command_table import parts_of, row_of
 from lumen.robot.cues import CueNotifier
 from lumen.robot.executor import Activity, ExecutingRobot, Executor
 from lumen.robot.life_layer import LifeLayer

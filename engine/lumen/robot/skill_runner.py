@@ -16,7 +16,7 @@ from lumen.language.sections import section_of
 from lumen.ports import SkillPerformer
 from lumen.project.added_verbs import time_taken
 from lumen.project.schema import faults
-from lumen.robot.command_table import added_verb, check_arguments
+from lumen.robot.command_checks import added_verb, check_arguments
 from lumen.upkeep.threads import WatchedThread
 
 Settings = TypeVar("Settings")
