@@ -20,7 +20,7 @@ from tests.guarded import run_guarded
 
 import lumen
 from lumen.clock.real import RealClock
-from lumen.features.reachy.offers import ReachyRobot
+from lumen.features.reachy.robot import ReachyRobot
 from lumen.language.commands import Wake
 from lumen.ports import Joints, Live, Sense
 from lumen.project.chosen_model import choose

@@ -31,13 +31,7 @@ from lumen.project.chosen_robot import chosen_robot
 from lumen.project.common_words import COMMON, COMMON_FILE, is_shipped, with_common_words
 from lumen.project.controllers import build_controller
 from lumen.project.draft import ProjectDraft
-from lumen.project.files import (
-    LEADS_OUT,
-    MISTAKEN_FOLDERS,
-    Unreadable,
-    fingerprint,
-    read_main_file,
-)
+from lumen.project.files import LEADS_OUT, MISTAKEN_FOLDERS, Unreadable, fingerprint, read_main_file
 from lumen.project.functions import build_function, joined
 from lumen.project.gestures import build_gestures
 from lumen.project.knowledge import build_passage, build_questions
@@ -62,9 +56,8 @@ from lumen.project.project_folders import (
     is_robots_own,
     kind_in,
 )
-from lumen.project.sayings import build_sayings
 from lumen.project.settings import Settings, build_settings, other_vocabulary
-from lumen.project.stories import build_story
+from lumen.project.stories import build_sayings, build_story
 from lumen.project.used_routes import used_routes
 from lumen.project.words import build_words
 

@@ -1,6 +1,6 @@
-"""Build a `Story` from the plain data of a story file, `behaviors/stories/NAME.yaml`."""
+"""Build a `Story` or a `SayingSet` from the plain data of a file in `behaviors/stories/` or `behaviors/sayings/`."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from math import isfinite
 from types import MappingProxyType
 from typing import Any
@@ -9,6 +9,7 @@ from lumen.expressions.own_functions import KnownFunctions
 from lumen.language.added_verbs import given_arguments
 from lumen.language.diagnostics import NodePath
 from lumen.language.hours import Schedule
+from lumen.language.sayings import Saying, SayingSet
 from lumen.language.stories import (
     AnswerQuestion,
     Approve,
@@ -186,3 +187,23 @@ def _expect(body: Mapping[str, Any], report: DocumentReport, where: NodePath, ve
         place=body.get("place"),
         within=DEFAULT_WITHIN if within is None else within,
     )
+
+
+SAY = "say"
+
+
+def build_sayings(data: Any, report: DocumentReport, *, name: str) -> SayingSet | None:
+    """Return the sayings in the data; None if it is not a map."""
+    return SayingSet(name, tuple(_sayings(data))) if isinstance(data, Mapping) else None
+
+
+def _sayings(data: Mapping[str, Any]) -> Iterator[Saying]:
+    for behavior, states in data.items():
+        for state, rows in states.items():
+            for row, languages in rows.items():
+                for language, said in languages.items():
+                    for i, one in enumerate(said):
+                        body = {SAY: one} if isinstance(one, str) else one
+                        slots = {slot: value for slot, value in body.items() if slot != SAY}
+                        where = (behavior, state, row, language, i)
+                        yield Saying(behavior, state, row, language, body[SAY], slots, where)

@@ -20,7 +20,6 @@ NEVER_ON_A_PAGE = (
     "__init__.py",
     "access.py",
     "command.py",
-    "day_csv.py",
     "drawing.py",
     "entry_words.py",
     "part.py",

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import lumen
-from lumen.features.reachy.offers import ReachyRobot
+from lumen.features.reachy.robot import ReachyRobot
 from lumen.language.events import Event
 from lumen.language.projects import Project
 from lumen.ports import Joints, RobotCommand, Sense

@@ -8,8 +8,8 @@ import pytest
 
 import lumen
 from lumen.clock.real import RealClock
-from lumen.features.reachy.offers import ReachyRobot
 from lumen.features.reachy.pose import BODY
+from lumen.features.reachy.robot import ReachyRobot
 from lumen.language.commands import Look, Posture, Rest, Stop, Wake
 from lumen.language.projects import Project
 from lumen.ports import Aim, Live, Perform

@@ -8,8 +8,8 @@ import pytest
 
 from lumen.errors import RobotError, UsageError
 from lumen.features.reachy.daemon_api import DaemonAddress
-from lumen.features.reachy.offers import ReachyRobot
 from lumen.features.reachy.pose import BODY, JOINTS
+from lumen.features.reachy.robot import ReachyRobot
 from lumen.language.commands import Leds, Look, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk
 from lumen.language.projects import Project
 from lumen.ports import Aim, Live, Perform, Record, RobotCommand, Sense

@@ -30,7 +30,7 @@ REPLAY_TIME = 10.0
 
 def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
     """A day, for a page or as a `csv`: from this machine's files, or from pages of entries that are read (`told`)."""
-    from lumen.features.console.day_csv import day_csv
+    from lumen.features.console.day import day_csv
     from lumen.features.console.kept_days import KeptDays
 
     days, chosen_day = KeptDays(root, robot), date.fromisoformat(wanted) if wanted else None

@@ -1,5 +1,6 @@
 """The paths about what was, and what would be: why, why not, days, entries, files, and a fork."""
 
+from collections.abc import AsyncIterator
 from datetime import date
 from typing import Any
 
@@ -10,15 +11,44 @@ from starlette.routing import Route
 
 from lumen.errors import BusError, UsageError
 from lumen.features.console.entry_clock import ToldPage
+from lumen.features.console.entry_ring import EncodedEntry
 from lumen.features.console.entry_words import told_of
-from lumen.features.console.job_promises import NOTHING
+from lumen.features.console.job_promises import MAX_SHOWN, NOTHING
 from lumen.features.console.jobs import Jobs
-from lumen.features.console.journal_source import JournalSource
 from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.people import Role
 from lumen.features.console.requests import NO_STORE, DeniedError, Reception, as_json
+from lumen.features.console.watch import Watch
 from lumen.language.operator_requests import FORK, WHY, WHY_NOT, OperatorRequest
 from lumen.run.new_passage import write_passage
+
+MAX_REMOTE = 40_000
+"""Entries that are asked of an exhibition for its day, the last ones."""
+
+
+class JournalSource:
+    """Entries of the robots of a watch. Everything raises BusError where the exhibition does not answer."""
+
+    def __init__(self, watch: Watch) -> None:
+        self._watch = watch
+
+    async def pages(self, robot: str) -> AsyncIterator[bytes]:
+        """The last entries of a robot, pages of them as JSON; nothing is kept here."""
+        view = self._watch.robots[robot]
+        begin, count = max(0, (view.position or view.entries.last) - MAX_REMOTE), 0
+        while count < MAX_REMOTE and (page := (await self._watch.page(robot, begin)).entries):
+            count += len(page)
+            begin = page[-1]["position"] + 1
+            yield orjson.dumps(page)
+
+    async def entries(self, view: KnownRobot, first: int, last: int) -> list[EncodedEntry]:
+        """The entries of a journal between two positions."""
+        found = list[EncodedEntry]()
+        while first <= last and len(found) < MAX_SHOWN and (page := await self._watch.page(view.robot, first)).entries:
+            found += [one for one in view.entries.encoded(page) if first <= one.position <= last]
+            first = page.entries[-1]["position"] + 1
+        return found
+
 
 QUESTION_TIMEOUT = 20.0
 """How long an exhibition may take for a question about the past [s]."""

@@ -9,7 +9,6 @@ from typing import Any
 
 from lumen.errors import BusError, BusUnreachableError
 from lumen.features.console.bus_link import BusLink
-from lumen.features.console.changes import Changes
 from lumen.features.console.entry_clock import ToldPage
 from lumen.features.console.exchanges import Exchanges
 from lumen.features.console.known_robot import KnownRobot
@@ -19,6 +18,31 @@ from lumen.language.routing_keys import DEFAULT_ALIASES
 from lumen.ports import Message
 from lumen.project.home import home_of
 from lumen.run.reaching import Reached
+
+
+class Changes:
+    """Counts changes; `wait` returns when there was one since `seen`."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self._next = asyncio.Event()
+
+    def tell(self) -> None:
+        """There was one; in the loop."""
+        self.count += 1
+        self._next.set()
+        self._next = asyncio.Event()
+
+    async def wait(self, seen: int, timeout: float) -> bool:
+        """Whether there was one after the first `seen`, at most `timeout` [s] from now."""
+        if self.count != seen:
+            return True
+        try:
+            await asyncio.wait_for(self._next.wait(), timeout)
+        except TimeoutError:
+            return False
+        return True
+
 
 PERIOD = 0.25
 """How often an exhibition is asked while somebody looks [s]."""

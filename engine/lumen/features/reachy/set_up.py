@@ -4,7 +4,7 @@ from pathlib import Path
 
 from lumen.clock.real import RealClock
 from lumen.errors import UsageError
-from lumen.features.reachy.offers import ReachyRobot
+from lumen.features.reachy.robot import ReachyRobot
 from lumen.language.stories import Visitor
 from lumen.run.setup import RobotRequest, Setup
 
