@@ -27,7 +27,11 @@ from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.files import read_files
-from lumen.retrieval.calibration import (
+from lumen.retrieval.choice import AnswerRates
+from lumen.retrieval.features import Method, by_wordings, joined, words
+from lumen.retrieval.retriever import Retriever
+from lumen.retrieval.scorers import bm25, ngrams
+from lumen.retrieval.trials import (
     Judged,
     Sample,
     calibrate,
@@ -36,12 +40,8 @@ from lumen.retrieval.calibration import (
     least_probability,
     left_out,
     outcome,
+    samples_of,
 )
-from lumen.retrieval.features import Method, by_wordings, joined, words
-from lumen.retrieval.ranking import AnswerRates
-from lumen.retrieval.retriever import Retriever
-from lumen.retrieval.scorers import bm25, ngrams
-from lumen.retrieval.trials import samples_of
 
 METHODS: dict[str, Method] = {"ngrams": by_wordings(ngrams), "bm25": by_wordings(bm25), "words": words}
 """The methods that are compared; `words` is the one that is used."""

@@ -19,7 +19,7 @@ ALONE: Mapping[str, str] = {
 }
 """Small modules with one reader, and why they are files of their own."""
 SHARED: Mapping[str, str] = {
-    "motion/gait/capture.py": "part of the gait, which the simulation follows",
+    "motion/gait/swing.py": "part of the gait, which the simulation follows",
     "project/formats/behavior_data.py": "what every reader of charts of other tools needs, also one of a package",
     "project/formats/encodings.py": "what every reader of text files of other tools needs, also one of a package",
     "project/formats/foreign_json.py": "what every reader of JSON of other tools needs, also one of a package",

@@ -1,6 +1,6 @@
 """Pauses between attempts."""
 
-from lumen.upkeep.backoff import Backoff, pause_after
+from lumen.upkeep.ratelimit import Backoff, pause_after
 
 
 def test_each_pause_is_twice_as_long_up_to_the_longest() -> None:

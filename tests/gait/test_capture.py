@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from lumen.motion.gait import FOUND, SIDES, LegGeometry, Side
-from lumen.motion.gait.capture import FARTHEST, HIP_STRETCHED, WIDEST_CATCH, hold_level, landing
 from lumen.motion.gait.legs import sign
+from lumen.motion.gait.swing import FARTHEST, HIP_STRETCHED, WIDEST_CATCH, hold_level, landing
 from tests.gait.nao_legs import CLASSIC_LEGS, NAO_LEGS
 
 OMEGA = 6.0

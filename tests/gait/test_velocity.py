@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from lumen.motion.gait import FOUND, Gait, GaitParameters, Pose, Velocity, fastest, fastest_of, middle
+from lumen.motion.gait.footsteps import MOST_CHANGE, strides
 from lumen.motion.gait.legs import other, sign
-from lumen.motion.gait.velocity import MOST_CHANGE, strides
 from tests.features.simulation.bodies import shipped
 from tests.gait.nao_legs import NAO_LEGS
 from tests.gait.test_gait import JOINTS, LIMIT, START

@@ -15,8 +15,7 @@ from lumen.cli.main import main
 from lumen.insight.replay.entries import entry_data
 from lumen.insight.replay.forking import fork
 from lumen.insight.replay.replaying import replay
-from lumen.journal.frames import FramePacker, unpack
-from lumen.journal.journal_file import line_of, read_journal, read_lines
+from lumen.journal.journal_file import FramePacker, line_of, read_journal, read_lines, unpack
 from lumen.language.body_parts import WHOLE_BODY
 from lumen.language.command_data import command_data
 from lumen.language.commands import Say

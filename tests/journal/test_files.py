@@ -8,8 +8,7 @@ import pytest
 
 from lumen.errors import JournalError
 from lumen.insight.replay.entries import JournalInput, RecordedEntry
-from lumen.journal.frames import FramePacker
-from lumen.journal.journal_file import JournalHeader, header_of, line_of, read_content, read_journal
+from lumen.journal.journal_file import FramePacker, JournalHeader, header_of, line_of, read_content, read_journal
 from lumen.journal.journal_folder import DAY, JournalFolder
 from lumen.journal.redaction import redact
 from lumen.language.events import Event

@@ -10,8 +10,7 @@ import pytest
 
 import lumen
 from lumen.cli.main import main
-from lumen.journal.frames import FramePacker
-from lumen.journal.journal_file import encode, read_header, read_lines
+from lumen.journal.journal_file import FramePacker, encode, read_header, read_lines
 from tests import ROOT
 from tests.copying import copied_project
 from tests.tables import for_each

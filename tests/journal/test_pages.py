@@ -9,8 +9,7 @@ import lumen
 from lumen.insight.replay.entries import entry_data
 from lumen.journal import journal_writer
 from lumen.journal.journal_file import read_journal
-from lumen.journal.journal_folder import JournalFolder
-from lumen.journal.journal_tail import JournalTail
+from lumen.journal.journal_folder import JournalFolder, JournalTail
 from lumen.journal.journal_writer import JournalWriter
 from lumen.language.events import Event
 from lumen.language.people import PersonName

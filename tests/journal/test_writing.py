@@ -8,7 +8,7 @@ from typing import Any, BinaryIO
 import pytest
 
 from lumen.insight.replay.entries import JournalJump
-from lumen.journal import frames, journal_writer
+from lumen.journal import journal_file, journal_writer
 from lumen.journal.journal_file import JournalHeader, line_of, read_journal
 from lumen.journal.journal_folder import JournalFolder
 from lumen.journal.journal_writer import JournalWriter
@@ -204,7 +204,7 @@ def test_who_comes_home_with_each_step_and_remembers_much_fills_no_disk(disk: Di
 
 def test_a_frame_is_no_larger_than_a_reader_takes(disk: Disk, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(journal_writer, "MAX_LINES_BYTES", 2_000)
-    monkeypatch.setattr(frames, "MAX_TEXT_BYTES", 10_000)
+    monkeypatch.setattr(journal_file, "MAX_TEXT_BYTES", 10_000)
     disk.free.clear()
     writer, made = begun(disk), steps(200)
     tell(writer, made)  # all waits while the disk does not answer

@@ -20,8 +20,7 @@ from lumen.bus import Bus
 from lumen.bus.local import LocalAddress, LocalBusClient
 from lumen.cli.main import main
 from lumen.errors import BusError
-from lumen.journal.frames import unpack
-from lumen.journal.journal_file import JOURNAL_SUFFIX
+from lumen.journal.journal_file import JOURNAL_SUFFIX, unpack
 from lumen.run.reload_journal import Journal
 from tests import ROOT
 from tests.copying import copied_project

@@ -12,7 +12,7 @@ from lumen.project.files import read_files
 from lumen.run.reload import known_projects
 from lumen.run.reload.idle_process import end_idle
 from lumen.run.reload.validation_worker import ValidationWorker, load_apart
-from lumen.upkeep import cache_folder, judge_process
+from lumen.upkeep import judge_process, own_folders
 from tests.live.conftest import trimmed
 from tests.tour.conftest import copied
 
@@ -125,7 +125,7 @@ def test_files_with_errors_are_not_kept(copy: Path, cache: Path) -> None:
 
 
 def test_the_oldest_go(cache: Path) -> None:
-    kept = cache_folder.CacheFolder("projects", 2)
+    kept = own_folders.CacheFolder("projects", 2)
     for number in range(4):
         kept.write(str(number), b"")
         os.utime(cache / str(number), (number, number))

@@ -9,7 +9,7 @@ from lumen.cli.main import main
 from lumen.features.visitors.module import Store
 from lumen.project.home import Home
 from lumen.robot.deduplication_log import DeduplicationLog
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 from tests import ROOT
 from tests.guarded import run_guarded
 from tests.provided import program
@@ -17,12 +17,11 @@ from tests.scanning import matching
 
 ENGINE = ROOT / "engine/lumen"
 MAKERS = {
-    "upkeep/private_folder.py": "the one function",
+    "upkeep/own_folders.py": "the one function; and the user's own cache, which is not in a project",
     "features/fleet/installing.py": "a folder of the project, which is to be committed",
     "run/new_passage.py": "knowledge/ of the project, which is to be committed",
     "run/new_saying.py": "behaviors/sayings/ of the project, which is to be committed",
     "features/simulation/trials/outcome_cache.py": "a folder within a private one",
-    "upkeep/cache_folder.py": "in the user's own cache, not in a project",
     "run/workers/work_kit.py": "a temporary folder",
     "run/reload/restoring.py": "folders of the project that an operator rolls back to, and one within a private one",
     "run/templates.py": "a folder of the project, for git",

@@ -9,8 +9,7 @@ import pytest
 import lumen
 from lumen.insight.replay.entries import JournalInput, JournalJump
 from lumen.insight.replay.replaying import replay
-from lumen.journal.frames import FramePacker
-from lumen.journal.journal_file import line_of, read_journal
+from lumen.journal.journal_file import FramePacker, line_of, read_journal
 from lumen.journal.journal_folder import JOURNAL_FOLDER, REHEARSED_FOLDER
 from lumen.journal.redaction import redact
 from lumen.language.people import PersonName

@@ -11,7 +11,7 @@ from lumen.language.events import Event
 from lumen.language.hall_places import HallPlace, HallPlaces
 from lumen.language.projects import Project
 from lumen.language.robots import Body as RobotBody
-from lumen.motion.dead_reckoning import turned
+from lumen.motion.wayfinding import turned
 from lumen.ports import Joints, Robot, Sense, Whereabouts
 from lumen.run.navigator import Navigator
 from tests.features.simulation.conftest import body

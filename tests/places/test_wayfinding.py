@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from lumen.language.commands import Walk
 from lumen.language.hall_places import HallPlace
-from lumen.motion.dead_reckoning import DeadReckoning, beyond, turned
-from lumen.motion.wayfinding import FACING, NEAR, most_legs, next_leg, place_at
+from lumen.motion.wayfinding import FACING, NEAR, DeadReckoning, beyond, most_legs, next_leg, place_at, turned
 from lumen.ports import Whereabouts
 
 METRES, TURNS = st.floats(-8, 8), st.floats(-pi, pi)

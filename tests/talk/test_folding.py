@@ -1,7 +1,7 @@
 """One folding of words, for phrases, names and passages."""
 
 from lumen.expressions.phrases import is_heard
-from lumen.retrieval.words import words
+from lumen.retrieval.scorers import words
 from lumen.talk.folding import folded, read_words
 from tests.tables import for_each
 

@@ -1,6 +1,13 @@
-"""One file of the journal of inputs: a line that says what it is, then frames of entries, a line of JSON each."""
+"""One file of the journal of inputs: a line that says what it is, then frames of entries, a line of JSON each.
+
+A frame is its length and the CRC-32 of its content (4 bytes each, little-endian), and the content: a piece of one
+deflate stream that goes on from frame to frame, flushed at the end of each. So text that was said once is short later,
+and every frame can be read as soon as it is there.
+"""
 
 import json
+import struct
+import zlib
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -10,9 +17,45 @@ import orjson
 
 from lumen.errors import JournalError
 from lumen.insight.replay.entries import RecordedEntry, entry_data, read_entry
-from lumen.journal.frames import unpack
 from lumen.talk.hearing import MATCHER
 from lumen.upkeep.regular_files import read_regular
+
+_HEAD = struct.Struct("<II")
+MAX_FRAME_BYTES = 64_000_000
+"""A frame that says to be longer is damage."""
+MAX_TEXT_BYTES = 64_000_000
+"""Of one frame, unpacked."""
+
+
+class FramePacker:
+    """Packs texts into frames of one stream."""
+
+    def __init__(self) -> None:
+        self._deflate = zlib.compressobj(6)
+
+    def pack(self, text: bytes) -> bytes:
+        """The next frame."""
+        content = self._deflate.compress(text) + self._deflate.flush(zlib.Z_SYNC_FLUSH)
+        return _HEAD.pack(len(content), zlib.crc32(content)) + content
+
+
+def unpack(data: bytes, start: int = 0) -> Iterator[tuple[bytes, int]]:
+    """The texts of the frames from `start` on, each with where its frame ends, until one is cut or damaged."""
+    inflate, at = zlib.decompressobj(), start
+    while at + _HEAD.size <= len(data):
+        length, crc = _HEAD.unpack_from(data, at)
+        content = data[at + _HEAD.size : at + _HEAD.size + length]
+        if length > MAX_FRAME_BYTES or len(content) < length or zlib.crc32(content) != crc:
+            return
+        try:
+            text = inflate.decompress(content, MAX_TEXT_BYTES)
+        except zlib.error:
+            return
+        if inflate.unconsumed_tail:
+            return
+        at += _HEAD.size + length
+        yield text, at
+
 
 JOURNAL_VERSION = 1
 JOURNAL_SUFFIX = ".journal"

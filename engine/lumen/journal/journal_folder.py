@@ -1,15 +1,20 @@
-"""The files of a journal of inputs: in a folder, in the order of their positions, and no more than are wanted."""
+"""The files of a journal of inputs, in a folder in the order of their positions, and its last entries in memory."""
 
 import os
-from collections.abc import Iterator
+import threading
+from collections import deque
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from typing import BinaryIO
 
 from lumen.errors import JournalError
-from lumen.journal.journal_file import JOURNAL_SUFFIX, JournalHeader, header_of, read_journal
+from lumen.journal.journal_file import JOURNAL_SUFFIX, JournalHeader, entry_of, header_of, line_of, read_journal
+from lumen.journal.redaction import redacted
 from lumen.language.iso_time import file_stamp
-from lumen.upkeep.private_folder import NO_LINK, private_folder
+from lumen.language.people import PersonName
+from lumen.upkeep.own_folders import NO_LINK, private_folder
 
 JOURNAL_FOLDER = "journal"
 REHEARSED_FOLDER = "rehearsed"
@@ -79,3 +84,64 @@ def headers(folder: Path) -> Iterator[tuple[Path, JournalHeader]]:
     for file in sorted(folder.rglob(f"*{JOURNAL_SUFFIX}")):
         with suppress(JournalError):
             yield file, header_of(file)
+
+
+MAX_ENTRIES = 2_000
+MAX_BYTES = 4_000_000
+"""Of all their lines together."""
+
+PositionedLine = tuple[int, bytes]
+"""The position of an entry, and its line of JSON."""
+
+
+class JournalTail:
+    """The lines of the last entries that a run has made, whether or not a disk took them; any thread may read.
+
+    The positions are those of the journal. One that the disk refused has one, too.
+    """
+
+    def __init__(self, most: int = MAX_ENTRIES, most_bytes: int = MAX_BYTES) -> None:
+        self._most, self._most_bytes = most, most_bytes
+        self._lines: deque[bytes] = deque()
+        self._size, self._next = 0, 0
+        self._lock = threading.Lock()
+
+    @property
+    def next(self) -> int:
+        """The position of the entry that comes next."""
+        return self._next
+
+    @property
+    def first(self) -> int:
+        """The position of the oldest entry here; `next` where there is none."""
+        with self._lock:
+            return self._next - len(self._lines)
+
+    def begin(self, position: int) -> None:
+        """The first entry will have this position."""
+        self._next = position
+
+    def add(self, lines: Sequence[bytes]) -> None:
+        with self._lock:
+            self._lines += lines
+            self._next += len(lines)
+            self._size += sum(map(len, lines))
+            while len(self._lines) > self._most or self._size > self._most_bytes:
+                self._size -= len(self._lines.popleft())
+
+    def since(self, position: int, most: int) -> list[PositionedLine]:
+        """Up to `most` entries, those from `position` on; the oldest here where that is gone."""
+        with self._lock:
+            first = self._next - len(self._lines)
+            begin = max(position - first, 0)
+            return list(enumerate(islice(self._lines, begin, begin + most), first + begin))
+
+    def forget(self, person: PersonName) -> None:
+        """Take somebody's name out; on the thread that adds.
+
+        Who was named before the first entry here is not known: no digest is kept until a keyframe without the name.
+        """
+        entries = [entry_of(line, position) for position, line in self.since(0, self._most)]
+        lines = [line_of(entry) for entry in redacted(entries, person, within=True)]
+        with self._lock:
+            self._lines, self._size = deque(lines), sum(map(len, lines))

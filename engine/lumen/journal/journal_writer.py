@@ -11,11 +11,9 @@ from typing import Any, BinaryIO
 
 from lumen.errors import ModuleError
 from lumen.insight.replay.entries import How, JumpKind
-from lumen.journal.frames import FramePacker
-from lumen.journal.journal_file import JOURNAL_SUFFIX, JournalHeader
-from lumen.journal.journal_folder import JournalFolder
+from lumen.journal.journal_file import JOURNAL_SUFFIX, FramePacker, JournalHeader
+from lumen.journal.journal_folder import JournalFolder, JournalTail
 from lumen.journal.journal_pen import JournalPen, Jumped, Stepped
-from lumen.journal.journal_tail import JournalTail
 from lumen.journal.redaction import redact
 from lumen.language.commands import Command
 from lumen.language.people import PersonName

@@ -7,8 +7,7 @@ from pathlib import Path
 from lumen.errors import JournalError, ModuleError
 from lumen.insight.replay.entries import JournalInput, JournalJump, RecordedEntry, entry_data
 from lumen.journal.forgotten_snapshots import forgetful_data
-from lumen.journal.frames import FramePacker
-from lumen.journal.journal_file import JournalContent, line_of, read_journal
+from lumen.journal.journal_file import FramePacker, JournalContent, line_of, read_journal
 from lumen.language.people import PersonName
 
 LINES_PER_FRAME = 1000

@@ -20,9 +20,8 @@ from lumen.fuzzy.controllers_by_role import by_role
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.message_numbers import number, number_at
 from lumen.language.robots import Body
-from lumen.motion.joint_history import JointAngles, JointHistory
 from lumen.motion.limits import coupled_range
-from lumen.motion.visual_servo import VisualServo
+from lumen.motion.visual_servo import JointAngles, JointHistory, VisualServo
 
 SEARCH_SWING = 0.5235987755982988
 """How far the first joint swings to either side in search where the file does not say: 30 deg, in [rad]."""

@@ -10,9 +10,8 @@ from typing import Any
 
 from lumen.errors import UsageError
 from lumen.project.packaged import PACKAGE
-from lumen.upkeep.private_folder import NO_LINK, private_folder, write_private
+from lumen.upkeep.own_folders import NO_LINK, private_folder, state_folder, write_private
 from lumen.upkeep.regular_files import read_regular
-from lumen.upkeep.state_folder import state_folder
 
 STATE_FOLDER = ".lumen"
 ADDRESS_FILE = "door.json"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from lumen.errors import ModuleError
 from lumen.language.people import PersonName
-from lumen.upkeep.private_folder import write_private
+from lumen.upkeep.own_folders import write_private
 
 
 def forget_lines(file: Path, person: PersonName) -> int:

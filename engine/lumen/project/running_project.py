@@ -14,7 +14,7 @@ from pathlib import Path
 from lumen.errors import UsageError
 from lumen.project.packaged import find_project, project_above, shipped_root
 from lumen.project.project_folders import MAIN_FILE, PROJECT_FOLDERS
-from lumen.upkeep.state_folder import state_folder
+from lumen.upkeep.own_folders import state_folder
 
 
 def is_substituted(path: str | Path | None) -> bool:

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.language.knowledge import Passage
-from lumen.retrieval.scorers import WordingMethod, combined
-from lumen.retrieval.words import stems
+from lumen.retrieval.scorers import WordingMethod, combined, stems
 
 NEAREST = 3
 """Wordings of a passage whose mean counts besides the nearest: one may be alike by chance, three are not."""

@@ -10,7 +10,7 @@ from lumen.language.robots import Body
 from lumen.motion.bounds import NOWHERE, aim_within, within_limits
 from lumen.ports import Aim, NativeCommand, RobotCommand
 from lumen.robot.command_table import check_command
-from lumen.upkeep.once_log import OnceLog
+from lumen.upkeep.ratelimit import OnceLog
 
 _log = logging.getLogger(__name__)
 

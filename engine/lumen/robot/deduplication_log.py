@@ -9,7 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 DEDUPLICATION_FILE = "commands.jsonl"
 """Its name, among what an exhibition keeps from run to run."""

@@ -23,7 +23,7 @@ from lumen.motion.life import (
     settle,
     sway,
 )
-from lumen.motion.life.looking import TOUCHED
+from lumen.motion.life.movements import TOUCHED
 from lumen.ports import Live
 from lumen.robot.gesture_player import GesturePlayer
 from lumen.robot.joint_offsets import approach

@@ -15,8 +15,8 @@ from lumen.language.events import Event
 from lumen.language.robots import Body
 from lumen.language.routes import BATTERY, JOINT, SONAR, TACTILE
 from lumen.language.stories import Visitor
-from lumen.motion.dead_reckoning import DeadReckoning, beyond
 from lumen.motion.projection import Vector3, centring, seen
+from lumen.motion.wayfinding import DeadReckoning, beyond
 from lumen.ports import Aim, Battery, Joints, Live, Perform, Reading, Record, RobotCommand, Sense, Sonar, Tactile
 from lumen.robot.command_bounds import CommandBounds
 from lumen.robot.command_checks import added_verb

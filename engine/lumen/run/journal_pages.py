@@ -9,8 +9,7 @@ from lumen.errors import JournalError
 from lumen.insight.replay.entries import entry_data
 from lumen.insight.replay.journal_clock import JournalClock
 from lumen.journal.journal_file import entry_of, read_lines
-from lumen.journal.journal_folder import headers
-from lumen.journal.journal_tail import PositionedLine
+from lumen.journal.journal_folder import PositionedLine, headers
 from lumen.journal.journal_writer import JournalWriter
 
 MAX_ENTRIES = 500

@@ -13,7 +13,7 @@ from lumen.run.coverage import Gap
 from lumen.run.exploring import Explored, ExploredFinding
 from lumen.run.workers.tasks import engine
 from lumen.run.workers.work_kit import name_of
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 FOLDER = "explored"
 MAX_KEPT = 20

@@ -1,9 +1,36 @@
-"""Limits on messages or requests per second, counted by key."""
+"""How often something may happen: requests per second by key, pauses between attempts, and lines of a log."""
 
+import logging
 import time
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from math import inf
+
+MAX_DOUBLINGS = 60
+"""Limit of the doublings, far beyond any useful pause, so that the float does not overflow."""
+
+
+def pause_after(failures: int, first: float, longest: float = inf) -> float:
+    """Return the pause after a number of failures in a row [s]: `first` after one, 0 after none."""
+    return min(first * 2.0 ** min(failures - 1, MAX_DOUBLINGS), longest) if failures > 0 else 0.0
+
+
+class Backoff:
+    """A counter of failures in a row, with the pause after each [s]."""
+
+    def __init__(self, first: float, longest: float = inf) -> None:
+        self._first, self._longest, self._failures = first, longest, 0
+
+    def next(self) -> float:
+        """Count a failure; return the pause after it [s]."""
+        self._failures += 1
+        return pause_after(self._failures, self._first, self._longest)
+
+    def reset(self) -> None:
+        """Note a success: the next pause is the first again."""
+        self._failures = 0
+
 
 BURST = 5.0
 """Length of the silence that can be made up for at once [s]."""
@@ -60,3 +87,21 @@ class RateLimiter:
             return left
         bucket.tokens -= 1.0
         return 0.0
+
+
+MAX_LINES = 1_000
+"""The most different lines that are logged; further ones are dropped."""
+
+
+class OnceLog:
+    """Logs each line once."""
+
+    def __init__(self, log: logging.Logger) -> None:
+        self._log = log
+        self._lines: set[str] = set()
+
+    def __call__(self, lines: Iterable[str]) -> None:
+        for line in lines:
+            if line not in self._lines and len(self._lines) < MAX_LINES:
+                self._lines.add(line)
+                self._log.warning("%s", line)

@@ -5,7 +5,7 @@ import os
 import stat
 from pathlib import Path
 
-from lumen.upkeep.private_folder import NO_LINK
+from lumen.upkeep.own_folders import NO_LINK
 
 MEGABYTE = 1_000_000
 

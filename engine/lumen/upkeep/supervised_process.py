@@ -16,7 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
-from lumen.upkeep.backoff import Backoff
+from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from weakref import WeakSet
 
-from lumen.upkeep.backoff import pause_after
 from lumen.upkeep.drops import DropLog
+from lumen.upkeep.ratelimit import pause_after
 
 MAX_FAULTS = 5
 """Faults within `FAULT_PERIOD` after which a thread is given up."""

@@ -33,7 +33,7 @@ from tests.waiting import until
 JOINTS = "avatar.NAO.data.joint"
 FREE_OF_OTHERS = """
 import gc, sys
-import lumen.retrieval.words
+import lumen.retrieval.scorers
 from lumen.features.console import job
 
 def found(*_):

@@ -10,7 +10,7 @@ from datetime import time as TimeOfDay  # noqa: N812
 from lumen.errors import UndeliveredError
 from lumen.features.alerts.alert import Alert
 from lumen.features.alerts.settings import Recipient
-from lumen.upkeep.backoff import Backoff
+from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 LONGEST_WAIT = 30.0

@@ -14,8 +14,7 @@ from pathlib import Path
 from lumen.errors import UsageError
 from lumen.features.console.people import ROLES, Person, Role
 from lumen.project.home import Home, home_of
-from lumen.upkeep.backoff import pause_after
-from lumen.upkeep.ratelimit import TokenBucket
+from lumen.upkeep.ratelimit import TokenBucket, pause_after
 from lumen.upkeep.regular_files import read_regular
 
 COOKIE = "lumen_session"

@@ -17,7 +17,7 @@ from lumen.lint import check_files
 from lumen.project.building import knowledge_parts, sayings_parts
 from lumen.project.files import read_files
 from lumen.project.home import home_of
-from lumen.retrieval.words import words
+from lumen.retrieval.scorers import words
 from lumen.run.one_robot import one_robot
 from lumen.run.replaying.kept_bundles import KeptBundles
 

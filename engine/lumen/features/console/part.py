@@ -14,7 +14,7 @@ from lumen.language.events import Event
 from lumen.run.making.serving import directory_of
 from lumen.run.parts.part import Part
 from lumen.run.services import Services
-from lumen.upkeep.backoff import Backoff
+from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0

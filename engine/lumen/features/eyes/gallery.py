@@ -9,7 +9,7 @@ from lumen.errors import ModuleError
 from lumen.features.eyes.detector import Box
 from lumen.features.eyes.opencv import opencv
 from lumen.language.people import name_key
-from lumen.upkeep.private_folder import private_folder, write_private
+from lumen.upkeep.own_folders import private_folder, write_private
 
 if TYPE_CHECKING:
     from lumen.features.eyes.pictures import Grey

@@ -9,7 +9,7 @@ from typing import Any
 
 from lumen.features.fleet.rollouts.state import CentreState, state_from_json, state_to_json
 from lumen.language.iso_time import iso_time
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 FILE = "centre.jsonl"
 TAIL = 4_000_000

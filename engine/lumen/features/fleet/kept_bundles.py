@@ -6,7 +6,7 @@ from pathlib import Path
 
 from lumen.features.fleet.bundle import HASH, BadBundleError, packed, unpacked
 from lumen.project.files import fingerprint
-from lumen.upkeep.private_folder import private_folder, write_private
+from lumen.upkeep.own_folders import private_folder, write_private
 from lumen.upkeep.regular_files import read_regular
 
 MAX_FILE = 40_000_000

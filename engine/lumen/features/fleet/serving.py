@@ -21,7 +21,7 @@ from lumen.language.diagnostics import has_errors
 from lumen.language.fleet_keys import STREAM
 from lumen.ports import Bus
 from lumen.project.home import Home, home_of
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 LOOK_PERIOD = 1.0
 """The time between two ticks of a centre [s]."""

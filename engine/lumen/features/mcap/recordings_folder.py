@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from lumen.errors import UsageError
 from lumen.project.home import Home
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 RECORDINGS_FOLDER, RING_FOLDER = "recordings", "ring"
 SUFFIX = ".mcap"

@@ -9,8 +9,7 @@ from collections.abc import Iterable, Iterator
 from math import ceil
 from typing import Any, NamedTuple
 
-from lumen.motion.segments import Bezier, Polynomial, Segment
-from lumen.motion.trajectories import JointTrack
+from lumen.motion.trajectories import Bezier, JointTrack, Polynomial, Segment
 
 MOTION_CYCLE = 0.02
 """ALMotion's period [s]."""

@@ -6,7 +6,7 @@ from math import cos, hypot, sin
 from lumen.errors import RobotRefusedError
 from lumen.features.naoqi.hardware import Hardware
 from lumen.language.projects import Stage
-from lumen.motion.dead_reckoning import DeadReckoning, turned
+from lumen.motion.wayfinding import DeadReckoning, turned
 from lumen.ports import Sonar, Whereabouts
 from lumen.robot.hazards import danger
 

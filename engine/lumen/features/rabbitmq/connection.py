@@ -12,7 +12,7 @@ from pika.exceptions import AMQPError, ChannelClosedByBroker
 
 from lumen.features.rabbitmq.broker import BrokerAddress
 from lumen.features.rabbitmq.polled import PolledConnection
-from lumen.upkeep.backoff import Backoff
+from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 MIN_RECONNECT_DELAY = 0.2

@@ -16,7 +16,7 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.project.files import on_disk
 from lumen.robot.command_table import speech_duration
 from lumen.run.sound import Sound
-from lumen.upkeep.once_log import OnceLog
+from lumen.upkeep.ratelimit import OnceLog
 
 MUTE = "none"
 """The name of no voice: texts take their time, and are on the bus for a module that speaks."""

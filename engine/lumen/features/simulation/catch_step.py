@@ -7,10 +7,9 @@ import numpy as np
 
 from lumen.features.simulation.falling_sense import FallingSense
 from lumen.motion.gait import SIDES, GaitParameters, LegGeometry, Side
-from lumen.motion.gait.capture import CapturePoint, hold_level, landing
 from lumen.motion.gait.legs import other
 from lumen.motion.gait.parameters import scale_of, time_scale_of
-from lumen.motion.gait.swing import smooth
+from lumen.motion.gait.swing import CapturePoint, hold_level, landing, smooth
 
 STEP_TIME, STEP_BACK_TIME = 0.17, 0.2
 """The duration of a step forward or to the side, and of one backwards [s], for legs as long as those that it was tuned

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping
 
 from lumen.errors import RobotRefusedError
 from lumen.language.projects import Stage
-from lumen.motion.dead_reckoning import DeadReckoning
 from lumen.motion.gait import Feet, Footstep, LegGeometry, Pose, corners, middle
 from lumen.motion.gait.poses import wrap
 from lumen.motion.postures import lies
+from lumen.motion.wayfinding import DeadReckoning
 from lumen.ports import Whereabouts
 
 _FEET = {"L": "left", "R": "right"}

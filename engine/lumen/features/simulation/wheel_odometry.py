@@ -11,9 +11,9 @@ from lumen.features.simulation.sensors import BodySensors
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.world import World
 from lumen.language.projects import Stage
-from lumen.motion.dead_reckoning import DeadReckoning
 from lumen.motion.gait import Pose
 from lumen.motion.gait.poses import wrap
+from lumen.motion.wayfinding import DeadReckoning
 from lumen.ports import Whereabouts
 
 STILL_RATE = 0.15

@@ -15,7 +15,7 @@ from lumen.features.simulation.physics import Physics, dm_control, mujoco, wrapp
 from lumen.language.robots import Body
 from lumen.project.engine_files import files_hash
 from lumen.project.memoization import memoize
-from lumen.upkeep.cache_folder import CacheFolder
+from lumen.upkeep.own_folders import CacheFolder
 
 KEPT = 16
 """The number of compiled worlds kept on disk, of 3 MB each."""

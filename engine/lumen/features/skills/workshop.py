@@ -20,7 +20,7 @@ from lumen.features.skills.process import SkillProcess
 from lumen.features.skills.python_file import syntax_fault
 from lumen.language.projects import Project
 from lumen.ports import Bus, SkillCall
-from lumen.upkeep.backoff import Backoff
+from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 MAX_PROCESSES = 4

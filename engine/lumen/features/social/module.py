@@ -15,7 +15,7 @@ from lumen.language.projects import Project
 from lumen.ports import Bus, Message, MessageHandler
 from lumen.project.json_lines import forget_lines
 from lumen.run.module import Module
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 POSTS_FILE = "posts.jsonl"
 MAX_FILE_BYTES = 10_000_000

@@ -13,7 +13,7 @@ from lumen.features.visitors.tables import NEWER_TABLES, check, prepare
 from lumen.features.visitors.visit import JournalEnd
 from lumen.language.iso_time import iso_time
 from lumen.language.people import PersonName, name_key
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 LOCK_TIMEOUT = 0.5
 """The time to wait for a locked database [s]."""

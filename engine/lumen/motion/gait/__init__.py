@@ -3,12 +3,11 @@
 Nothing here touches a robot: feet and a goal go in, joint angles come out, tick by tick.
 """
 
-from lumen.motion.gait.footsteps import Feet, Footstep, corners, middle
+from lumen.motion.gait.footsteps import Feet, Footstep, Velocity, corners, fastest, fastest_of, middle
 from lumen.motion.gait.gait import CentreOfMass, Gait, GaitTick
 from lumen.motion.gait.legs import SIDES, LegGeometry, Side, SoleSize
 from lumen.motion.gait.parameters import FOUND, GaitParameters, Paces, paces_of
 from lumen.motion.gait.poses import Pose
-from lumen.motion.gait.velocity import Velocity, fastest, fastest_of
 
 __all__ = [
     "FOUND",

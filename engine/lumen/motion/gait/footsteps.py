@@ -1,11 +1,12 @@
-"""Where the feet go."""
+"""Where the feet go: for a walk to a goal, and while the robot walks on (NAOqi's `move`)."""
 
 from collections.abc import Mapping, Sequence
 from math import ceil, hypot
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
+from lumen.language.robots import Body
 from lumen.motion.gait.legs import Side, SoleSize, other, sign
-from lumen.motion.gait.parameters import GaitParameters
+from lumen.motion.gait.parameters import GaitParameters, paces_without_legs
 from lumen.motion.gait.poses import Pose
 
 Feet = Mapping[Side, Pose]
@@ -75,3 +76,66 @@ def corners(step: Footstep, sole: SoleSize) -> Sequence[complex]:
             (-sole.heel, -sole.inner),
         )
     ]
+
+
+MOST_CHANGE = 0.3
+"""From step to step a speed changes by that part of the pace's greatest at most: who turns round at once stumbles."""
+
+
+class Velocity(NamedTuple):
+    """Forward and to the left [m/s], turning to the left [rad/s], as the robot sees it; nothing at all is to stand."""
+
+    x: float = 0.0
+    y: float = 0.0
+    theta: float = 0.0
+
+    def within(self, pace: GaitParameters) -> "Velocity":
+        """This way at this speed, or at the greatest of that pace."""
+        haste = self._haste(pace)
+        return Velocity(*(part / max(1.0, haste) for part in self))
+
+    def toward(self, goal: "Velocity", pace: GaitParameters) -> "Velocity":
+        """How fast to go a step later where `goal` is wanted."""
+        wanted = goal.within(pace)
+        change = Velocity(*(there - here for here, there in zip(self, wanted, strict=True)))
+        part = MOST_CHANGE / max(MOST_CHANGE, change._haste(pace))
+        return Velocity(*(here + part * more for here, more in zip(self, change, strict=True)))
+
+    def _haste(self, pace: GaitParameters) -> float:
+        """This speed as a factor of the greatest of that pace."""
+        return hypot(*(part / limit for part, limit in zip(self, fastest(pace), strict=True)))
+
+
+def fastest(pace: GaitParameters) -> Velocity:
+    """How fast a robot goes straight ahead, aside or around at that pace, one of them at a time."""
+    step = pace.double + pace.single
+    aside = min(pace.sideways, (pace.widest - pace.apart) / 2)
+    return Velocity(pace.forward / step, aside / step, pace.turn / step)
+
+
+def fastest_of(body: Body, pace: Literal["usual", "brisk"]) -> Velocity:
+    """How fast a body goes at most, as far as its description tells: as its base drives, else at that pace."""
+    base = body.roles.base
+    if base.row.drives:
+        return Velocity(base.speed, 0.0, base.turn)
+    paces = paces_without_legs(body.gait)
+    return fastest(paces.brisk if pace == "brisk" else paces.usual)
+
+
+def strides(feet: Feet, velocity: Velocity, first: Side, pace: GaitParameters, count: int) -> list[Footstep]:
+    """The next `count` steps from these feet at that speed; `first` begins, then they alternate.
+
+    Each begins where the foot that bears belongs, so that what one step lacks the next one does not repeat. Aside, the
+    foot on that side goes for both steps and the other one follows: feet must not touch.
+    """
+    speed, time = velocity.within(pace), pace.double + pace.single
+    steps: list[Footstep] = []
+    side, bearing = first, feet[other(first)]
+    for _ in range(count):
+        aside = 2 * speed.y * time if sign(side) * speed.y > 0 else 0.0
+        here = bearing.then(Pose(0.0, sign(side) * pace.apart / 2))
+        there = here.then(Pose(speed.x * time, aside, speed.theta * time))
+        step = Footstep(side, clear(beside(there, side, pace), side, bearing, pace))
+        steps.append(step)
+        side, bearing = other(side), step.pose
+    return steps

@@ -7,14 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lumen.motion.gait.footsteps import Feet, Footstep, first_side, footsteps, middle
+from lumen.motion.gait.footsteps import Feet, Footstep, Velocity, first_side, footsteps, middle, strides
 from lumen.motion.gait.legs import SIDES, LegGeometry, Placed, Side, other, sign, torso_rotation
 from lumen.motion.gait.parameters import GaitParameters
 from lumen.motion.gait.pendulum import Pendulum
 from lumen.motion.gait.planning import GaitPhase, StepPlanner, between
 from lumen.motion.gait.poses import Pose, wrap
 from lumen.motion.gait.stance import Stance, stand
-from lumen.motion.gait.velocity import Velocity, strides
 
 
 class StepTracker:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from lumen.language.gestures import Gesture, GestureLibrary, WordTime
 from lumen.motion.gestures.posing import BEAT
-from lumen.motion.life.chance import chance
+from lumen.motion.life.movements import chance
 
 LONG_PART = 18
 """Characters from which on a part of a text without a tag gets a beat."""

@@ -16,7 +16,7 @@ from typing import Any
 from lumen.language.diagnostics import Diagnostic, Place, Related, Severity
 from lumen.project.engine_files import surroundings
 from lumen.project.looks import Looks, unchanged
-from lumen.upkeep.cache_folder import CacheFolder
+from lumen.upkeep.own_folders import CacheFolder
 
 MAX_KEPT = 256
 """Sets of findings that are kept, a few kB each."""

@@ -13,7 +13,7 @@ from pathlib import Path
 from lumen.project.engine_files import surroundings
 from lumen.project.looks import Looks, unchanged
 from lumen.project.memoization import begin, newly_made, packed, unpack
-from lumen.upkeep.cache_folder import CacheFolder
+from lumen.upkeep.own_folders import CacheFolder
 
 MAX_KEPT = 8
 """Projects whose memory is kept, some MB each."""

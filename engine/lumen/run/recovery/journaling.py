@@ -13,7 +13,7 @@ from lumen.project.home import Home, home_of
 from lumen.run.live_behavior import LiveBehavior
 from lumen.run.reload.records import RunRecords
 from lumen.run.snapshot_store import SnapshotStore
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 REHEARSED = JournalRetention(keep=7.0, size=50.0)
 """Limits for kept runs by stories and programs."""

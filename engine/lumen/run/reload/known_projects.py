@@ -18,7 +18,7 @@ from lumen.project.engine_files import engine, listed
 from lumen.project.files import fingerprint
 from lumen.project.project_folders import MODELS
 from lumen.run.reload.delta import Delta, DeltaDecoder
-from lumen.upkeep.cache_folder import CacheFolder
+from lumen.upkeep.own_folders import CacheFolder
 
 _LEVEL = 1
 """Compression level of zlib: the fastest."""

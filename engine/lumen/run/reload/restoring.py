@@ -12,7 +12,7 @@ from typing import NamedTuple
 from lumen.project.files import Unreadable, belongs, on_disk, read_files
 from lumen.project.home import home_of
 from lumen.project.project_folders import FLEET_FILE
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 KEPT_FOLDER = "rolled-back"
 """The folder of a home with the newer versions, in one folder per rollback."""

@@ -9,7 +9,7 @@ from typing import Any, assert_never
 from lumen.errors import RecordingError
 from lumen.extras import demand
 from lumen.features.mcap.files.recorded import Recorded, RecordedChannel, RecordedFile, RecordedMessage, RecordedNotes
-from lumen.upkeep.private_folder import NO_LINK
+from lumen.upkeep.own_folders import NO_LINK
 
 CHUNK_BYTES = 64_000
 """The size of a chunk, which can be read once it is complete [bytes]: with the library's 1 MB a kill left nothing."""

@@ -19,7 +19,7 @@ from lumen.run.narrator import Narrator
 from lumen.run.parts.part import Part
 from lumen.run.services import Services
 from lumen.run.sound import save
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 
 def add_sound(film: Path, track: AudioTrack, length: float) -> None:

@@ -19,7 +19,7 @@ from lumen.project.home import home_of
 from lumen.project.lending import model_files
 from lumen.project.project_folders import MODELS
 from lumen.robot.motion_codec import encode_motion
-from lumen.upkeep.private_folder import private_folder
+from lumen.upkeep.own_folders import private_folder
 
 CODE = ("lumen.features.simulation", "lumen.fuzzy", "lumen.language", "lumen.motion", "lumen.robot")
 """The packages whose code affects the outcome of a motion in simulation."""

@@ -1,0 +1,198 @@
+"""Where the head turns of its own accord: glances, nods, and where somebody touched or spoke."""
+
+from collections.abc import Collection, Mapping
+from functools import cache, lru_cache
+from math import cos, exp, floor, inf, pi, sin
+from typing import NamedTuple
+from zlib import crc32
+
+from lumen.language.life import STILL, Asides, Blinks, Glances, LifeStyle, Nods, Settles
+from lumen.language.machines import MachineDefinition
+
+
+@lru_cache(4096)
+def chance(seed: int, what: str, number: int) -> float:
+    """A number from 0 up to 1, always the same for the same three."""
+    return crc32(f"{seed} {what} {number}".encode()) / 2**32
+
+
+def moments(seed: int, what: str, every: float, t: float, length: float) -> tuple[int, float] | None:
+    """The event of that kind that is under way at `t` [s], and how long it has been [s]; None for none.
+
+    One falls into each `every` [s], never at its edge; it takes `length` [s], which is less.
+    """
+    number = floor(t / every)
+    since = t - (number + chance(seed, what, number) * max(0.0, 1.0 - length / every)) * every
+    return (number, since) if 0.0 <= since < length else None
+
+
+def eyes_closed(blinks: Blinks, seed: int, t: float) -> bool:
+    """Whether the robot blinks at `t` [s]."""
+    return moments(seed, "blink", blinks.every, t, blinks.length) is not None
+
+
+_WANDERING = ((0.5, 1.0), (0.3, 0.618), (0.2, 1.732))
+"""Parts of a sway that wanders: how much of it, and how fast; no two of these ever come together again."""
+
+SPEED_SHARE = 0.3
+"""The part of its greatest speed that a joint uses of its own accord."""
+
+PEAK_SLOPE = 2 * pi * max(1.0, sum(part * pace for part, pace in _WANDERING))
+"""The greatest speed of a sway, for an amplitude of 1 and a period of 1 s."""
+
+
+def sway(style: LifeStyle, seed: int, t: float) -> dict[str, float]:
+    """How far each joint is from where it stands at `t` [s], in [rad; hands 0..1]."""
+    found: dict[str, float] = {}
+    for each in style.sways:
+        phases, turns = _phases(seed, each.name), 2 * pi * t / each.period
+        if each.wanders:
+            level = sum(part * sin(pace * turns + phases[i]) for i, (part, pace) in enumerate(_WANDERING))
+        else:
+            level = sin(turns + phases[0])
+        for joint, angle in each.joints.items():
+            found[joint] = found.get(joint, 0.0) + angle * level
+    return found
+
+
+@cache
+def _phases(seed: int, name: str) -> tuple[float, ...]:
+    return tuple(2 * pi * chance(seed, name, i) for i in range(len(_WANDERING)))
+
+
+_DECAY, _TURN = 3.0, 4.0
+"""Of a mass on a damped spring that was let go, for a settling of 1 s: it goes a tenth beyond its rest."""
+
+SETTLE_SLOPE = 2.5
+"""The greatest speed of a settling, for an angle of 1 and 1 s: that of the mass after atan(4 / 3) / 4 s."""
+
+
+def settle(settles: Settles, since: float) -> Mapping[str, float]:
+    """How far joints have sunk `since` so long [s] nothing moves them [rad; hands 0..1]."""
+    u = since / settles.takes
+    level = 1.0 - exp(-_DECAY * u) * (cos(_TURN * u) + _DECAY / _TURN * sin(_TURN * u))
+    return {joint: level * angle for joint, angle in settles.joints.items()}
+
+
+WARM, HOT = 60.0, 72.0
+"""Motors of a part of the body that are warmer than that move less, and from there on not at all [degrees Celsius]."""
+
+LOW, EMPTY = 25.0, 5.0
+"""A battery with less than that lets the robot do less, and from there on nothing of its own accord [%]."""
+
+
+def vigour(temperature: float, percentage: float) -> float:
+    """From 0 to 1: the part of its amplitudes that joints with this temperature show, with that much in the battery."""
+    cool = (HOT - temperature) / (HOT - WARM)
+    charged = (percentage - EMPTY) / (LOW - EMPTY)
+    return max(0.0, min(1.0, cool, charged))
+
+
+def style_name(machine: MachineDefinition, configuration: Collection[str]) -> str:
+    """The name of the style that the active states say with `life`, `still` where none does.
+
+    What a state says holds for the states within it, until one of these says something else. Of states side by side
+    `still` goes before everything; else the first one in the file decides.
+    """
+    active = [path for path, state in machine.states.items() if not path or state.name in configuration]
+    saying = [path for path in active if machine.states[path].life]
+    inner = [path for path in saying if not any(_within(other, path) for other in saying)]
+    styles = [machine.states[path].life for path in inner]
+    return STILL if STILL in styles or not styles else styles[0]
+
+
+def gestures_wanted(machine: MachineDefinition, configuration: Collection[str]) -> bool:
+    """Whether no active state says `gestures: none`."""
+    return not any(state.gestures for path, state in machine.states.items() if not path or state.name in configuration)
+
+
+def _within(path: str, outer: str) -> bool:
+    return path != outer and (not outer or path.startswith(f"{outer}."))
+
+
+TURN_TIME = 0.5
+"""How long the head takes to where it glances, and back [s]."""
+
+NOD_TIME = 0.7
+"""How long a nod takes [s]."""
+
+
+class Attention(NamedTuple):
+    """Something at `yaw` to the left and `pitch` down [rad, of the head] asks to be looked at since `at` [s].
+
+    It asked last at `latest` [s], if it asked several times.
+    """
+
+    yaw: float
+    pitch: float
+    at: float
+    latest: float = -inf
+
+    def again(self, yaw: float, pitch: float, lasts: float, now: float) -> "Attention":
+        """Return the attention to a new place; a head that has already turned does not return first."""
+        return Attention(yaw, pitch, now - min(TURN_TIME, lasts / 2) * _phase(self, lasts, now), now)
+
+
+TOUCHED = {
+    "FrontTactil": (0.0, -0.25), "MiddleTactil": (0.0, -0.3), "RearTactil": (0.0, -0.35),
+    "HandLeftBack": (0.6, 0.3), "HandLeftLeft": (0.6, 0.3), "HandLeftRight": (0.6, 0.3),
+    "HandRightBack": (-0.6, 0.3), "HandRightLeft": (-0.6, 0.3), "HandRightRight": (-0.6, 0.3),
+    "LeftBumper": (0.25, 0.4), "RightBumper": (-0.25, 0.4), "ChestButton": (0.0, 0.35),
+}  # fmt: skip
+"""Where the head turns to somebody who touches NAO there: yaw to the left, pitch down [rad]."""
+
+
+def glance(glances: Glances, seed: int, t: float) -> tuple[float, float]:
+    """How far the head is turned at `t` [s] by glances: (yaw, pitch) [rad]."""
+    if (now := moments(seed, "glance", glances.every, t, _length(glances))) is None:
+        return 0.0, 0.0
+    number, since = now
+    part = pulse(since, _length(glances))
+    yaw, pitch = (2 * chance(seed, way, number) - 1 for way in ("glance yaw", "glance pitch"))
+    return part * glances.yaw * yaw, part * glances.pitch * pitch
+
+
+def nod(nods: Nods, seed: int, t: float) -> float:
+    """How far down the head is at `t` [s] by nods [rad]."""
+    now = moments(seed, "nod", nods.every, t, NOD_TIME)
+    return 0.0 if now is None else nods.pitch * pulse(now[1], NOD_TIME)
+
+
+def look_towards(attention: Attention | None, lasts: float, t: float) -> tuple[float, float]:
+    """How far the head is turned at `t` [s] to what asks for attention, for as long as that `lasts` [s]."""
+    if attention is None:
+        return 0.0, 0.0
+    part = _smooth(_phase(attention, lasts, t))
+    return part * attention.yaw, part * attention.pitch
+
+
+def aside(asides: Asides, seed: int, number: int, since: float) -> tuple[float, float]:
+    """How far the head is turned `since` so long [s] after answer `number` began: (yaw, pitch) [rad], (0, 0) after it.
+
+    People look away, mostly up, while they plan what to say; robots that do so look thoughtful (Andrist, Tan, Gleicher,
+    Mutlu: Conversational gaze aversion for humanlike robots, HRI 2014, on a NAO).
+    """
+    length = asides.hold + 2 * TURN_TIME
+    part = pulse(since, length) if 0.0 <= since < length else 0.0
+    side = 1 if chance(seed, "aside", number) < 0.5 else -1
+    return part * side * asides.yaw, -part * asides.pitch
+
+
+def pulse(since: float, length: float) -> float:
+    """From 0 to 1 and back within `length` [s], without a jerk; `since` [s] its beginning."""
+    turn = min(TURN_TIME, length / 2)
+    return _smooth(max(0.0, min(1.0, since / turn, (length - since) / turn)))
+
+
+def _phase(attention: Attention, lasts: float, t: float) -> float:
+    """Return how much of the way to the place is done, 0 to 1, if all went at the same speed."""
+    turn, end = min(TURN_TIME, lasts / 2), max(attention.at, attention.latest) + lasts
+    return max(0.0, min(1.0, (t - attention.at) / turn, (end - t) / turn)) if turn else 0.0
+
+
+def _smooth(u: float) -> float:
+    return u * u * u * (10 + u * (6 * u - 15))
+
+
+def _length(glances: Glances) -> float:
+    return min(glances.hold + 2 * TURN_TIME, glances.every)
