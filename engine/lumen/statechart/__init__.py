@@ -1,7 +1,7 @@
-"""Statecharts with SCXML's meaning: an event and a snapshot become a step, and nothing else happens.
+"""Statecharts with the semantics of SCXML: `step` maps an event and a snapshot to a step, without side effects.
 
-Each name is imported when it is first used: lint uses types and names of this package, and runs nothing. `__init__.pyi`
-has the same names for type checkers.
+Each name is imported on first use, because lint needs the types and names of this package but runs nothing.
+`__init__.pyi` declares the same names for type checkers.
 """
 
 from lumen.upkeep.lazy_names import lazy

@@ -1,4 +1,4 @@
-"""What executable content may ask of the macrostep that it is part of: all that compiled actions know of it."""
+"""The interface through which compiled actions act on the macrostep that runs them."""
 
 from collections.abc import Mapping
 from typing import Any, Protocol
@@ -9,43 +9,47 @@ from lumen.language.events import Event
 
 
 class ActionError(Exception):
-    """An action can't be done as it is written; the rest of its block is skipped (SCXML 4.9)."""
+    """Raised by an action that can't be executed; the rest of its block is skipped (SCXML 4.9)."""
 
 
 class ActionContext(Protocol):
-    """The part of an `ExecutionContext` that actions use; `at` is the time of the macrostep [s]."""
+    """The part of an `ExecutionContext` that actions use."""
 
     at: float
+    """The time of the macrostep [s]."""
     data: Mapping[str, Any]
+    """The values of the context keys."""
     language: str
+    """The language in which the robot speaks now."""
     cached_scope: Scope | None
+    """The last result of `scope`; None after anything in it has changed."""
 
     def scope(self) -> Scope:
-        """What an expression sees now; kept in `cached_scope` until something in it changes."""
+        """Return the values that an expression can read now; `cached_scope` keeps them until one of them changes."""
 
     def assign(self, key: str, value: Any) -> None:
-        """Give a context key another value; raises ActionError where it is of another type."""
+        """Set a context key; raise ActionError if the value does not have the key's type."""
 
     def draw(self, count: int) -> int:
-        """One of `count` alternatives, at random."""
+        """Return a random number from 0 to `count` - 1."""
 
     def emit(self, command: Command) -> None:
-        """Ask the world for something."""
+        """Append a command to those of the step."""
 
     def start(self, command: BodyCommand, *, awaited: bool = False) -> str:
-        """Start a command of the robot; its id."""
+        """Start a command of the robot and return its id; a `do` waits for an `awaited` one."""
 
     def raise_event(self, event: Event) -> None:
-        """Append to the internal queue."""
+        """Append an event to the internal queue."""
 
     def raise_error(self, reason: str, where: tuple[str | int, ...]) -> None:
-        """Raise error.execution."""
+        """Raise error.execution for the action at that place in the YAML."""
 
     def send(self, id: str, delay: float, event: str, data: Any, to: str) -> None:
-        """Set a timer: the event comes from outside after `delay` [s], or goes `to` another behaviour."""
+        """Set a timer: after `delay` [s] the event arrives from outside, or goes `to` another behaviour."""
 
     def cancel_send(self, id: str) -> None:
-        """Take back what was sent under that id and has not come yet."""
+        """Cancel the `send` with that id if it is not due yet."""
 
     def wait(self, seconds: float) -> str:
-        """Set a timer for a `wait`; its id."""
+        """Set a timer for a `wait` and return its id."""

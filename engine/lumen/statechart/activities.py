@@ -1,4 +1,4 @@
-"""The `do` of active states while it runs: begun after entry, resumed by answers, ended on exit (UML's do activity)."""
+"""The running `do` of active states: begun after entry, resumed by answers, ended on exit (UML's do activity)."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -12,7 +12,7 @@ from lumen.statechart.values import Halted, Within, awaited
 
 
 class Activities:
-    """How far each `do` has come, by the path of its state; `halted` are those that were left before their end."""
+    """The positions of running `do`, and of `halted` ones that were left before their end, by the path of the state."""
 
     __slots__ = ("halted", "positions")
 
@@ -20,32 +20,35 @@ class Activities:
         self.positions, self.halted = positions, halted
 
     def begin(self, context: ActivityContext, node: StateNode, halted: Halted | None = None) -> None:
-        """Begin what a state does while it is active; where it was halted, as the state says of its `resume`."""
+        """Begin the `do` of a state, or resume it from `halted` as the state's `resume` specifies."""
         if halted is None:
             self._advance(context, node, lambda advance: advance.block(node.do))
         else:
             self._advance(context, node, lambda advance: advance.again(node, halted.position, halted.at))
 
     def resume(self, context: ActivityContext, node: StateNode, id: str, result: Any = None) -> None:
-        """Go on with the `do` of that state, since what it awaited under that id is over; `result` is what came of it.
+        """Continue the `do` of that state after the command or timer `id` has ended.
 
-        If the `do` ends with that, its state hears the result.
+        If the `do` ends with it, the event `done.do.*` carries the `result`.
         """
         position = self.positions[node.path]
         self._advance(context, node, lambda advance: advance.resume_block(node.do, position, id), id, result)
 
     def answer(self, context: ActivityContext, node: StateNode, id: str, data: Any) -> None:
-        """Say what somebody answers to the question that the `do` of that state asked under that id; else ignore it."""
+        """Say the answer to the question `id` of that state's `do`; ignore malformed or unexpected data."""
         if (sentence := sentence_of(data)) and self.is_question(node, id):
             position = self.positions[node.path]
             self._advance(context, node, lambda advance: advance.resume_block(node.do, position, id, sentence), id)
 
     def is_question(self, node: StateNode, id: str) -> bool:
-        """Whether the `do` of that state awaits the answer to a question under that id."""
+        """Return True if the `do` of that state awaits the answer to the question `id`."""
         return asks(node.do, self.positions[node.path], id)
 
     def lose(self, context: ActivityContext, node: StateNode, id: str, reason: str) -> None:
-        """Go on with the `do` of that state though the robot has forgotten what it awaits, as its `resume` says."""
+        """Continue the `do` of that state as its `resume` specifies, though the robot has forgotten the command `id`.
+
+        Without a `resume` the `do` fails.
+        """
         if not resumption_of(node):
             self.fail(context, node, id, reason)
             return
@@ -56,10 +59,10 @@ class Activities:
     def fail(
         self, context: ActivityContext, node: StateNode, id: str | None, reason: str, started: Iterable[str] = ()
     ) -> None:
-        """End a `do` that failed: what else it awaits is cancelled, and its state hears why.
+        """End a `do` that failed: cancel everything else it awaits and raise `error.do.*` with the reason.
 
-        `id` is that of the command that failed, None for an action that takes no time; `started` is what was begun
-        since the position that is known.
+        `id` is that of the command that failed, or None for an action that ends at once. `started` are the ids begun
+        since the stored position.
         """
         pending = (*awaited(self.positions.get(node.path)), *started)
         cancel(context, [other for other in pending if other != id])
@@ -67,17 +70,17 @@ class Activities:
         context.raise_event(Event(f"error.do.{node.name}", {"command": id, "reason": reason}, context.at))
 
     def cancel(self, context: ActivityContext, path: str) -> None:
-        """End a `do` whose state is left."""
+        """End the `do` of a state that is left, and cancel everything it awaits."""
         cancel(context, list(awaited(self.positions[path])))
         self._place(path, None)
 
     def halt(self, node: StateNode, at: float) -> None:
-        """Note where the `do` of a state that is left stands, where the state says how it is resumed."""
+        """Store the position of the `do` of a state that is left at `at` [s], if the state has a `resume`."""
         if resumption_of(node):
             self.halted = {**self.halted, node.path: Halted(self.positions[node.path], at)}
 
     def forget(self, path: str) -> Halted | None:
-        """Where the `do` of a state that is entered again had stood; it is forgotten."""
+        """Remove and return the stored position of the `do` of a state that is entered again."""
         found = self.halted.get(path)
         if found:
             self.halted = {other: halted for other, halted in self.halted.items() if other != path}
@@ -108,6 +111,6 @@ class Activities:
 
 
 def placed(positions: Mapping[str, Within], path: str, position: Within | None) -> Mapping[str, Within]:
-    """These positions, with another one of the `do` of that state, or without any."""
+    """Return the positions with that of one state replaced, or removed if `position` is None."""
     rest = {p: where for p, where in positions.items() if p != path}
     return {**rest, path: position} if position else rest

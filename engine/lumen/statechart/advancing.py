@@ -1,4 +1,4 @@
-"""One `do` being moved on: from action to action, until it awaits something or is done."""
+"""Moves one `do` forward from action to action until it awaits something or ends."""
 
 import re
 from dataclasses import replace
@@ -24,15 +24,15 @@ from lumen.statechart.question_position import QuestionPosition, fork
 from lumen.statechart.values import Awaiting, Fork, Position, Timer, Within, awaited
 
 SPEECH_RATE = 17.0
-"""How many characters are said in a second, at most."""
+"""Characters that the robot speaks per second, at most."""
 DOUBT = 1.0
-"""How much earlier it may have been [s]: a sentence said twice is better than one not heard."""
+"""Time subtracted before the spoken part is estimated [s]: repeating a sentence is better than losing one."""
 
 _SENTENCE = re.compile(r"(?<=[.!?…])\s+")
 
 
 def rest_of(command: BodyCommand, elapsed: float) -> BodyCommand:
-    """A command that begins again, `elapsed` [s] after it first began: of what is said, that sentence and the rest."""
+    """Return the command to start again `elapsed` [s] after its start; a `say` restarts at the current sentence."""
     return replace(command, text=_remaining(command.text, elapsed)) if isinstance(command, Say) else command
 
 
@@ -45,19 +45,19 @@ def _remaining(text: str, elapsed: float) -> str:
 
 
 class ActivityContext(ActionContext, Protocol):
-    """The part of an `ExecutionContext` that activities use, besides what their actions do."""
+    """The part of an `ExecutionContext` that activities use, in addition to what their actions use."""
 
     timers: tuple[Timer, ...]
 
     def offers(self, event: str) -> bool:
-        """Whether an active state has a transition for just that event which is marked as an `offer`."""
+        """Return True if an active state has a transition for exactly that event that is marked as an `offer`."""
 
     def evaluate_in(self, node: StateNode) -> None:
-        """Let `state` in expressions be this one."""
+        """Make this node the `state` that expressions read."""
 
 
 class ActivityError(Exception):
-    """An action of a `do` failed; carries the reason and the place."""
+    """The failure of an action of a `do`, with its reason and its place in the YAML."""
 
     def __init__(self, reason: str, where: NodePath) -> None:
         super().__init__(reason)
@@ -65,12 +65,12 @@ class ActivityError(Exception):
 
 
 def resumption_of(node: StateNode) -> str:
-    """How the `do` of a state is resumed: `again`, `after`, `never`; empty where it begins anew."""
+    """Return how the `do` of a state is resumed: `again`, `after` or `never`; empty if it starts anew."""
     return node.state.resume if node.state else ""
 
 
 class Advance:
-    """One `do` being moved on until it awaits something; `started` are the ids of what it began."""
+    """Moves one `do` forward until it awaits something; `started` collects the ids of what it began."""
 
     __slots__ = ("context", "started")
 
@@ -81,7 +81,7 @@ class Advance:
     def block(
         self, actions: tuple[CompiledAction, ...], name: Literal["do", "then", "else"] = "do", index: int = 0
     ) -> Within | None:
-        """Do everything from `index` on that takes no time; where it stands then, None at its end."""
+        """Execute the actions from `index` on up to the first that takes time; return its position, None at the end."""
         for place in range(index, len(actions)):
             inner = self.begin(actions[place])
             if inner is not None:
@@ -91,14 +91,14 @@ class Advance:
     def resume_block(
         self, actions: tuple[CompiledAction, ...], position: Within, id: str, said: Sentence | None = None
     ) -> Within | None:
-        """Go on from `position` now that what it awaited under `id` is over, or has brought a sentence to be said."""
+        """Continue from `position` after `id` has ended, or after a sentence of the answer to question `id` came."""
         inner = self.resume(actions[position.place], position.inner, id, said)
         if inner is not None:
             return position._replace(inner=inner)
         return self.block(actions, position.block, position.place + 1)
 
     def again(self, node: StateNode, position: Within, at: float) -> Within | None:
-        """Go on from a `position` that was left, or lost, at `at` [s], as the state says of its `resume`."""
+        """Resume from a `position` that was left or lost at `at` [s], as the state's `resume` specifies."""
         word = resumption_of(node)
         return None if word == "never" else self._again_block(node.do, position, at, after=word == "after")
 
@@ -123,6 +123,7 @@ class Advance:
         return None if after else self.begin(action)
 
     def begin(self, action: CompiledAction) -> Position | None:
+        """Begin one action; return the position in which it waits, None if it has ended."""
         match action:
             case InstantAction(act, where):
                 with _Failing(where):
@@ -148,6 +149,7 @@ class Advance:
     def resume(
         self, action: CompiledAction, position: Position, id: str, said: Sentence | None = None
     ) -> Position | None:
+        """Continue the action that waits under `id`; return its new position, None if it has ended."""
         match action, position:
             case ConditionalAction(), Within(block, _, _):
                 return self.resume_block(action.block(block), position, id, said)
@@ -163,6 +165,7 @@ class Advance:
     def branch(
         self, action: CompiledAction, position: Position | None, id: str, said: Sentence | None
     ) -> Position | None:
+        """Continue one of several parallel branches if it awaits `id`; return its position."""
         if position is None or id not in awaited(position):
             return position
         return self.resume(action, position, id, said)
@@ -170,7 +173,7 @@ class Advance:
     def question(
         self, action: AskedQuestion, stands: QuestionPosition, id: str, said: Sentence | None
     ) -> Position | None:
-        """A sentence of the answer came; or the answer is complete, its time is up, or a sentence has been said."""
+        """Handle a sentence of an answer, the end of an answer, its deadline, or the end of a spoken sentence."""
         if said and said.raises:
             if not self.context.offers(said.raises):
                 return stands.fork()
@@ -193,21 +196,23 @@ class Advance:
         return stands.without(id).fork()
 
     def complete(self, stands: QuestionPosition) -> QuestionPosition:
-        """Nothing more is awaited but that all is said."""
+        """Cancel the deadline of a question whose answer is complete; only its speech is still awaited."""
         cancel(self.context, list(awaited(stands.deadline)))
         return stands._replace(deadline=None)
 
     def speaking(self, action: AskedQuestion, said: Sentence) -> Awaiting:
+        """Start to say a sentence of an answer and return the position that awaits its end."""
         with _Failing(action.where):
             return self.awaiting(self.context.start(action.say(self.context, said), awaited=True))
 
     def awaiting(self, id: str) -> Awaiting:
+        """Note that `id` was started, and return the position that awaits it."""
         self.started.append(id)
         return Awaiting(id, self.context.at)
 
 
 class _Failing:
-    """Turns what an expression or action raises into an ActivityError with its place."""
+    """Converts an error of an expression or action into an ActivityError with its place."""
 
     __slots__ = ("where",)
 
@@ -222,14 +227,14 @@ class _Failing:
 
 
 def cancel(context: ActivityContext, ids: list[str]) -> None:
-    """Cancel what is awaited under these ids: a timer is taken back, a command cancelled at the robot."""
+    """Cancel these ids: remove the timers of `wait`s, and send the robot a Cancel for every other id."""
     context.timers, cancels = cancelled(context.timers, ids)
     for command in cancels:
         context.emit(command)
 
 
 def cancelled(timers: tuple[Timer, ...], ids: list[str]) -> tuple[tuple[Timer, ...], tuple[Cancel, ...]]:
-    """The timers without those that are awaited under these ids, and the commands that cancel the others."""
+    """Return the timers without the `wait`s among these ids, and a Cancel command for each other id."""
     waits = {t.id for t in timers if t.kind == "wait" and t.id in ids}
     kept = tuple(t for t in timers if t.kind != "wait" or t.id not in waits) if waits else timers
     return kept, tuple(Cancel(id) for id in ids if id not in waits)

@@ -1,4 +1,4 @@
-"""A visitor's question and its answer: what is asked of others, without names, and what of their answer is said."""
+"""Questions of visitors and their answers: names are removed from questions, and control signs from answers."""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
@@ -11,33 +11,36 @@ from lumen.language.people import PersonName
 from lumen.statechart.action_context import ActionContext, ActionError
 
 MAX_QUESTION = 1_000
-"""Characters of a question; the rest is not asked."""
+"""Maximum length of a question [characters]; the rest is cut off."""
 MAX_SENTENCE = 500
-"""Characters of an answer that are said at once; a longer one is none."""
+"""Maximum length of a sentence of an answer [characters]; a longer one is ignored."""
 MAX_SENTENCES = 5
-"""Sentences of one answer that are said, each as it comes."""
+"""Maximum number of sentences of one answer that are said, each when it arrives."""
 MAX_NAME = 60
-"""Characters of what may be a name."""
+"""Maximum length of a text that may be a name [characters]."""
 MARKUP = str.maketrans(dict.fromkeys("\\^<>{}[]|`*_#~\n\r\t", " "))
-"""Signs that a voice may take for orders, such as NAOqi's `^start(…)` and `\\rspd=…\\`: they are not said."""
+r"""Signs that a voice may interpret as commands, such as NAOqi's `^start(…)` and `\\rspd=…\\`; each becomes a blank."""
 
 
 class Sentence(NamedTuple):
-    """What is to be said of an answer; `more` is still to come, and a `filler` answers nothing.
-
-    An answer that is an event instead has its name in `raises`, and its `data`.
-    """
+    """One sentence of an answer, or the event that the answer raises."""
 
     text: str
+    """The words to say; empty for an event."""
     language: str = ""
+    """Their language; empty for the current one."""
     more: bool = False
+    """True if more of the answer follows."""
     filler: bool = False
+    """True for words that only bridge the time until the answer."""
     raises: str = ""
+    """The name of the event to raise instead of speech; empty for none."""
     data: Any = None
+    """The data of that event."""
 
 
 def compile_question(action: AskQuestion) -> Callable[[Scope], BodyCommand]:
-    """What makes the command that a question stands for."""
+    """Return a function that makes the Ask command; it raises ActionError if the question is not a string."""
     asked = compile_expression(action.question.source)
 
     def ask(scope: Scope) -> BodyCommand:
@@ -51,16 +54,16 @@ def compile_question(action: AskQuestion) -> Callable[[Scope], BodyCommand]:
 
 
 def unnamed(text: str, context: Mapping[str, Any]) -> str:
-    """The text without the names that the context holds: the visitor's, and what is written as one is."""
+    """Return the text without the visitor's name and without texts of the context that are written like names."""
     for name in sorted(dict.fromkeys(_names(context)), key=len, reverse=True):
         text = PersonName(name).taken_from(text)
     return text
 
 
 def sentence_of(data: Any) -> Sentence | None:
-    """The sentence that somebody's answer holds, None where that is no answer.
+    """Return the sentence in the data of an `answer` event, None if the data is malformed.
 
-    It is data: no template in it is filled in, and what a voice may take for orders is left out.
+    The text is never used as a template, and signs that a voice may interpret as commands are replaced by blanks.
     """
     if not isinstance(data, Mapping):
         return None
@@ -79,7 +82,7 @@ def sentence_of(data: Any) -> Sentence | None:
 
 
 def spoken(context: ActionContext, sentence: Sentence) -> BodyCommand:
-    """The command that says it."""
+    """Return the command that says the sentence."""
     return Say(sentence.text, sentence.language or context.language)
 
 
@@ -92,7 +95,7 @@ def _names(context: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _written_as_names(value: Any) -> Iterator[str]:
-    """Texts of a few words that all begin with a capital letter."""
+    """Yield the texts of at most four words that all begin with a capital letter, however deep they are nested."""
     match value:
         case str():
             words = value.split()

@@ -1,4 +1,4 @@
-"""Actions as functions of a context: compiled once, so that a step does not look at their kind again."""
+"""Actions compiled to functions of a context, so that a step need not examine their kinds again."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -35,16 +35,16 @@ ActionFunction: TypeAlias = Callable[[ActionContext], None]
 CompiledBlock: TypeAlias = tuple[tuple[ActionFunction, NodePath], ...]
 CommandFactory: TypeAlias = Callable[[ActionContext], BodyCommand]
 Alternatives: TypeAlias = tuple[str, tuple[Callable[[Scope], str], ...]]
-"""A language, and the texts in it of which one is drawn."""
+"""A language, and the alternative texts in it."""
 
 
 def compile_block(steps: tuple[PlacedAction, ...]) -> CompiledBlock:
-    """Each action with the place it stands at."""
+    """Compile each action; return the functions with the places of the actions in the YAML."""
     return tuple((compile_action(step.action), step.where) for step in steps)
 
 
 def compile_action(action: Action) -> ActionFunction:
-    """The doing of one action; it raises ExpressionError or ActionError where it fails."""
+    """Return a function that executes one action; it raises ExpressionError or ActionError on failure."""
     match action:
         case Assign(values):
             return _assign(values)
@@ -75,7 +75,7 @@ def compile_action(action: Action) -> ActionFunction:
 
 
 def compile_command(action: SayText | VerbCommand) -> CommandFactory:
-    """The command that a robot verb stands for."""
+    """Return a function that makes the command of a robot verb."""
     match action:
         case SayText(texts, gestures):
             return _say(texts, gestures)
@@ -97,7 +97,7 @@ def compile_command(action: SayText | VerbCommand) -> CommandFactory:
 
 
 def compile_value(value: ComputedValue) -> Callable[[Scope], Any]:
-    """What computes a value; lists and maps become JSON's."""
+    """Return a function that computes a value; lists and maps become JSON lists and maps."""
     match value:
         case Expression(source):
             return compile_expression(source)
@@ -112,10 +112,10 @@ def compile_value(value: ComputedValue) -> Callable[[Scope], Any]:
 
 
 def compile_assignment(way: str, value: ComputedValue) -> tuple[str, Callable[[Scope], Any]]:
-    """The context key that one key of `assign` gives another value, and what computes that.
+    """Return the context key that one key of `assign` changes, and a function that computes its new value.
 
-    Of a way into a map it is a copy of the map, with the value at the way's end; raises ExpressionError where there
-    is no map on the way.
+    For a path into a map, such as `a.b`, that value is a copy of the map with the value at the end of the path; it
+    raises ExpressionError if something on the path is not a map.
     """
     compute = compile_value(value)
     key, *within = way.split(".")
@@ -125,7 +125,7 @@ def compile_assignment(way: str, value: ComputedValue) -> tuple[str, Callable[[S
 
 
 def compile_delay(delay: float | Template) -> Callable[[ActionContext], float]:
-    """How long a delay is [s]; one that is computed and says no time is an error of the action."""
+    """Return a function that computes a delay [s]; it raises ActionError if a template gives no duration."""
     if not isinstance(delay, Template):
         return lambda context: delay
     text = compile_template(delay.text)
@@ -184,7 +184,7 @@ def _do(command: Do) -> CommandFactory:
 
 
 def alternatives(texts: Mapping[str, tuple[Template, ...]]) -> Callable[[str], Alternatives]:
-    """What there is to say in a language, and in which language that is: the first, where there is nothing in it."""
+    """Return a function from a language to its texts and that language; it falls back to the first language."""
     spoken = {
         language: tuple(compile_template(template.text) for template in templates)
         for language, templates in texts.items()

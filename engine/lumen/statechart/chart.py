@@ -1,4 +1,4 @@
-"""The tree of states and transitions, compiled: what Appendix D's algorithm walks over."""
+"""The compiled tree of states and transitions that the algorithm of SCXML's Appendix D walks."""
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
@@ -19,7 +19,7 @@ CompiledGuard = Callable[[Scope], bool]
 
 
 class CompiledInvoke(NamedTuple):
-    """A behaviour that a state invokes; `input` computes the first values of its context."""
+    """A behaviour that a state invokes; `input` computes the initial values of its context."""
 
     id: str
     behavior: str
@@ -28,7 +28,7 @@ class CompiledInvoke(NamedTuple):
 
 
 class ComputedAfter(NamedTuple):
-    """An `after` whose delay is computed when its state is entered; `length` gives it in [s]."""
+    """An `after` whose delay is computed when its state is entered; `length` returns the delay [s]."""
 
     delay: Template
     length: Callable[[ActionContext], float]
@@ -36,10 +36,10 @@ class ComputedAfter(NamedTuple):
 
 
 class StateNode:
-    """A state, with its neighbours at hand; compared by identity. `index` is its place in document order.
+    """A compiled state with links to its neighbours; compared by identity.
 
-    `afters` are the events of its `after`, each with its delay [ns], but for the `computed` ones; `schedules` those of
-    its `at`.
+    `index` is its position in document order. `afters` are the events of its `after` transitions, each with its
+    constant delay [ns]; `computed` has those with computed delays, and `schedules` those of `at`.
     """
 
     __slots__ = (
@@ -71,30 +71,30 @@ class StateNode:
 
     @property
     def busy(self) -> bool:
-        """Whether it has anything to be started when it is entered, or ended when it is left."""
+        """Return True if entering it starts a `do`, an invocation or a timer, which leaving it must end."""
         return bool(self.do or self.invokes or self.timed)
 
     @property
     def timed(self) -> bool:
-        """Whether it has timers of its own."""
+        """Return True if it has timers: `after` or `at` transitions."""
         return bool(self.afters or self.computed or self.schedules)
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or 'root'}>"
 
     def view(self, language: str, place: str) -> Mapping[str, str]:
-        """What `state` is in its expressions."""
+        """Return the value of `state` in its expressions."""
         found = self.views.get((language, place))
         if found is None:
             found = self.views[language, place] = {"path": self.path, "language": language, "place": place}
         return found
 
     def lies_below(self, other: "StateNode") -> bool:
-        """Whether it is a proper descendant of the other (`isDescendant`)."""
+        """Return True if it is a proper descendant of the other (`isDescendant`)."""
         return other in self.ancestors
 
     def below(self, top: "StateNode") -> Iterator["StateNode"]:
-        """Its proper ancestors, from the inside, up to but not including `top` (`getProperAncestors`)."""
+        """Yield its proper ancestors, innermost first, up to but not including `top` (`getProperAncestors`)."""
         for ancestor in self.ancestors:
             if ancestor is top:
                 return
@@ -102,10 +102,10 @@ class StateNode:
 
 
 class CompiledTransition:
-    """A transition, its guard and actions compiled; compared by identity. `alone` is the set of it only.
+    """A transition with compiled guard and actions; compared by identity.
 
-    A row of `hears` has a `late` guard, too, whether it is taken if no state has taken anything else; `rows` are all
-    rows of its state.
+    `alone` is the tuple with only this transition. A row of `hears` also has a `late` guard, which decides if no state
+    has reacted otherwise; `rows` are all rows of its state.
     """
 
     __slots__ = ("alone", "block", "definition", "guard", "late", "rows", "source", "targets", "where")
@@ -124,12 +124,12 @@ class CompiledTransition:
 
     @property
     def is_otherwise(self) -> bool:
-        """Whether it is a row `else`, which is late only."""
+        """Return True for an `else` row, which can only be taken late."""
         hears = self.definition.hears
         return hears is not None and hears.way == "else"
 
     def matches(self, name: str) -> bool:
-        """Whether an event of that name selects it (SCXML 3.12.1); `after` and `at` are never selected by a name."""
+        """Return True if an event of that name selects it (SCXML 3.12.1); a name never selects `after` or `at`."""
         event = self.definition.event
         if self.definition.timed or not event:
             return False
@@ -140,7 +140,7 @@ class CompiledTransition:
 
 
 class Chart:
-    """All nodes of a machine: `document` is the implicit `<scxml>` around the root."""
+    """All nodes of a machine; `document` is the implicit `<scxml>` element around the root."""
 
     def __init__(self, definition: MachineDefinition) -> None:
         self.definition = definition
@@ -160,7 +160,7 @@ class Chart:
         self._guard_rows()
 
     def _guard_rows(self) -> None:
-        """Give each row of `hears` the guards that know the other rows of its state."""
+        """Set the guards of all rows of `hears`, which depend on the other rows of the same state."""
         for node in self.nodes.values():
             rows = {t.definition.hears.number: t for t in node.transitions if t.definition.hears}
             if rows:

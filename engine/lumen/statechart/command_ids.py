@@ -1,7 +1,7 @@
-"""Ids of commands and timers as they leave a machine, and the way back to who awaits them.
+"""Ids of commands and timers outside a machine, and their conversion back to the ids inside it.
 
-What an invoked behaviour starts as `d7` is `d7@quiz` outside, where `quiz` is the id of its invoke; two levels deep it
-is `d7@hint@quiz`.
+The command `d7` of an invoked behaviour is `d7@quiz` outside, if `quiz` is the id of its invoke; two levels deep it is
+`d7@hint@quiz`.
 """
 
 from collections.abc import Mapping
@@ -14,9 +14,9 @@ ANSWER_KINDS = ("done", "error", "cancelled", "lost", "answer")
 
 
 class CommandAnswer(NamedTuple):
-    """What became of a command: `done`, or `error`, `cancelled` or `lost` (forgotten by the robot) with a reason.
+    """The outcome of a command: `done`, or `error`, `cancelled` or `lost` (forgotten by the robot) with a reason.
 
-    An `answer` is (part of) what is known about a question; its `data` says it.
+    An `answer` is (part of) the answer to a question, in its `data`.
     """
 
     kind: str
@@ -26,7 +26,7 @@ class CommandAnswer(NamedTuple):
 
 
 def answer_of(event: Event) -> CommandAnswer | None:
-    """The robot's answer that an event is; None where it is something else."""
+    """Return the robot's answer in an event, None for any other event."""
     kind, _, id = event.name.partition(".command.")
     if kind not in ANSWER_KINDS or id[:1] not in ("c", "d") or not id[1:].partition("@")[0].isdecimal():
         return None
@@ -40,18 +40,18 @@ def result_of(data: Any) -> Any:
 
 
 def outer_id(id: str, owner: str) -> str:
-    """What an id of the invoked behaviour `owner` is called outside of it."""
+    """Return the outside id of `id` in the invoked behaviour `owner`."""
     return f"{id}@{owner}"
 
 
 def inner_id(id: str) -> tuple[str, str]:
-    """An id as the behaviour that was invoked knows it, and which that is; empty for one's own."""
+    """Return an id as used by its own behaviour, and the id of the invoke; the latter is empty for the machine."""
     own, separator, owner = id.rpartition("@")
     return (own, owner) if separator else (id, "")
 
 
 def outer_command(command: Command, owner: str) -> Command:
-    """A command of an invoked behaviour as it is called outside."""
+    """Return a command of an invoked behaviour with its outside id."""
     match command:
         case Start(id, wanted):
             return Start(outer_id(id, owner), wanted)

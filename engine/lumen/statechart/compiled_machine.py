@@ -1,4 +1,4 @@
-"""A machine compiled, with those that it invokes."""
+"""A compiled machine together with those that it invokes."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from lumen.upkeep.garbage import gc_paused
 
 
 class CompiledMachine(NamedTuple):
-    """A machine compiled; `invoked` are the behaviours that it invokes, by their names."""
+    """A compiled machine; `invoked` has the behaviours that it invokes, by name."""
 
     chart: Chart
     planner: MicrostepPlanner
@@ -22,10 +22,10 @@ class CompiledMachine(NamedTuple):
 
 
 def compiled(definition: MachineDefinition) -> CompiledMachine:
-    """The machine compiled, on first use, and kept beside its definition."""
+    """Return the compiled machine, which is made on first use and stored with the definition."""
     machine: CompiledMachine | None = definition.__dict__.get("_compiled")
     if machine is None:
-        with gc_paused():  # of what is made here nothing is garbage
+        with gc_paused():  # nothing made here is garbage
             chart = Chart(definition)
             planner = MicrostepPlanner(chart)
             invoked = {name: compiled(other) for name, other in definition.invoked.items()}
@@ -35,7 +35,7 @@ def compiled(definition: MachineDefinition) -> CompiledMachine:
 
 
 def prepare(definition: MachineDefinition) -> None:
-    """Compile a machine with its phrases, so that the first sentence is understood without delay."""
+    """Compile a machine and its phrases, so that the first sentence is processed without delay."""
     if any(t.hears for state in definition.states.values() for t in state.transitions):
         hearing_of(definition)
     for other in compiled(definition).chart.definition.invoked.values():

@@ -1,4 +1,4 @@
-"""The timers of `after` whose delay is computed: set when a state is entered, once its `entry` is done."""
+"""Timers of `after` with computed delays: set when a state is entered, after its `entry` actions."""
 
 from lumen.expressions import ExpressionError
 from lumen.language.nanoseconds import nanoseconds
@@ -9,7 +9,7 @@ from lumen.statechart.values import Timer
 
 
 def begin_computed(context: ExecutionContext, node: StateNode) -> None:
-    """Set the timers of a state that is entered."""
+    """Set the computed timers of a state that is entered."""
     for event, after in node.computed.items():
         if (delay := computed_delay(context, node, after)) is not None:
             due = nanoseconds(context.at) + delay
@@ -17,7 +17,7 @@ def begin_computed(context: ExecutionContext, node: StateNode) -> None:
 
 
 def computed_delay(context: ExecutionContext, node: StateNode, after: ComputedAfter) -> int | None:
-    """How long it is now [ns]; None where it is no duration, which is error.execution."""
+    """Return the delay as computed now [ns]; if it is no duration, raise error.execution and return None."""
     context.evaluate_in(node)
     try:
         return nanoseconds(after.length(context))

@@ -1,4 +1,4 @@
-"""Snapshots read back from JSON data: every piece has to be what it should be, and to fit the machine."""
+"""Reads snapshots from JSON data: every part is validated by itself and against the machine."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
@@ -34,7 +34,7 @@ SNAPSHOT_VERSION = 1
 
 
 def deserialize(machine: MachineDefinition, data: Mapping[str, Any]) -> Snapshot:
-    """The snapshot that `serialize` made of this machine; raises SnapshotError naming what differs."""
+    """Return the snapshot that `serialize` made of this machine; raise SnapshotError if it does not fit."""
     try:
         return _snapshot(machine, JsonCursor(data))
     except RecursionError:
@@ -55,7 +55,7 @@ def _snapshot(machine: MachineDefinition, data: JsonCursor) -> Snapshot:
 
 
 class _SnapshotReader:
-    """Reads what belongs to a machine of which these states are active."""
+    """Reads the parts of a snapshot, given the active states of the machine."""
 
     def __init__(self, machine: MachineDefinition, configuration: JsonCursor) -> None:
         self.machine = machine
@@ -67,6 +67,7 @@ class _SnapshotReader:
                 raise configuration.refused(f"can't be: {fault}")
 
     def read(self, data: JsonCursor) -> Snapshot:
+        """Read all fields of a snapshot."""
         return Snapshot(
             configuration=self.names,
             context=self.context(data["context"]),
@@ -86,6 +87,7 @@ class _SnapshotReader:
         )
 
     def timezone(self, data: JsonCursor) -> str:
+        """Read the IANA name of the time zone; empty if older data have none."""
         if not (said := [part for key, part in data.items() if key == "timezone"]):
             return ""
         try:
@@ -95,11 +97,12 @@ class _SnapshotReader:
         return name
 
     def active(self, path: str) -> bool:
+        """Return True if the state at that path is active; the root always is."""
         state = self.machine.states.get(path)
         return state is not None and (not path or state.name in self.names)
 
     def fault(self, state: State) -> str:
-        """Why the children of a state can't be active as they are; empty where they can."""
+        """Return why the active children of a state are inconsistent; empty if they are consistent."""
         children = [self.machine.states[path] for path in state.children]
         active = [child for child in children if child.name in self.names]
         here = f"`{state.name}`"
@@ -115,6 +118,7 @@ class _SnapshotReader:
         return ""
 
     def context(self, data: JsonCursor) -> dict[str, Any]:
+        """Read the context: exactly the machine's keys, each with a value of its type."""
         checks: Mapping[str, TypeCheck | None] = compiled(self.machine).chart.checks
         found: dict[str, Any] = {key: data[key].plain() for key in self.machine.context}
         for key, part in data.items():
@@ -125,6 +129,7 @@ class _SnapshotReader:
         return found
 
     def timer(self, data: JsonCursor) -> Timer:
+        """Read a timer whose state is active."""
         kind, state = data["kind"].text(), data["state"].text()
         if kind not in ("after", "at", "send", "wait"):
             raise data["kind"].refused("should be `after`, `at`, `send` or `wait`")
@@ -138,18 +143,21 @@ class _SnapshotReader:
         return Timer(data["id"].text(), due, delay, event, content, state, kind, to)  # type: ignore[arg-type]  # one of three
 
     def position(self, path: str, data: JsonCursor) -> Within:
+        """Read the position of the `do` of an active state."""
         node = compiled(self.machine).chart.nodes.get(path)
         if node is None or not node.do or not self.active(path):
             raise data.refused("is not an active state with a `do`")
         return _within(data, node.do, ("do",))
 
     def halted(self, path: str, data: JsonCursor) -> Halted:
+        """Read the position of a `do` that was left."""
         node = compiled(self.machine).chart.nodes.get(path)
         if node is None or not node.do:
             raise data.refused("is not a state with a `do`")
         return Halted(_within(data["position"], node.do, ("do",)), data["at"].number())
 
     def remembered(self, path: str, data: JsonCursor) -> tuple[str, ...]:
+        """Read the states that a history state remembers."""
         state, paths = self.machine.states.get(path), tuple(data.texts())
         if state is None or state.kind is not StateKind.HISTORY:
             raise data.refused("is not a history state")
@@ -158,7 +166,7 @@ class _SnapshotReader:
         return paths
 
     def may_remember(self, history: State, path: str) -> bool:
-        """Whether that is a state that the history state could stand for."""
+        """Return True if the history state could remember the state at that path."""
         state = self.machine.states.get(path)
         if state is None or state.kind is StateKind.HISTORY:
             return False
@@ -167,13 +175,14 @@ class _SnapshotReader:
         return below and not state.children if history.deep else state.parent == home
 
     def exclude(self, paths: Sequence[str]) -> bool:
-        """Whether two of these states are never active at the same time."""
+        """Return True if two of these states can never be active at the same time."""
         states = self.machine.states
         around = {path for each in paths for path in _upwards(states, each)}
         alone = (state.children for state in states.values() if state.kind is StateKind.COMPOUND)
         return any(len(around.intersection(children)) > 1 for children in alone)
 
     def invoked(self, id: str, data: JsonCursor) -> Invoked:
+        """Read the snapshot of an invoked behaviour."""
         state = data["state"].text()
         machine = self.machine.invoked.get(self.machine.invoked_behavior(state, id))
         if machine is None or not self.active(state):

@@ -1,4 +1,4 @@
-"""Entering a state because a person says so: as if a transition led there from where the machine stands."""
+"""Enters a state on request of a person, as a transition from the current configuration would."""
 
 from collections.abc import Iterator
 
@@ -17,11 +17,11 @@ from lumen.statechart.values import Snapshot, Step
 
 
 def entered_directly(machine: MachineDefinition, snapshot: Snapshot, name: str, event: Event) -> Step:
-    """The step that enters a state at once, whatever any guard says; `event` says who wanted it, and when.
+    """Return the step that enters a state at once, regardless of guards; `event` gives the requester and the time.
 
-    Left is only what excludes it: regions beside it stay as they are. A state that is active is left and entered again.
-    `name` is an alias or a path, or the end of one where no other state has it. Raises UsageError where there is no
-    such state, where it belongs to a behaviour that is invoked, or where the machine is at its end.
+    Only states that exclude it are left: parallel regions stay as they are. An active state is left and entered again.
+    `name` is an alias, a path, or the unique end of a path. Raises UsageError if there is no such state, if it belongs
+    to an invoked behaviour, or if the machine has ended.
     """
     program = compiled(machine)
     target = _named(machine, program.chart, name)
@@ -36,7 +36,7 @@ def entered_directly(machine: MachineDefinition, snapshot: Snapshot, name: str, 
 
 
 def _way(target: StateNode, standing: Configuration) -> tuple[StateNode, tuple[StateNode, ...]]:
-    """From where a transition leads there that leaves nothing else: the innermost active state around it."""
+    """Return source and targets of a transition from the innermost active ancestor, which leaves nothing else."""
     assert target.parent is not None  # only the document has none, and it has no name
     if target.parent.kind is StateKind.PARALLEL and target in standing.nodes and target.initial:
         return target, target.initial
@@ -57,7 +57,7 @@ def _named(machine: MachineDefinition, chart: Chart, name: str) -> StateNode:
 
 
 def _invoked(machine: MachineDefinition, name: str) -> Iterator[str]:
-    """Why a state of that name can't be entered: it is one of a behaviour that the machine invokes."""
+    """Yield why a state of that name can't be entered: it belongs to a behaviour that the machine invokes."""
     for state in machine.states.values():
         for invoke in state.invoke:
             inner, end = machine.invoked.get(invoke.behavior), name.removeprefix(f"{invoke.id}{ID_SEPARATOR}")

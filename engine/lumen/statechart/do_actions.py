@@ -1,4 +1,4 @@
-"""`do` compiled: actions done one after another while a state is active, of which some take time."""
+"""Compiled `do` blocks: actions executed in sequence while a state is active; some of them take time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ from lumen.statechart.blocks import ActionFunction, CommandFactory, compile_acti
 
 @dataclass(frozen=True, slots=True)
 class InstantAction:
-    """Done at once."""
+    """An action that ends at once."""
 
     act: ActionFunction
     where: NodePath
@@ -36,7 +36,7 @@ class InstantAction:
 
 @dataclass(frozen=True, slots=True)
 class AwaitedCommand:
-    """A robot's command, over when it is answered."""
+    """A command of the robot; ends when the robot answers."""
 
     make: CommandFactory
     where: NodePath
@@ -44,14 +44,14 @@ class AwaitedCommand:
 
 @dataclass(frozen=True, slots=True)
 class TimedWait:
-    """Over after so many [s]."""
+    """A pause of that many [s]."""
 
     seconds: float
 
 
 @dataclass(frozen=True, slots=True)
 class ConditionalAction:
-    """`if`: one block or the other."""
+    """An `if` with its two blocks."""
 
     guard: Callable[[Scope], bool]
     then: "tuple[CompiledAction, ...]"
@@ -59,19 +59,20 @@ class ConditionalAction:
     where: NodePath
 
     def block(self, name: str) -> "tuple[CompiledAction, ...]":
+        """Return the block of that name: `then` or `else`."""
         return self.then if name == "then" else self.otherwise
 
 
 @dataclass(frozen=True, slots=True)
 class ParallelActions:
-    """`parallel`: over with the last of its branches."""
+    """A `parallel`; ends with the last of its branches."""
 
     branches: "tuple[CompiledAction, ...]"
 
 
 @dataclass(frozen=True, slots=True)
 class AskedQuestion:
-    """`ask`: over when its answer is said, or `otherwise` is done, which it is where none comes within so many [s]."""
+    """An `ask`; ends when its answer is said, or with `otherwise`, which starts without an answer `within` [s]."""
 
     make: CommandFactory
     say: Callable[[ActionContext, Sentence], BodyCommand]
@@ -86,7 +87,7 @@ CompiledAction: TypeAlias = (
 
 
 def compile_do(steps: tuple[PlacedAction, ...]) -> tuple[CompiledAction, ...]:
-    """The actions of a `do`, each with the place it stands at."""
+    """Compile the actions of a `do`, each with its place in the YAML."""
     return tuple(_compile(step.action, step.where) for step in steps)
 
 

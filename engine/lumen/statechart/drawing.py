@@ -1,8 +1,8 @@
-"""Drawing one of several alternatives, from a generator that is part of the snapshot."""
+"""Random choice among alternatives, with a generator that is part of the snapshot."""
 
 
 def draw(generator: int, count: int) -> tuple[int, int]:
-    """One of `count` alternatives, from 0, and the generator after it (Numerical Recipes' linear congruence)."""
+    """Return a number from 0 to `count` - 1, and the next generator state (the LCG of Numerical Recipes)."""
     if count == 1:
         return 0, generator
     generator = (generator * 1664525 + 1013904223) % 2**32

@@ -1,4 +1,4 @@
-"""What a macrostep holds while it is made: the only thing that changes, and it is gone when the step is there."""
+"""The mutable state of one macrostep; it is discarded once the Step is made."""
 
 from collections import deque
 from collections.abc import Container, Mapping
@@ -20,13 +20,13 @@ from lumen.statechart.drawing import draw
 from lumen.statechart.plans import Configuration
 from lumen.statechart.values import MAX_TIMERS, Counters, Halted, Invoked, Snapshot, Step, Timer
 
-_new = tuple.__new__  # a third of the price of Scope(…), Snapshot(…), Step(…)
+_new = tuple.__new__  # a third of the cost of Scope(…), Snapshot(…), Step(…)
 
 
 class Beginning(NamedTuple):
-    """What a state begins when the macrostep is done: its invocations, then its `do` (SCXML 6.4: `statesToInvoke`).
+    """Invocations and `do` of an entered state, which begin after the macrostep (SCXML 6.4: `statesToInvoke`).
 
-    `halted` is where that `do` stood, for a state that a history leads back into.
+    `halted` is the stored position of that `do`, if a history state restores the state.
     """
 
     node: StateNode
@@ -36,7 +36,7 @@ class Beginning(NamedTuple):
 
 
 def place_after(before: str, event: Event | None) -> str:
-    """Where the robot is after an event from outside: `arrived` and `left` say it, no other does."""
+    """Return the robot's place after an event from outside; only `arrived` and `left` change it."""
     if event is None or event.name not in (ARRIVED, LEFT) or not isinstance(event.data, Mapping):
         return before
     place = event.data.get("place")
@@ -46,47 +46,46 @@ def place_after(before: str, event: Event | None) -> str:
 
 
 class InvocationHandler(Protocol):
-    """What the algorithm asks of the behaviours that run within a machine; `steps` are those they took in this one."""
+    """The operations of the algorithm on invoked behaviours; `steps` are those made during this macrostep."""
 
     children: Mapping[str, Invoked]
     steps: tuple[tuple[str, Step], ...]
 
     def begin(self, context: "ExecutionContext", node: StateNode, invoke: CompiledInvoke) -> None:
-        """Invoke a behaviour (`invoke`)."""
+        """Start an invoked behaviour (`invoke`)."""
 
     def cancel(self, context: "ExecutionContext", node: StateNode) -> None:
-        """End what a state that is left has invoked (`cancelInvoke`)."""
+        """End the behaviours that a left state has invoked (`cancelInvoke`)."""
 
     def forward(self, context: "ExecutionContext", event: Event) -> None:
-        """Let all of them hear an event."""
+        """Deliver an event to all of them."""
 
     def deliver(self, context: "ExecutionContext", id: str, event: Event) -> None:
-        """Let one of them hear an event."""
+        """Deliver an event to one of them."""
 
     def post(self, context: "ExecutionContext") -> None:
-        """Hand over what the machine sends to them."""
+        """Deliver the events that the machine has sent to them."""
 
     def listens(self, context: "ExecutionContext", name: str) -> bool:
-        """Whether one of them waits for an event of that name now."""
+        """Return True if one of them has a transition for an event of that name now."""
 
 
 @dataclass(slots=True, eq=False)
 class ExecutionContext:
-    """A snapshot being moved on by one event.
-
-    `trigger` is the event that began the macrostep, `event` the one being handled; `active` is what `In` asks, and
-    `node` the state that expressions know as `state`. `unforwarded` is an event from outside that invoked behaviours
-    have not heard yet, `beginnings` are the states entered and not left, `failed` the places of errors. `outbox` is
-    what goes to invoked behaviours, and to which; `for_parent` what goes to that which invoked this, if any.
-    """
+    """The state of a macrostep: a snapshot in the course of being changed by one event."""
 
     machine: CompiledMachine
     trigger: Event | None
+    """The event that began the macrostep; None for the first."""
     event: Event | None
+    """The event that is being processed."""
     at: float
+    """The time of the macrostep [s]."""
     configuration: Configuration
     active: Container[str]
+    """The names for which `In()` is true."""
     node: StateNode
+    """The node that expressions read as `state`."""
     data: Mapping[str, Any]
     language: str
     timers: tuple[Timer, ...]
@@ -102,12 +101,17 @@ class ExecutionContext:
     cached_scope: Scope | None = None
     internal_queue: deque[Event] | tuple[()] = ()
     unforwarded: Event | None = None
+    """An event from outside that was not delivered to the invoked behaviours yet."""
     beginnings: tuple[Beginning, ...] = ()
+    """The states entered and not left again, with what to begin for them."""
     is_invoked: bool = False
     for_parent: tuple[Event, ...] = ()
+    """Events for the behaviour that invoked this one."""
     outbox: tuple[tuple[str, Event], ...] = ()
+    """Events for invoked behaviours and other robots, each with its recipient."""
     microsteps: int = 0
     failed: frozenset[NodePath] = frozenset()
+    """The places of the errors raised so far."""
     output: Any = None
     commands: tuple[Command, ...] = ()
     exited: tuple[str, ...] = ()
@@ -124,7 +128,7 @@ class ExecutionContext:
         at: float,
         invocations: InvocationHandler,
     ) -> Self:
-        """The context of a macrostep from that snapshot at `at` [s]; raises KeyError with a state that is unknown."""
+        """Return the context of a macrostep at `at` [s]; raise KeyError with the name of an unknown state."""
         (
             names, data, _, language, timers, doing, history, counters, generator, epoch, _, halted, place, zone,
             output,
@@ -139,14 +143,14 @@ class ExecutionContext:
     def within(
         self, id: str, machine: CompiledMachine, snapshot: Snapshot, event: Event | None, invocations: InvocationHandler
     ) -> Self:
-        """The context of a behaviour that runs within this one, under that id."""
+        """Return the context of an invoked behaviour that runs inside this one under that id."""
         child = type(self).of(machine, snapshot, event, self.at, invocations)
         child.is_invoked = True
         return child
 
     def step(self) -> Step:
-        """The step that was made; the context is of no use after it."""
-        self.cached_scope = None  # which refers to this context: no need to wait for the garbage collector
+        """Return the finished step; the context must not be used afterwards."""
+        self.cached_scope = None  # it refers to this context: without the cycle, no garbage collection is needed
         after = (
             self.configuration.names, self.data, self.at, self.language, self.timers, self.activities.positions,
             self.history, self.counters, self.generator, self.epoch, self.invocations.children, self.activities.halted,
@@ -159,13 +163,13 @@ class ExecutionContext:
         return _new(Step, made)
 
     def take_internal(self) -> Event:
-        """Handle the next event of the internal queue from now on."""
-        event = self.internal_queue.popleft()  # type: ignore[union-attr]  # whoever calls this has looked
+        """Make the next event of the internal queue the current one and return it."""
+        event = self.internal_queue.popleft()  # type: ignore[union-attr]  # callers check that it is not empty
         self.event, self.event_data, self.cached_scope = event, None, None
         return event
 
     def leave(self, transitions: tuple[Transition, ...], exited: tuple[str, ...], entered: tuple[str, ...]) -> None:
-        """Begin a microstep with these transitions; the names are those of the states that it exits and enters."""
+        """Begin a microstep: record its transitions and the names of the states that it exits and enters."""
         self.transitions += transitions
         self.exited += exited
         self.entered += entered
@@ -175,12 +179,12 @@ class ExecutionContext:
         self.configuration, self.active = target, target.known
 
     def evaluate_in(self, node: StateNode) -> None:
-        """Let `state` in expressions be this one."""
+        """Make this node the `state` that expressions read."""
         if node is not self.node:
             self.node, self.cached_scope = node, None
 
     def scope(self) -> Scope:
-        """What an expression sees now."""
+        """Return the values that an expression can read now."""
         scope = self.cached_scope
         if scope is None:
             event, definition = self.event, self.machine.chart.definition
@@ -195,16 +199,16 @@ class ExecutionContext:
         return scope
 
     def is_active(self, state: str) -> bool:
-        """`In()`: asks when it is called, so that a scope serves while states come and go."""
+        """Return `In(state)`; evaluated on call, so that a scope stays valid while states are left and entered."""
         return state in self.active
 
     def offers(self, event: str) -> bool:
-        """Whether an active state has a transition for just that event that is an `offer`, and asks for no approval."""
+        """Return True if an active state has an `offer` transition for exactly that event that needs no approval."""
         found = (transition.definition for group in self.configuration.candidates(event) for transition in group)
         return any(one.offer and not one.approve and one.event == event for one in found)
 
     def assign(self, key: str, value: Any) -> None:
-        """Give a context key another value; raises ActionError where it is of another type."""
+        """Set a context key; raise ActionError if the value does not have the key's type."""
         check = self.machine.chart.checks.get(key)
         if check and type(value) not in check.quick and not check.accepts(value):
             raise ActionError(f"`{key}` {check.refusal(value, 'become')}")
@@ -212,16 +216,16 @@ class ExecutionContext:
         self.cached_scope = None
 
     def draw(self, count: int) -> int:
-        """One of `count` alternatives, from the generator."""
+        """Return a number from 0 to `count` - 1 and advance the generator."""
         drawn, self.generator = draw(self.generator, count)
         return drawn
 
     def emit(self, command: Command) -> None:
-        """Something for the edge to perform."""
+        """Append a command, which the runtime performs after the step."""
         self.commands = (*self.commands, command)
 
     def start(self, command: BodyCommand, *, awaited: bool = False) -> str:
-        """Start a command; its id."""
+        """Start a command and return its id: `d…` for an awaited one, else `c…`."""
         commands, waited, timers = self.counters
         if awaited:
             id = f"d{waited + 1}"
@@ -233,10 +237,10 @@ class ExecutionContext:
         return id
 
     def send(self, id: str, delay: float, event: str, data: Any, to: str) -> None:
-        """A `send`: due after `delay` [s], at the earliest in the next macrostep (SCXML 6.2).
+        """Execute a `send`: it is due after `delay` [s], at the earliest in the next macrostep (SCXML 6.2).
 
-        What goes to another behaviour without delay is handed over in this macrostep. Raises ActionError where
-        MAX_TIMERS wait already.
+        An event for another behaviour without delay is delivered in this macrostep. Raises ActionError if MAX_TIMERS
+        are waiting already.
         """
         length = nanoseconds(delay)
         if to and not length:
@@ -249,24 +253,24 @@ class ExecutionContext:
         self.timers = (*self.timers, timer)
 
     def hand_over(self, to: str, event: Event) -> None:
-        """Have the behaviour that invoked this one, one that it invokes, or another robot hear an event."""
+        """Queue an event for the behaviour that invoked this one, for one that it invokes, or for another robot."""
         if to == PARENT and self.is_invoked:
             self.for_parent = (*self.for_parent, event)
         else:
             self.outbox = (*self.outbox, (to, event))
 
     def returned(self, to: str, event: Event) -> None:
-        """Raise error.communication: there is nobody to whom that could be sent (SCXML 6.2.5)."""
+        """Raise error.communication: an event has no recipient (SCXML 6.2.5)."""
         whom = "no behaviour invoked this one" if to == PARENT else f"no behaviour `{to}` is invoked here now"
         reason = f"{whom}: `{event.name}` has no recipient"
         self.raise_event(Event("error.communication", {"to": to, "reason": reason}, self.at))
 
     def cancel_send(self, id: str) -> None:
-        """Take back what was sent under that id and is not due yet (SCXML 6.3)."""
+        """Cancel the `send` with that id if it is not due yet (SCXML 6.3)."""
         self.timers = tuple(t for t in self.timers if t.kind != "send" or t.id != id)
 
     def wait(self, seconds: float) -> str:
-        """A `wait` of the `do` of the state that is evaluated in; its id."""
+        """Set the timer of a `wait` in the `do` of the current node, `seconds` from now; return its id."""
         id, length = self._timer_id("w"), nanoseconds(seconds)
         timer = Timer(id, nanoseconds(self.at) + length, length, f"wait.{id}", None, self.node.path, "wait")
         self.timers = (*self.timers, timer)
@@ -277,14 +281,14 @@ class ExecutionContext:
         return f"{letter}{self.counters.timers}"
 
     def raise_event(self, event: Event) -> None:
-        """Append to the internal queue (SCXML 4.2)."""
+        """Append an event to the internal queue (SCXML 4.2)."""
         if not self.internal_queue:
             self.internal_queue = deque()
         self.internal_queue.append(event)
         self.raised += (event,)
 
     def raise_error(self, reason: str, where: NodePath) -> None:
-        """Raise error.execution; not again for the same place while that is what is being handled."""
+        """Raise error.execution, unless that place fails again while an error.execution is processed."""
         handling = self.event is not None and self.event.name == "error.execution"
         if not (handling and where in self.failed):
             self.failed |= {where}

@@ -1,4 +1,4 @@
-"""What a machine hears from outside, sorted: timers that have ended, the robot's answers, and everything else."""
+"""Dispatches events from outside: ended timers, the robot's answers, and everything else."""
 
 from collections.abc import Mapping
 
@@ -17,10 +17,10 @@ from lumen.statechart.values import Step, Timer, awaited
 
 
 def process(context: ExecutionContext, event: Event) -> Step:
-    """Take an event from the external queue, and all that follows from it until the next.
+    """Process an event from the external queue up to the end of the macrostep, and return the step.
 
-    Those behaviours that were invoked before hear it too, after the machine itself: what it leaves because of the
-    event ends without a word.
+    Behaviours that were invoked before receive it after the machine itself. Those that the machine ends because of the
+    event do not receive it.
     """
     if event.sendid:
         _end_timer(context, event)
@@ -37,9 +37,10 @@ def process(context: ExecutionContext, event: Event) -> Step:
 
 
 def _become(context: ExecutionContext, event: Event) -> None:
-    """What a controller says becomes the context's, before anybody hears of it; keys of others are theirs.
+    """Assign the values of a fuzzy controller to the context before any transition is selected; skip unknown keys.
 
-    A number that does not fit comes as the integer nearest to it, where that fits; else its key stays as it was.
+    A number of the wrong type is rounded to an integer; if that does not fit either, the key keeps its value and
+    error.execution is raised.
     """
     for key, value in event.data.items() if isinstance(event.data, Mapping) else ():
         if key not in context.machine.chart.definition.context or number(value) is None:
@@ -52,7 +53,7 @@ def _become(context: ExecutionContext, event: Event) -> None:
 
 
 def _learn(context: ExecutionContext, event: Event) -> None:
-    """What another robot says of what is theirs becomes the context's, before anybody hears of it."""
+    """Assign another robot's shared values to the context before any transition is selected; skip unknown keys."""
     known = context.machine.chart.definition.shared
     news = {key: value for key, value in event.data.items() if key in known} if isinstance(event.data, Mapping) else {}
     if news:
@@ -63,7 +64,7 @@ def _learn(context: ExecutionContext, event: Event) -> None:
 
 
 def _end_timer(context: ExecutionContext, event: Event) -> None:
-    """A timer has ended, its own or an invoked behaviour's; one that is no longer there was cancelled."""
+    """Handle a timer that ended, of this machine or an invoked behaviour; ignore one that was cancelled."""
     ended = [t for t in context.timers if t.id == event.sendid and t.event == event.name]
     if not ended:
         if event.name == event.sendid == CLOCK_SET:
@@ -90,7 +91,7 @@ def _end_timer(context: ExecutionContext, event: Event) -> None:
 
 
 def _answer(context: ExecutionContext, event: Event, answer: CommandAnswer) -> None:
-    """What became of a command: the `do` that awaits it goes on or fails; nobody else hears of it."""
+    """Handle the outcome of a command: the `do` that awaits it continues or fails; no transition sees the event."""
     kind, id, reason, data = answer
     own, owner = inner_id(id)
     if owner:
@@ -112,7 +113,7 @@ def _answer(context: ExecutionContext, event: Event, answer: CommandAnswer) -> N
 
 
 def _hand_down(context: ExecutionContext, event: Event, kind: str, id: str, owner: str) -> None:
-    """Give an answer to the behaviour whose command it was; not to one of the same name that began later."""
+    """Deliver an answer to the behaviour that started the command, unless a later behaviour runs under the same id."""
     child = context.invocations.children.get(owner)
     if child and not (id.startswith("c") and int(id[1:].partition("@")[0]) <= child.commands):
         context.invocations.deliver(context, owner, event._replace(name=f"{kind}.command.{id}"))

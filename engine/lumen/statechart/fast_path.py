@@ -1,9 +1,10 @@
-"""The fast path: steps that happen again are taken by functions written for them, two to five times as fast.
+"""The fast path: recurring steps are taken by functions generated for them, two to five times as fast.
 
-The whole algorithm makes an ExecutionContext and finds out what an event means where the machine stands; most of that
-is the same each time. What happens for the second time is written as a function of its own (`step_writer`). It decides
-nothing that the algorithm would not, and where anything is not plain, a failing expression included, it gives up
-without a trace: then the whole algorithm takes the step from its beginning. What happens once is never written.
+The full algorithm makes an ExecutionContext and determines what an event means in the current configuration, mostly
+with the same result each time. On its second occurrence a step is generated as a function of its own (`step_writer`).
+That function makes no decision that the algorithm would not make. In any case that it does not cover, such as a failing
+expression, it returns None without side effects, and the full algorithm computes the step from the beginning. Nothing
+is generated for a step that occurs once.
 """
 
 from collections.abc import Callable
@@ -21,15 +22,15 @@ from lumen.statechart.step_writer import StepWriter
 from lumen.statechart.values import Awaiting, Fork, Snapshot, Step, Within
 
 MAX_WAYS = 2
-"""How many ways through the guards are written into one function; of more, each gets its own when it is gone again."""
+"""Combinations of guards generated into one function; beyond that, each combination gets its own function."""
 
 
 def whole(snapshot: Snapshot, event: Event) -> None:
-    """Stands for what is left to the whole algorithm."""
+    """Placeholder for a step that the full algorithm must take; returns None."""
 
 
 class FastPaths:
-    """The functions of a chart that are written so far, by event and configuration, and by where a `do` stands."""
+    """The functions generated for a chart so far, by event and configuration, and by the position of a `do`."""
 
     def __init__(self, planner: MicrostepPlanner) -> None:
         self.planner = planner
@@ -37,7 +38,7 @@ class FastPaths:
         self.answers: dict[tuple[Any, ...], WrittenStep] = {}
 
     def step(self, snapshot: Snapshot, event: Event) -> Step | None:
-        """The step of this event, None where it is not plain, or has not happened before."""
+        """Return the step of this event; None if it is not covered or has not occurred before."""
         try:
             play = self.paths[event[0]][snapshot[0]]
         except KeyError:
@@ -45,10 +46,10 @@ class FastPaths:
         return play(snapshot, event)
 
     def _found(self, snapshot: Snapshot, event: Event) -> WrittenStep:
-        """What is not among the paths: an answer, or what has not happened yet.
+        """Return the function for an event that is not among the paths: an answer, or an event's first occurrence.
 
-        What says where the robot is, or what a controller or another robot makes of the context, changes more than
-        the states.
+        Events that change the robot's place or context keys are left to the full algorithm, because they change more
+        than states.
         """
         name, names = event.name, snapshot.configuration
         if ".command." in name:
@@ -75,7 +76,7 @@ class FastPaths:
         return StepWriter(self.planner, start, apart).heard(candidates)
 
     def _answered(self, snapshot: Snapshot, name: str) -> WrittenStep:
-        """What a `done.command.*` does: it resumes the `do` that awaits it, and if none does, nothing."""
+        """Return the function for a `done.command.*`, which resumes the `do` that awaits it, if any."""
         kind, _, id = name.partition(".command.")
         if kind != "done" or not (id[:1] in ("c", "d") and id[1:].isdecimal()):
             return whole
@@ -107,7 +108,7 @@ class FastPaths:
 
 
 def noted(cache: dict[Any, WrittenStep], key: Any, write: Callable[[], WrittenStep | None]) -> WrittenStep:
-    """Notes in a cache that something has happened: when it happens again, the function for it is written."""
+    """Note a first occurrence and return `whole`; on the second, `write` generates the function."""
 
     def again(snapshot: Snapshot, event: Event) -> Step | None:
         cache[key] = play = write() or whole
@@ -119,6 +120,6 @@ def noted(cache: dict[Any, WrittenStep], key: Any, write: Callable[[], WrittenSt
 
 
 def _ways(candidates: Candidates) -> int:
-    """In how many ways the guards may turn out."""
+    """Return the number of combinations in which the guards may turn out."""
     groups = (*candidates, *(group for later in candidates.later for group in later))
     return prod(sum(t.guard is not None for t in group) + 1 for group in groups)

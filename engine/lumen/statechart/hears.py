@@ -1,8 +1,8 @@
 """Rows of `hears` as guards of ordinary transitions.
 
-A row is taken if its phrase is found, its own guard is true, and no better row of its state is taken. The better of two
-rows is the one whose phrase has more words, else the upper one. Rows without a word of their own and `else` are late:
-they are asked only if no state has taken anything else.
+A row is taken if its phrase matches, its own guard is true, and no better row of its state is taken. Of two rows, the
+one whose phrase has more words is better, else the upper one. `else` rows and rows without a word of their own are
+late: they are evaluated only if no state has taken another transition.
 """
 
 from collections.abc import Callable, Mapping
@@ -16,16 +16,16 @@ RowGuard = Callable[[Scope], bool]
 
 
 class RowBlock:
-    """The rows of one state; `own` are the guards that they have themselves, by the numbers of the rows."""
+    """The `hears` rows of one state; `own` has the guard written in each row, by the row's number."""
 
     __slots__ = ("_any", "_hearing", "_machine", "_own")
 
     def __init__(self, machine: MachineDefinition, own: Mapping[int, RowGuard | None]) -> None:
         self._machine, self._own, self._any = machine, own, next(iter(own))
-        self._hearing: Hearing | None = None  # not made before somebody speaks
+        self._hearing: Hearing | None = None  # compiled when the first sentence is heard
 
     def guards(self, number: int) -> tuple[RowGuard, RowGuard]:
-        """The guard of a row, and its guard when it is late."""
+        """Return the guard of a row, and its guard for the late passes."""
         return partial(self._holds, number, False), partial(self._holds, number, True)
 
     def chosen(self, scope: Scope, late: bool = False) -> int:
@@ -37,7 +37,7 @@ class RowBlock:
         return -1
 
     def chosen_late(self, scope: Scope) -> int:
-        """Return the number of the late row that is taken, as `chosen`."""
+        """Return the number of the late row that is taken, or -1; raise ExpressionError if a guard fails."""
         return self.chosen(scope, True)
 
     def _order(self, scope: Scope, late: bool) -> tuple[Taken, ...]:
@@ -51,7 +51,7 @@ class RowBlock:
         return guard is None or guard(scope)
 
     def _holds(self, number: int, late: bool, scope: Scope) -> bool:
-        """Whether this row is the first one whose own guard is true.
+        """Return True if this row is the best one whose own guard is true.
 
         Raises ExpressionError if the row's own guard fails; a better row whose guard fails is not taken.
         """

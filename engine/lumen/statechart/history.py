@@ -1,4 +1,4 @@
-"""What history states remember (SCXML 3.10): the paths of states, by the path of the history state."""
+"""The memory of history states (SCXML 3.10): paths of states, by the path of the history state."""
 
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
@@ -10,7 +10,7 @@ History = Mapping[str, tuple[str, ...]]
 
 
 def recorded(active: AbstractSet[StateNode], left: AbstractSet[StateNode]) -> dict[str, tuple[str, ...]]:
-    """What the history states of the states left have to remember (`historyValue` in `exitStates`)."""
+    """Return the new memory of all history states whose parents are left (`historyValue` in `exitStates`)."""
     found: dict[str, tuple[str, ...]] = {}
     for parent in left:
         for history in parent.histories:

@@ -1,4 +1,4 @@
-"""Behaviours that run within another one: begun, handed events, and ended with the state that invoked them."""
+"""Behaviours that run inside another one: started and ended with the state that invokes them, and sent events."""
 
 from collections import deque
 from collections.abc import Mapping
@@ -20,16 +20,16 @@ from lumen.statechart.type_checks import checked
 from lumen.statechart.values import Invoked, Snapshot, Step
 
 INVOKED_MICROSTEP_SHARE = 0.9
-"""The part of the microsteps still allowed that an invoked behaviour may take: what is left serves to answer it."""
+"""Share of the remaining microsteps that an invoked behaviour may use; the rest is for the reaction to it."""
 
 
 def open_context(machine: CompiledMachine, snapshot: Snapshot, event: Event | None, at: float) -> ExecutionContext:
-    """The context of a macrostep at `at` [s]; raises KeyError with a state that the machine has not."""
+    """Return the context of a macrostep at `at` [s]; raise KeyError with the name of a state that the machine lacks."""
     return ExecutionContext.of(machine, snapshot, event, at, Invocations(snapshot.invoked))
 
 
 class Invocations:
-    """The behaviours invoked in a machine, each making macrosteps of its own (SCXML 6.4)."""
+    """The behaviours invoked in a machine, each of which makes its own macrosteps (SCXML 6.4)."""
 
     __slots__ = ("children", "steps")
 
@@ -38,7 +38,7 @@ class Invocations:
         self.steps: tuple[tuple[str, Step], ...] = ()
 
     def begin(self, context: ExecutionContext, node: StateNode, invoke: CompiledInvoke) -> None:
-        """Begin a behaviour with the input that the state gives it, or say why it can't begin."""
+        """Start a behaviour with the input of the state; raise `error.invoke.*` if the input fails or does not fit."""
         context.evaluate_in(node)
         id, chart = invoke.id, context.machine.invoked[invoke.behavior].chart
         try:
@@ -52,19 +52,19 @@ class Invocations:
         self.deliver(context, id, None)
 
     def cancel(self, context: ExecutionContext, node: StateNode) -> None:
-        """End what a state that is left has invoked, after its `exit`; nothing is heard of it any more."""
+        """End the behaviours that a left state has invoked, and drop their pending done and error events."""
         for id in [id for id, child in self.children.items() if child.state == node.path]:
             self.end(context, id)
         gone = {f"{kind}.invoke.{invoke.id}" for kind in ("done", "error") for invoke in node.invokes}
         context.internal_queue = deque(event for event in context.internal_queue if event.name not in gone)
 
     def forward(self, context: ExecutionContext, event: Event) -> None:
-        """Let all of them hear an event, in the order in which they began."""
+        """Deliver an event to all of them, in the order in which they were started."""
         for id in tuple(self.children):
             self.deliver(context, id, event)
 
     def post(self, context: ExecutionContext) -> None:
-        """Hand over what it sends to them and to other robots; what is for nobody is an error (SCXML 6.2.5)."""
+        """Deliver the events sent to behaviours and robots; without a recipient it is an error (SCXML 6.2.5)."""
         sent, context.outbox = context.outbox, ()
         for id, event in sent:
             if id in self.children:
@@ -75,18 +75,18 @@ class Invocations:
                 context.returned(id, event)
 
     def listens(self, context: ExecutionContext, name: str) -> bool:
-        """Whether one of them waits for an event of that name now."""
+        """Return True if one of them has a transition for an event of that name now; `*` does not count."""
         return _listen(context.machine, self.children, name)
 
     def end(self, context: ExecutionContext, id: str) -> None:
-        """End one of them: it leaves all its states."""
+        """End one of them: it exits all its states."""
         child = self._open(context, id, None)
         if child.configuration.names and not child.configuration.finished:
             self._follow(context, id, exit_machine(child))
         self.children = {other: child for other, child in self.children.items() if other != id}
 
     def adopt(self, context: ExecutionContext, id: str, child: Invoked) -> None:
-        """Go on with a behaviour where it stands now."""
+        """Replace the stored position of an invoked behaviour, and end it if it has finished."""
         self.children = {**self.children, id: child}
         _take_back(context, child.snapshot)
         machine = invoked_machine(context.machine, child.state, id)
@@ -94,7 +94,7 @@ class Invocations:
             self._finish(context, id, child.snapshot.output)
 
     def deliver(self, context: ExecutionContext, id: str, event: Event | None) -> None:
-        """Let one of them hear an event, or begin (None), and take over what comes of it."""
+        """Deliver an event to one of them, or start it (None), and merge the resulting step."""
         state, _, commands = self.children[id]
         child = self._open(context, id, event)
         share = int(INVOKED_MICROSTEP_SHARE * (MAX_MICROSTEPS - context.microsteps))
@@ -115,12 +115,12 @@ class Invocations:
             self._finish(context, id, step.snapshot.output)
 
     def _finish(self, context: ExecutionContext, id: str, output: Any) -> None:
-        """End one that has come to its end, and say so (SCXML 6.4.1: `done.invoke.id`)."""
+        """End a behaviour that has finished and raise `done.invoke.ID` with its output (SCXML 6.4.1)."""
         self.end(context, id)
         context.raise_event(Event(f"done.invoke.{id}", output, context.at))
 
     def _open(self, context: ExecutionContext, id: str, event: Event | None) -> ExecutionContext:
-        """The context of one of them; language, counters and generator are lent to it."""
+        """Return the context of one of them, with the language, counters and generator of the host."""
         state, before, _ = self.children[id]
         lent = before._replace(
             language=context.language, counters=context.counters, generator=context.generator, epoch=context.epoch,
@@ -129,14 +129,14 @@ class Invocations:
         return context.within(id, invoked_machine(context.machine, state, id), lent, event, Invocations(lent.invoked))
 
     def _follow(self, context: ExecutionContext, id: str, step: Step) -> None:
-        """Take over what a step asks for, and what was lent for it."""
+        """Merge a step's commands, and the language, counters and generator after it, into the host."""
         self.steps += ((id, step),)
         context.commands += tuple(outer_command(command, id) for command in step.commands)
         _take_back(context, step.snapshot)
 
 
 def invoked_machine(machine: CompiledMachine, state: str, id: str) -> CompiledMachine:
-    """The machine that a state, by its path, invokes under that id."""
+    """Return the machine that the state at that path invokes under that id."""
     return machine.invoked[machine.chart.definition.invoked_behavior(state, id)]
 
 

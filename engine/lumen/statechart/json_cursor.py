@@ -1,4 +1,4 @@
-"""JSON data from outside, piece by piece, each with its place: an error names the piece that is not as it should be."""
+"""JSON data from outside, read part by part: each error names the part that is malformed."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,7 +8,7 @@ from lumen.language.numbers import is_finite_number
 
 
 class JsonCursor:
-    """A piece of a snapshot; every reading raises SnapshotError where it is something else."""
+    """A part of a snapshot with its path; each reading method raises SnapshotError if the part has another type."""
 
     __slots__ = ("data", "place")
 
@@ -16,60 +16,68 @@ class JsonCursor:
         self.data, self.place = data, place
 
     def __getitem__(self, key: str) -> "JsonCursor":
-        """What stands under a key that has to be there."""
+        """Return the part at a key; raise SnapshotError if the key is missing."""
         self.items()
         if key not in self.data:
             raise self.refused(f"lacks `{key}`")
         return self.below(key)
 
     def optional(self, key: str) -> "list[tuple[str, JsonCursor]]":
-        """What stands under a key that older data do not have."""
+        """Return the parts of the map at a key; an empty list if the key is missing, as in older data."""
         return self[key].items() if any(key == known for known, _ in self.items()) else []
 
     def below(self, key: object) -> "JsonCursor":
+        """Return the part at a key or index that is known to exist."""
         return JsonCursor(self.data[key], f"{self.place}.{key}".lstrip("."))
 
     def items(self) -> "list[tuple[str, JsonCursor]]":
+        """Return the parts of a map whose keys are strings."""
         if not isinstance(self.data, Mapping) or not all(isinstance(key, str) for key in self.data):
             raise self.refused("should be a map with strings as keys")
         return [(key, self.below(key)) for key in self.data]
 
     def rows(self) -> "list[JsonCursor]":
+        """Return the parts of a list."""
         if not isinstance(self.data, list | tuple):
             raise self.refused("should be a list")
         return [self.below(index) for index in range(len(self.data))]
 
     def text(self) -> str:
+        """Return the part as a string."""
         if not isinstance(self.data, str):
             raise self.refused("should be a string")
         return self.data
 
     def texts(self) -> list[str]:
+        """Return the part as a list of strings."""
         return [row.text() for row in self.rows()]
 
     def number(self) -> float:
+        """Return the part as a finite number."""
         if not is_finite_number(self.data):
             raise self.refused("should be a number")
         return float(self.data)
 
     def count(self) -> int:
+        """Return the part as an integer that is 0 or more."""
         if isinstance(self.data, bool) or not isinstance(self.data, int) or self.data < 0:
             raise self.refused("should be a whole number of at least 0")
         return self.data
 
     def plain(self) -> Any:
+        """Return a copy of the part, which may be any JSON data."""
         try:
             return plain(self.data, self.place)
         except UsageError as error:
             raise SnapshotError(f"the snapshot is damaged: {error}") from None
 
     def refused(self, reason: str) -> SnapshotError:
-        """An error that says what is wrong with this piece."""
+        """Return an error with the path of this part and the reason."""
         return SnapshotError(f"the snapshot is damaged: {f'`{self.place}`' if self.place else 'it'} {reason}")
 
 
 def plain(value: Any, place: str) -> Any:
-    """A copy of JSON data, with lists for tuples; raises UsageError with the place of what is none."""
+    """Return a copy of JSON data with lists for tuples; raise UsageError with the path of a value that is not JSON."""
     try:
         return _plain(value, place)
     except RecursionError:

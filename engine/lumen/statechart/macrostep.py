@@ -6,22 +6,22 @@ from lumen.statechart.values import Step
 
 
 def enter_machine(context: ExecutionContext) -> Step:
-    """Enter the initial states, and all that follows from it (`interpret`)."""
+    """Enter the initial states and run the first macrostep (`interpret`)."""
     microstep(context, context.machine.planner.beginning())
     return complete(context)
 
 
 def exit_machine(context: ExecutionContext) -> Step:
-    """Leave every state, for the machine is over; nobody hears what that raises (`exitInterpreter`)."""
+    """Exit every state of a machine that ends; events raised by it are ignored (`exitInterpreter`)."""
     microstep(context, context.machine.planner.end(context.configuration))
     return context.step()
 
 
 def complete(context: ExecutionContext) -> Step:
-    """Go on until there is nothing more to do now.
+    """Run the macrostep to its end and return the step.
 
-    An event from outside comes to the invoked behaviours that run already and still do; then what was entered begins,
-    and in the end they hear what the machine sends to them.
+    Invoked behaviours that still run receive the event from outside first. Then the entered states start their
+    invocations and `do`, and at last the events that the machine sent are delivered.
     """
     while True:
         _macrostep(context)
@@ -49,7 +49,7 @@ def _macrostep(context: ExecutionContext) -> None:
 
 
 def _begin(context: ExecutionContext) -> None:
-    """Begin what every state entered and not left invokes and has to `do`, in document order."""
+    """Start the invocations and `do` of every state that was entered and not left, in document order."""
     beginnings, context.beginnings = sorted(context.beginnings, key=lambda beginning: beginning.node.index), ()
     for node, invokes, do, halted in beginnings:
         for invoke in invokes:

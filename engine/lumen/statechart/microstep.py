@@ -1,4 +1,4 @@
-"""One microstep: which transitions are enabled, and the states that they leave and enter (SCXML Appendix D)."""
+"""One microstep: selects enabled transitions, and exits and enters their states (SCXML Appendix D)."""
 
 from typing import Any
 
@@ -18,14 +18,14 @@ from lumen.statechart.schedule_timers import begin_schedules
 from lumen.statechart.values import Timer
 
 MAX_SHOWN_TRANSITIONS = 6
-"""Transitions of an endless round that its error names."""
+"""Transitions that the error about an endless loop names, at most."""
 
 MAX_MICROSTEPS = 1000
-"""How many microsteps, or internal events, a macrostep may take."""
+"""Microsteps and internal events that one macrostep may use, at most."""
 
 
 def take_enabled(context: ExecutionContext, candidates: Candidates) -> bool:
-    """One microstep with the transitions that are enabled among these candidates; False where none is."""
+    """Make one microstep with the enabled ones of these candidates; return False if no candidate is enabled."""
     enabled = select_transitions(context, candidates)
     if not enabled:
         return False
@@ -34,7 +34,7 @@ def take_enabled(context: ExecutionContext, candidates: Candidates) -> bool:
 
 
 def select_transitions(context: ExecutionContext, candidates: Candidates) -> tuple[CompiledTransition, ...]:
-    """The first candidate of each atomic state whose guard holds (`selectTransitions`), then the late ones."""
+    """Return the first candidate of each atomic state whose guard is true (`selectTransitions`), then late ones."""
     if len(candidates) == 1 and not candidates.later:
         for transition in candidates[0]:
             if transition.guard is None or _holds(context, transition, transition.guard):
@@ -58,13 +58,13 @@ def _first(context: ExecutionContext, group: Group, *, late: bool = False) -> Co
 
 
 def _is_heard_inside(context: ExecutionContext) -> bool:
-    """Whether an invoked behaviour listens to the event, too: it may understand what was said."""
+    """Return True if an invoked behaviour waits for the event too, because it may recognize the sentence."""
     event = context.unforwarded
     return event is not None and context.invocations.listens(context, event.name)
 
 
 def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
-    """Leave, act, enter (`microstep`); what that brings to its end ends. Raises LumenError where there is no rest."""
+    """Exit states, run actions, enter states (`microstep`); exit everything if that ends the machine."""
     count_microstep(context)
     before = context.configuration
     taken, transitions, exits, between, entries, exited, entered, context.history, target = plan
@@ -84,9 +84,9 @@ def microstep(context: ExecutionContext, plan: MicrostepPlan) -> None:
 
 
 def _end(context: ExecutionContext) -> None:
-    """The machine is over (`exitInterpreter`): what leaving every state does is done, and nothing is heard any more.
+    """End the machine (`exitInterpreter`): run all exit actions, and drop its timers and pending events.
 
-    It stays in its final configuration, so that one sees where it ended.
+    It stays in its final configuration, so that its end remains visible.
     """
     for change in context.machine.planner.end(context.configuration).exits:
         context.active = change.active
@@ -96,7 +96,7 @@ def _end(context: ExecutionContext) -> None:
 
 
 def count_microstep(context: ExecutionContext) -> None:
-    """Raises LumenError where there were too many."""
+    """Count one more; raise LumenError with the loop if there are more than MAX_MICROSTEPS."""
     context.microsteps += 1
     if context.microsteps > MAX_MICROSTEPS:
         states = ", ".join(f"`{name}`" for name in sorted({*context.entered[-20:], *context.configuration.names}))
@@ -107,7 +107,7 @@ def count_microstep(context: ExecutionContext) -> None:
 
 
 def _round(transitions: tuple[Transition, ...]) -> str:
-    """The last round of transitions, each shown with its event and its state."""
+    """Return the last loop of transitions as text, each with its event and state."""
     last = next((i for i in range(2, len(transitions) + 1) if transitions[-i] is transitions[-1]), 1)
     taken = transitions[len(transitions) - min(last, MAX_SHOWN_TRANSITIONS + 1) + 1 :]
     ways = [f"`{t.event or 'always'}` of {f'`{t.source}`' if t.source else 'the behaviour'}" for t in taken]
@@ -115,7 +115,7 @@ def _round(transitions: tuple[Transition, ...]) -> str:
 
 
 def _holds(context: ExecutionContext, transition: CompiledTransition, guard: CompiledGuard) -> bool:
-    """Whether a guard is true; one that fails is false, and error.execution (`conditionMatch`, SCXML 5.9.1)."""
+    """Return a guard's value; a failing guard is False and raises error.execution (`conditionMatch`, SCXML 5.9.1)."""
     if transition.source is not context.node:
         context.evaluate_in(transition.source)
     try:
@@ -126,7 +126,7 @@ def _holds(context: ExecutionContext, transition: CompiledTransition, guard: Com
 
 
 def _exit(context: ExecutionContext, node: StateNode) -> None:
-    """`exitStates`, of one state."""
+    """Exit one state (`exitStates`)."""
     if node.exit:
         _execute(context, node.exit, node)
     if context.beginnings:
@@ -141,14 +141,17 @@ def _exit(context: ExecutionContext, node: StateNode) -> None:
 
 
 def _restored(context: ExecutionContext, taken: tuple[CompiledTransition, ...]) -> frozenset[str]:
-    """The paths of the states that history leads back into."""
+    """Return the paths of the states that history states among the targets restore, ancestors included."""
     targets = (t for transition in taken for t in transition.targets if t.kind is StateKind.HISTORY)
     nodes = (context.machine.chart.nodes[path] for t in targets for path in context.history.get(t.path, ()))
     return frozenset(node.path for found in nodes for node in (found, *found.ancestors))
 
 
 def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ...], restored: frozenset[str]) -> None:
-    """`enterStates`, of one state; `done` are those whose end that is, the nearest first, `restored` by history."""
+    """Enter one state (`enterStates`).
+
+    `done` are the ancestors that it finishes, the nearest first; `restored` are the paths that history states restore.
+    """
     for event, delay in node.afters:
         due = nanoseconds(context.at) + delay
         context.timers = (*context.timers, Timer(event, due, delay, event, None, node.path, "after"))
@@ -171,19 +174,19 @@ def _enter(context: ExecutionContext, node: StateNode, done: tuple[StateNode, ..
 
 
 def _execute(context: ExecutionContext, block: CompiledBlock, node: StateNode) -> None:
-    """Do the actions of a block; the first that fails ends it (SCXML 4.9)."""
+    """Execute the actions of a block; the first failure ends it (SCXML 4.9)."""
     if node is not context.node:
         context.evaluate_in(node)
     where: NodePath = ()
     try:
-        for act, where in block:  # noqa: B007 - `where` is where it failed
+        for act, where in block:  # noqa: B007 - `where` is needed after a failure
             act(context)
     except (ExpressionError, ActionError) as error:
         context.raise_error(str(error), where)
 
 
 def _output(context: ExecutionContext, node: StateNode) -> Any:
-    """The data of a final state; none where it can't be had (SCXML 5.7.1)."""
+    """Return the output of a final state; None if it has none, or if it fails with error.execution (SCXML 5.7.1)."""
     if node.output is None:
         return None
     context.evaluate_in(node)

@@ -1,4 +1,4 @@
-"""Values within the maps of a context: given by copies, as others may hold the maps too."""
+"""Updates of values inside the maps of a context: by copies, because the maps may be shared."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -7,9 +7,9 @@ from lumen.errors import ExpressionError
 
 
 def with_value(found: Any, name: str, within: Sequence[str], value: Any) -> dict[str, Any]:
-    """A copy of the map `found`, which is called `name`, with the value where the keys `within` lead.
+    """Return a copy of the map `found`, called `name` in errors, with the value at the path of keys `within`.
 
-    The last of them may be new. Raises ExpressionError where anything before it is missing, or no map.
+    The last key may be new. Raises ExpressionError if anything before it is missing or not a map.
     """
     key, *rest = within
     if not isinstance(found, Mapping):

@@ -1,4 +1,4 @@
-"""Behaviours within behaviours as they are seen from outside: `quiz/ask` is the state `ask` of what runs as `quiz`."""
+"""State names across invoked behaviours: `quiz/ask` is the state `ask` of the behaviour invoked as `quiz`."""
 
 from collections.abc import Iterable, Iterator
 from itertools import compress
@@ -8,11 +8,11 @@ from lumen.language.machines import MachineDefinition
 from lumen.statechart.values import Snapshot, Step
 
 ID_SEPARATOR = "/"
-"""Stands between the id of an `invoke` and a state of the behaviour that runs under it."""
+"""Separates the id of an `invoke` from the name of a state in the invoked behaviour."""
 
 
 def active_names(snapshot: Snapshot) -> frozenset[str]:
-    """The names of all active states, those of invoked behaviours included."""
+    """Return the names of all active states, including those of invoked behaviours."""
     if not snapshot.invoked:
         return snapshot.configuration
     inner = (
@@ -22,7 +22,7 @@ def active_names(snapshot: Snapshot) -> frozenset[str]:
 
 
 def innermost_names(machine: MachineDefinition, snapshot: Snapshot) -> Iterator[str]:
-    """The names of the active states that have none active within, invoked behaviours' after those of their host."""
+    """Yield the names of active states without active children; invoked behaviours follow their host."""
     for state in machine.states.values():
         if state.name in snapshot.configuration and not any(
             machine.states[child].name in snapshot.configuration for child in state.children
@@ -34,7 +34,7 @@ def innermost_names(machine: MachineDefinition, snapshot: Snapshot) -> Iterator[
 
 
 def entered_names(step: Step) -> Iterator[str]:
-    """The names of all states that a step entered, those of invoked behaviours included."""
+    """Yield the names of all states that a step entered, including those of invoked behaviours."""
     yield from step.entered
     for id, inner in step.invoked:
         yield from (f"{id}{ID_SEPARATOR}{name}" for name in entered_names(inner))
@@ -43,9 +43,9 @@ def entered_names(step: Step) -> Iterator[str]:
 def flattened_steps(
     machine: MachineDefinition, step: Step, prefix: str = ""
 ) -> "Iterator[tuple[str, MachineDefinition, Step]]":
-    """A step and those of the behaviours invoked in it, each with its machine, and `quiz/` before its states' names.
+    """Yield a step and those of the behaviours invoked in it, each with the prefix of its state names and its machine.
 
-    What an invoked behaviour did is before its host's step where it led to it, else after.
+    The step of an invoked behaviour comes before its host's step if it caused that step by its end, else after it.
     """
     ends = {t.event.split(".", 2)[2] for t in step.transitions if t.event.startswith(("done.invoke.", "error.invoke."))}
     early = [id in ends and inner.event is not None for id, inner in step.invoked]
@@ -55,7 +55,7 @@ def flattened_steps(
 
 
 def behavior_of(machine: MachineDefinition, id: str, step: Step) -> str:
-    """The behaviour of which a step is, among those that the machine invokes under that id."""
+    """Return the behaviour that made a step, among those that the machine invokes under that id."""
     behaviors = [invoke.behavior for state in machine.states.values() for invoke in state.invoke if invoke.id == id]
     names = {*step.entered, *step.exited, *step.snapshot.configuration}
     known = {b: {state.name for state in machine.invoked[b].states.values()} for b in behaviors}
@@ -63,7 +63,7 @@ def behavior_of(machine: MachineDefinition, id: str, step: Step) -> str:
 
 
 def resolutions(machine: MachineDefinition, name: str) -> Iterator[tuple[MachineDefinition, str]]:
-    """The machines that a name may be about, and the name there: `quiz/ask` is `ask` of what is invoked as `quiz`."""
+    """Yield each machine in which a name may occur, and the name there: `quiz/ask` is `ask` of what runs as `quiz`."""
     invokes = {(invoke.id, invoke.behavior) for state in machine.states.values() for invoke in state.invoke}
     for id, behavior in sorted(invokes):
         if name.startswith(id + ID_SEPARATOR) and behavior in machine.invoked:

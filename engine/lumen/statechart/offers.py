@@ -1,4 +1,4 @@
-"""The events that a language model may raise now: those of transitions that are marked as an `offer`."""
+"""The events that a language model may raise now: those of transitions marked as an `offer`."""
 
 from typing import Any
 
@@ -10,9 +10,10 @@ from lumen.statechart.values import Snapshot
 
 
 def offers(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
-    """Each event that the active states would take now and that is offered, with the JSON Schema of its data.
+    """Return the events offered by transitions of active states, each with the JSON Schema of its data.
 
-    What a person has to approve is not offered. A guard that looks at the event is not asked: it is when that comes.
+    Transitions that need a person's approval are left out. Guards must be true now, but one that reads the event counts
+    as true, because it can't be evaluated before the event arrives.
     """
     standing = compiled(machine).planner.configuration(snapshot.configuration)
     found: dict[str, Any] = {}

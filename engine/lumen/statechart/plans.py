@@ -1,4 +1,4 @@
-"""What a microstep does, worked out once for each configuration and set of transitions, and kept."""
+"""The effect of a microstep, computed once for each configuration and set of transitions, then cached."""
 
 from collections.abc import Callable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
@@ -18,23 +18,23 @@ from lumen.statechart.state_changes import (
 from lumen.statechart.state_sets import StateSets, in_final
 
 MAX_CACHE_ENTRIES = 4096
-"""How many entries a cache holds before it is emptied: charts with many regions have no end of configurations."""
+"""Entries of a cache before it is emptied: charts with many regions have too many configurations to keep them all."""
 
 Group: TypeAlias = tuple[CompiledTransition, ...]
 
 
 class Candidates(tuple[Group, ...]):
-    """For each active atomic state the transitions that an event selects, the innermost first.
+    """The transitions that an event selects: a group for each active atomic state, the innermost first.
 
-    `later` are rows of `hears` of the same states, in two passes: those whose phrase is slots only, then `else`. A pass
-    is for states that have not reacted, if no state has taken a row so far; there are none without rows.
+    `later` are rows of `hears` of the same states, in two passes: rows whose phrase consists of slots only, then
+    `else`. A pass is for states that have not reacted, unless a state has reacted with a row. It is empty without rows.
     """
 
     later: tuple[tuple[Group, ...], ...] = ()
 
     @property
     def all(self) -> Iterator[CompiledTransition]:
-        """Every transition that may be taken."""
+        """Yield every transition that may be taken."""
         yield from (t for groups in (self, *self.later) for group in groups for t in group)
 
 
@@ -42,9 +42,9 @@ NO_CANDIDATES = Candidates()
 
 
 class MicrostepPlan(NamedTuple):
-    """A microstep: what is left, done and entered. States without anything to do are not among exits and entries.
+    """A microstep: the states to exit and enter, and the transitions to run. `exits` and `entries` omit idle states.
 
-    `between` is what is active while the actions of transitions run.
+    `between` are the names that are active while the actions of the transitions run.
     """
 
     taken: tuple[CompiledTransition, ...]
@@ -59,10 +59,10 @@ class MicrostepPlan(NamedTuple):
 
 
 class Configuration:
-    """A set of active states (SCXML 3.11), with the candidates of each event and the plans made from it so far.
+    """A set of active states (SCXML 3.11), with caches of its candidates by event and of the plans that start from it.
 
-    `names` are those that a Snapshot holds, `known` those that `In` says true to. A machine that is `finished` has come
-    to its end: it hears nothing any more.
+    `names` are those that a Snapshot holds, `known` those for which `In` is true. A configuration that is `finished`
+    ends the machine: it has no candidates.
     """
 
     def __init__(self, nodes: frozenset[StateNode]) -> None:
@@ -78,7 +78,7 @@ class Configuration:
         self.eventless = self._select(lambda transition: not transition.definition.event)
 
     def candidates(self, name: str) -> Candidates:
-        """The transitions that an event of that name selects."""
+        """Return the transitions that an event of that name selects."""
         found = self._by_event.get(name)
         if found is None:
             make_room(self._by_event)
@@ -86,7 +86,7 @@ class Configuration:
         return found
 
     def timed(self, event: str) -> Candidates:
-        """The `after` or `at` transitions of that timer."""
+        """Return the `after` or `at` transitions of that timer."""
         return self._select(lambda t: t.definition.timed and t.definition.event == event)
 
     def _select(self, wanted: Callable[[CompiledTransition], bool]) -> Candidates:
@@ -108,7 +108,7 @@ class Configuration:
 
 
 class MicrostepPlanner:
-    """Makes and keeps the configurations and plans of a chart."""
+    """Makes and caches the configurations and plans of a chart."""
 
     def __init__(self, chart: Chart) -> None:
         self.chart = chart
@@ -117,7 +117,7 @@ class MicrostepPlanner:
         self.nothing = Configuration(frozenset())
 
     def configuration(self, names: frozenset[str]) -> Configuration:
-        """The configuration of these names; raises KeyError with a name that the chart does not have."""
+        """Return the configuration of these names; raise KeyError with a name that the chart does not have."""
         found = self._by_names.get(names)
         if found is None:
             nodes = {self.chart.by_name[name] for name in names} | {self.chart.root}
@@ -126,21 +126,21 @@ class MicrostepPlanner:
         return found
 
     def beginning(self) -> MicrostepPlan:
-        """The microstep that enters a machine."""
+        """Return the microstep that enters a machine."""
         return self.forced_plan(self.nothing, set(), StateSets(self.chart, {}).beginning(), {})
 
     def end(self, start: Configuration) -> MicrostepPlan:
-        """The microstep that leaves every state (`exitInterpreter`)."""
+        """Return the microstep that exits every state (`exitInterpreter`)."""
         return self.forced_plan(start, start.nodes, set(), {})
 
     def forced_plan(
         self, start: Configuration, left: AbstractSet[StateNode], entered: AbstractSet[StateNode], history: History
     ) -> MicrostepPlan:
-        """The microstep that leaves and enters these states, though no transition says so."""
+        """Return a microstep that exits and enters these states without any transition."""
         return self._make(start, (), left, entered, history)
 
     def plan(self, start: Configuration, enabled: tuple[CompiledTransition, ...], history: History) -> MicrostepPlan:
-        """The microstep that these enabled transitions make from there."""
+        """Return the microstep of these enabled transitions in the configuration `start`."""
         key = (enabled, *history.items()) if self.chart.has_history else enabled
         found = start.plans.get(key)
         if found is None:
@@ -148,7 +148,7 @@ class MicrostepPlanner:
             sets = StateSets(self.chart, history)
             taken = sets.without_conflicts(enabled, start.nodes)
             left = sets.exit_set(taken, start.nodes)
-            kept = {**history, **recorded(start.nodes, left)}  # a history target finds what is left just now
+            kept = {**history, **recorded(start.nodes, left)}  # histories recall what this microstep exits
             entered = StateSets(self.chart, kept, start.nodes - left).entry_set(sets.domains(taken))
             found = start.plans[key] = self._make(start, taken, left, entered, kept)
         return found
@@ -175,13 +175,13 @@ class MicrostepPlanner:
         )
 
     def _shared(self, names: tuple[str, ...]) -> tuple[str, ...]:
-        """Equal names that are there already, or these: with a thousand states it counts what memory a step visits."""
+        """Return an equal stored tuple, else store this one: sharing saves memory in charts with many states."""
         make_room(self._names)
         return self._names.setdefault(names, names)
 
 
 def in_order(transitions: tuple[CompiledTransition, ...]) -> Sequence[CompiledTransition]:
-    """The transitions of a state in the order in which they are asked: rows of `hears` after `heard`, before `*`."""
+    """Return the transitions of a state in the order of evaluation: `hears` rows after `heard`, but before `*`."""
     if not any(t.rows for t in transitions):
         return transitions
     return sorted(transitions, key=lambda t: 2 if t.definition.event == "*" else t.rows is not None)

@@ -1,4 +1,4 @@
-"""Watches a run for what has to be so: a safety property at every step, a bounded response by its deadline."""
+"""Checks the properties of a run: a safety property at every step, a bounded response at its deadline."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ Holds = Callable[[Snapshot], bool]
 
 
 class Violation(NamedTuple):
-    """A property that did not hold, and how, in words."""
+    """A property that was violated, with an explanation."""
 
     property: Property
     how: str
@@ -25,16 +25,19 @@ class Violation(NamedTuple):
 
 @dataclass
 class PropertyMonitor:
-    """One property in one run; `since` [s] is when it began to wait for its `eventually`, None where it does not."""
+    """Checks one property in one run."""
 
     definition: Property
     machine: MachineDefinition
     since: float | None = None
+    """The time when it began to wait for `eventually` [s]; None while it does not wait."""
     begun: bool = False
+    """True after the first step."""
     held: bool = False
+    """True if the condition `whenever` was true after the last step."""
 
     def step(self, snapshot: Snapshot) -> Violation | None:
-        """What the end of a macrostep violates."""
+        """Return the violation at the end of a macrostep, if any."""
         property = self.definition
         if property.always:
             return None if holds(self.machine, property.always, snapshot) else _broken(property, snapshot.at)
@@ -50,11 +53,11 @@ class PropertyMonitor:
 
     @property
     def deadline(self) -> float:
-        """When `eventually` has to hold [s], for ever where nothing waits for it."""
+        """Return when `eventually` must be true [s]; infinite while the property does not wait for it."""
         return inf if self.since is None else self.since + self.definition.within
 
     def elapse(self, now: float) -> Violation | None:
-        """What is violated because it is later than that [s] and nothing has happened."""
+        """Return the violation of a deadline that has passed at `now` [s] without a step, if any."""
         if self.since is None or nanoseconds(now) <= nanoseconds(self.since) + nanoseconds(self.definition.within):
             return None
         since, self.since = self.since, None
@@ -62,12 +65,12 @@ class PropertyMonitor:
 
 
 def monitors(machine: MachineDefinition, properties: Iterable[Property]) -> list[PropertyMonitor]:
-    """One for each property, at the beginning of a run."""
+    """Return a monitor for each property, at the beginning of a run."""
     return [PropertyMonitor(property, machine) for property in properties]
 
 
 def holds(machine: MachineDefinition, condition: Expression, snapshot: Snapshot) -> bool:
-    """Whether a condition is true where a behaviour stands; what has no value does not hold."""
+    """Return the value of a condition in a snapshot; False if it can't be evaluated."""
     paths = _paths_by_alias(machine)
     names = snapshot.configuration | {paths[name] for name in snapshot.configuration if name in paths}
     scope = Scope(
@@ -89,7 +92,7 @@ def holds(machine: MachineDefinition, condition: Expression, snapshot: Snapshot)
 
 
 def late(property: Property, since: float) -> str:
-    """How a deadline was missed."""
+    """Return the text about a missed deadline; `since` [s] is when the wait began."""
     condition = property.eventually.shown if property.eventually else ""
     return f"`{condition}` did not become true within {property.within:g} s of {since:g} s"
 
@@ -100,7 +103,7 @@ def _broken(property: Property, at: float) -> Violation:
 
 
 def _paths_by_alias(machine: MachineDefinition) -> Mapping[str, str]:
-    """The path of each state that has an alias, found on first use and kept beside the definition."""
+    """Return the path of each state that has an alias; computed on first use and stored with the definition."""
     found: Mapping[str, str] | None = machine.__dict__.get("_paths_by_alias")
     if found is None:
         found = {state.alias: path for path, state in machine.states.items() if state.alias}

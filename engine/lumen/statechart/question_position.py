@@ -1,4 +1,4 @@
-"""Where an `ask` of a `do` stands, as the positions that every `do` has."""
+"""The position of an `ask`, in terms of the positions of any `do`."""
 
 from typing import NamedTuple
 
@@ -7,7 +7,7 @@ from lumen.statechart.values import Fork, Position, Within, awaited
 
 
 class QuestionPosition(NamedTuple):
-    """Where an `ask` stands: before its answer, its deadline, and the end of what it says; None where that is over."""
+    """The positions of an `ask`: its answer, deadline, filler and spoken sentences; None for those that have ended."""
 
     asked: Position | None
     deadline: Position | None
@@ -16,20 +16,21 @@ class QuestionPosition(NamedTuple):
 
     @property
     def answer(self) -> Fork:
-        """What of it is not speech."""
+        """Return the part of the position that is not speech."""
         return Fork((self.asked, self.deadline))
 
     def without(self, id: str) -> "QuestionPosition":
-        """Something has been said."""
+        """Return the position after the speech `id` has ended."""
         filler, *sentences = (None if id in awaited(one) else one for one in (self.filler, *self.sentences))
         return self._replace(filler=filler, sentences=tuple(sentences))
 
     def fork(self) -> Fork | None:
+        """Return it as a Fork; None if everything has ended."""
         return fork([self.asked, self.deadline, self.filler, *self.sentences])
 
 
 def asks(actions: tuple[CompiledAction, ...], position: Within, id: str) -> bool:
-    """Whether a block that stands there awaits the answer to a question under that id."""
+    """Return True if a block in that position awaits the answer to the question `id`."""
     return _awaits_answer(actions[position.place], position.inner, id)
 
 
@@ -47,5 +48,5 @@ def _awaits_answer(action: CompiledAction, position: Position | None, id: str) -
 
 
 def fork(branches: list[Position | None]) -> Fork | None:
-    """The position of several things at once, None where all are over."""
+    """Return the position of parallel branches; None if all have ended."""
     return Fork(tuple(branches)) if any(branch is not None for branch in branches) else None

@@ -1,7 +1,6 @@
-"""The timers of `at`: set when a state is entered and each time that they end, and set right with the clock.
+"""The timers of `at`: set on entry and each time that they end, and adjusted if the clock is set.
 
-Such a timer waits for a moment by the clock on the wall, not for a length of time; how long that is, is found out when
-it is set.
+Such a timer waits for a moment of the wall clock, so its delay is computed when it is set.
 """
 
 from lumen.expressions.wall_clock import moment, next_moment, readjusted
@@ -14,13 +13,13 @@ from lumen.statechart.values import Timer
 
 
 def begin_schedules(context: ExecutionContext, node: StateNode) -> None:
-    """Wait for what comes next of each `at` of a state."""
+    """Set a timer for the next moment of each `at` of a state."""
     timers = (schedule_timer(context, node, event) for event in node.schedules)
     context.timers = (*context.timers, *filter(None, timers))
 
 
 def schedule_timer(context: ExecutionContext, node: StateNode, event: str, ended: Timer | None = None) -> Timer | None:
-    """The timer of that `at` from now on, or from when it `ended`; None where its days are over."""
+    """Return the timer for the next moment of an `at`, from now or from when it `ended`; None if no day is left."""
     now = moment(context.epoch, context.at)
     after = max(now, moment(context.epoch, ended.due)) if ended else now
     found = next_moment(node.schedules[event], after, context.timezone)
@@ -28,7 +27,7 @@ def schedule_timer(context: ExecutionContext, node: StateNode, event: str, ended
 
 
 def set_clock(context: ExecutionContext, event: Event) -> None:
-    """The clock on the wall was set, or hangs elsewhere: invoked behaviours hear it, too, and no transition does."""
+    """Adjust all `at` timers, also of invoked behaviours, after the wall clock or its time zone was set."""
     was = event.data.get("was", {"epoch": context.epoch, "timezone": context.timezone})
     before, now = moment(was["epoch"], context.at), moment(event.data["epoch"], context.at)
     moved = was["timezone"] != event.data["timezone"]

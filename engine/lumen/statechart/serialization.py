@@ -1,4 +1,4 @@
-"""Snapshots as plain JSON data, for the disk; and their timers on another clock."""
+"""Converts snapshots to plain JSON data, and moves their timers to another clock."""
 
 from collections.abc import Callable
 from typing import Any, Literal
@@ -14,9 +14,9 @@ TimerPolicy = Literal["deadline", "remaining", "restart"]
 
 
 def serialize(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
-    """The snapshot as JSON data that names the machine it belongs to.
+    """Return the snapshot as JSON data that identifies its machine.
 
-    Raises SnapshotError where an event brought something into it that JSON can't hold.
+    Raises SnapshotError if it holds a value from an event that is not JSON.
     """
     try:
         return _data(machine, snapshot)
@@ -61,11 +61,11 @@ def _data(machine: MachineDefinition, snapshot: Snapshot) -> dict[str, Any]:
 
 
 def retimed(snapshot: Snapshot, now: float, timing: TimerPolicy) -> Snapshot:
-    """The snapshot gone on with at `now` [s], the time of its new clock.
+    """Return the snapshot, to be continued at `now` [s] on its new clock.
 
-    `deadline` leaves every timer its due time: what is past comes at once, at `now`. `remaining` leaves it the time
-    that it still had when the snapshot was taken, and `restart` begins its delay anew; in both the clock is another,
-    and the time of day goes on from the snapshot's. An `at` comes at its time of day.
+    `deadline` keeps the due time of every timer: overdue ones end at once, at `now`. `remaining` keeps the time that
+    each timer had left, and `restart` begins its delay anew; with both, time in the snapshot stops meanwhile, so its
+    `epoch` moves along and its time of day continues from there. An `at` keeps its time of day.
     """
     match timing:
         case "deadline":
@@ -82,7 +82,7 @@ def retimed(snapshot: Snapshot, now: float, timing: TimerPolicy) -> Snapshot:
 
 
 def paused(snapshot: Snapshot, away: float) -> Snapshot:
-    """The snapshot after nothing was done for that long [s]: what was under way has not come on meanwhile."""
+    """Return the snapshot after a pause of `away` [s], in which its commands made no progress."""
     return snapshot._replace(
         doing={path: moved(position, away) for path, position in snapshot.doing.items()},
         invoked={id: child._replace(snapshot=paused(child.snapshot, away)) for id, child in snapshot.invoked.items()},
@@ -104,7 +104,7 @@ def _shifted(snapshot: Snapshot, now: float, later: float, due: Callable[[Timer]
 
 
 def moved(position: Within, later: float) -> Within:
-    """A position in which all that is awaited began so much later [s]."""
+    """Return the position with the start of everything awaited moved by `later` [s]."""
     return position._replace(inner=_moved(position.inner, later))
 
 
@@ -119,7 +119,7 @@ def _moved(position: Position, later: float) -> Position:
 
 
 def _timer(timer: Timer) -> dict[str, Any]:
-    """A timer in [s], as everything in a snapshot."""
+    """Return a timer with times in [s], as everywhere in a snapshot."""
     id, _, _, event, data, state, kind, to = timer
     return {
         "id": id,

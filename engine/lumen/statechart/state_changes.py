@@ -1,4 +1,4 @@
-"""The states that a microstep leaves and enters, in their order, and which are active meanwhile."""
+"""The states that a microstep exits and enters, in order, and the names that are active meanwhile."""
 
 from collections.abc import Container, Mapping, Sequence
 from collections.abc import Set as AbstractSet
@@ -10,9 +10,9 @@ from lumen.statechart.state_sets import in_final
 
 
 class StateChange(NamedTuple):
-    """One state that is left or entered, and what counts as active (`In`) while its actions run.
+    """One state to exit or enter, with the names for which `In` is true while its actions run.
 
-    `done` are the states whose end its entry brings about, the nearest first.
+    `done` are the ancestors that its entry finishes, the nearest first.
     """
 
     node: StateNode
@@ -21,9 +21,9 @@ class StateChange(NamedTuple):
 
 
 class ActiveView:
-    """What is active, by name, in the middle of a microstep: `before` it, and what was left or entered so far.
+    """The active names during a microstep: those `before` it, corrected by the states exited or entered so far.
 
-    It needs no set of its own: a microstep through a thousand regions has a thousand views.
+    It stores no set of its own, because a microstep through a thousand regions needs a thousand views.
     """
 
     __slots__ = ("before", "entering", "order", "place")
@@ -39,7 +39,7 @@ class ActiveView:
 
 
 def exits(left: AbstractSet[StateNode], active: AbstractSet[StateNode]) -> tuple[StateChange, ...]:
-    """The states to leave in exit order, but for those without anything to do (`exitStates`)."""
+    """Return the states to exit, in exit order, without those that have nothing to execute (`exitStates`)."""
     way = exit_order(left)
     before, order = names_of(active), _order(way)
     return tuple(
@@ -48,7 +48,7 @@ def exits(left: AbstractSet[StateNode], active: AbstractSet[StateNode]) -> tuple
 
 
 def entries(entered: AbstractSet[StateNode], staying: AbstractSet[StateNode]) -> tuple[StateChange, ...]:
-    """The states to enter in entry order, but for those without anything to do (`enterStates`)."""
+    """Return the states to enter, in entry order, without those that have nothing to execute (`enterStates`)."""
     way = entry_order(entered)
     active, before, order = set(staying), names_of(staying), _order(way)
     changes = []
@@ -61,17 +61,17 @@ def entries(entered: AbstractSet[StateNode], staying: AbstractSet[StateNode]) ->
 
 
 def exit_order(nodes: AbstractSet[StateNode]) -> list[StateNode]:
-    """Children before their parents, the last in the document first (`exitOrder`)."""
+    """Return children before their parents, the last in the document first (`exitOrder`)."""
     return sorted(nodes, key=lambda node: -node.index)
 
 
 def entry_order(nodes: AbstractSet[StateNode]) -> list[StateNode]:
-    """Parents before their children, in document order (`entryOrder`)."""
+    """Return parents before their children, in document order (`entryOrder`)."""
     return sorted(nodes, key=lambda node: node.index)
 
 
 def names_of(nodes: AbstractSet[StateNode]) -> frozenset[str]:
-    """Everything that `In()` says true to: paths and aliases."""
+    """Return all names for which `In()` is true: paths and aliases."""
     return frozenset(name for node in nodes for name in (node.path, node.name) if name)
 
 
@@ -80,7 +80,7 @@ def _order(way: Sequence[StateNode]) -> dict[str, int]:
 
 
 def _done(node: StateNode, active: AbstractSet[StateNode]) -> tuple[StateNode, ...]:
-    """The states whose end it is that `node` was entered: a compound parent, and parallel states around, up and up."""
+    """Return the ancestors that the entry of `node` finishes: a compound parent, then the parallel states around it."""
     above = node.parent
     if node.kind is not StateKind.FINAL or above is None:
         return ()

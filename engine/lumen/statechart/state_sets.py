@@ -1,4 +1,4 @@
-"""Which states a transition leaves and enters: the sets of SCXML's Appendix D, by its names."""
+"""The states that transitions exit and enter: the sets of SCXML's Appendix D, by its names."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
@@ -9,24 +9,25 @@ from lumen.statechart.history import History
 
 
 class EntrySet(set[StateNode]):
-    """States to be entered; `reached` are these and all their ancestors."""
+    """States to enter; `reached` has them and all their ancestors."""
 
     def __init__(self) -> None:
         super().__init__()
         self.reached: set[StateNode] = set()
 
     def enter(self, node: StateNode) -> None:
+        """Add a state, and mark its ancestors as reached."""
         self.add(node)
         self.reached.update((node, *node.ancestors))
 
 
 class StateSets:
-    """The sets of one chart under one history; `staying` are the active states that are not left.
+    """The sets of one chart with one history; `staying` are the active states that are not exited.
 
-    Three things are not in Appendix D's letter, but in the definitions of 3.13, and keep configurations legal: what is
-    active and stays is not entered, though a history in it is the target; where one target holds another, the inner
-    one says how the outer one is entered; and a transition enters within the domain that it left, whatever a history
-    among its targets has come to remember meanwhile.
+    Three rules go beyond the pseudocode of Appendix D, but follow from the definitions of 3.13 and keep configurations
+    legal. Active states that stay are not entered, though a history inside them is the target. If one target contains
+    another, the inner one determines how the outer one is entered. A transition enters states inside the domain that it
+    exited, though a history among its targets may remember other states by now.
     """
 
     def __init__(self, chart: Chart, history: History, staying: AbstractSet[StateNode] = frozenset()) -> None:
@@ -35,7 +36,7 @@ class StateSets:
         self.staying = staying
 
     def exit_set(self, transitions: Iterable[CompiledTransition], active: AbstractSet[StateNode]) -> set[StateNode]:
-        """The active states that these transitions leave (`computeExitSet`)."""
+        """Return the active states that these transitions exit (`computeExitSet`)."""
         left: set[StateNode] = set()
         for transition in transitions:
             if transition.targets:
@@ -46,7 +47,7 @@ class StateSets:
     def without_conflicts(
         self, enabled: Sequence[CompiledTransition], active: AbstractSet[StateNode]
     ) -> tuple[CompiledTransition, ...]:
-        """The transitions that can be taken together (`removeConflictingTransitions`)."""
+        """Return the transitions that can be taken together (`removeConflictingTransitions`)."""
         kept: dict[CompiledTransition, set[StateNode]] = {}
         taken: set[StateNode] = set()
         for transition in enabled:
@@ -60,11 +61,11 @@ class StateSets:
         return tuple(kept)
 
     def domains(self, transitions: Iterable[CompiledTransition]) -> dict[CompiledTransition, StateNode]:
-        """The domain of each of these transitions that has a target."""
+        """Return the domain of each of these transitions that has a target."""
         return {transition: self.domain(transition) for transition in transitions if transition.targets}
 
     def entry_set(self, domains: Mapping[CompiledTransition, StateNode]) -> set[StateNode]:
-        """The states that these transitions enter, each within its domain (`computeEntrySet`)."""
+        """Return the states that these transitions enter, each inside its domain (`computeEntrySet`)."""
         entered = EntrySet()
         for transition, domain in domains.items():
             for target in _innermost(transition.targets):
@@ -74,13 +75,13 @@ class StateSets:
         return entered
 
     def beginning(self) -> set[StateNode]:
-        """The states that a machine begins in."""
+        """Return the states that a machine enters at its start."""
         entered = EntrySet()
         self.add_descendants(self.chart.root, entered)
         return entered
 
     def domain(self, transition: CompiledTransition) -> StateNode:
-        """The state within which everything is left and entered (`getTransitionDomain`)."""
+        """Return the state inside which a transition exits and enters states (`getTransitionDomain`)."""
         source, targets = transition.source, self.effective(transition.targets)
         inside = source.kind is StateKind.COMPOUND and all(target.lies_below(source) for target in targets)
         if inside and not transition.definition.reenter:
@@ -88,20 +89,20 @@ class StateSets:
         return _lcca([source, *targets])
 
     def effective(self, targets: Sequence[StateNode]) -> list[StateNode]:
-        """The targets, histories replaced by what they stand for (`getEffectiveTargetStates`)."""
+        """Return the targets, with histories replaced by the states they recall (`getEffectiveTargetStates`)."""
         found: list[StateNode] = []
         for target in targets:
             found += self.effective(self.recalled(target)) if target.kind is StateKind.HISTORY else [target]
         return list(dict.fromkeys(found))
 
     def recalled(self, history: StateNode) -> Sequence[StateNode]:
-        """What a history state remembers, else its default."""
+        """Return the states that a history state remembers, else its default."""
         if history.path in self.history:
             return [self.chart.nodes[path] for path in self.history[history.path]]
         return history.initial
 
     def add_descendants(self, node: StateNode, entered: EntrySet) -> None:
-        """`addDescendantStatesToEnter`."""
+        """Add a state and the descendants that are entered with it (`addDescendantStatesToEnter`)."""
         if node.kind is StateKind.HISTORY:
             assert node.parent is not None  # only the document has none
             self._add_all(self.recalled(node), node.parent, entered)
@@ -113,7 +114,7 @@ class StateSets:
             self._add_regions(node, entered)
 
     def add_ancestors(self, node: StateNode, top: StateNode, entered: EntrySet) -> None:
-        """`addAncestorStatesToEnter`."""
+        """Add the inactive ancestors of a state below `top`, and their other regions (`addAncestorStatesToEnter`)."""
         for ancestor in node.below(top):
             if ancestor in self.staying:
                 return
@@ -122,11 +123,11 @@ class StateSets:
                 self._add_regions(ancestor, entered)
 
     def reach(self, targets: Sequence[StateNode], entered: EntrySet) -> None:
-        """Enter these states, from the outermost that is not active."""
+        """Add these states and their ancestors, from the outermost that is inactive."""
         self._add_all(targets, self.chart.document, entered)
 
     def fill(self, node: StateNode, entered: EntrySet) -> None:
-        """Enter what a state that is active still needs within it."""
+        """Add the missing descendants of a state that is active already."""
         if node.kind is StateKind.PARALLEL:
             self._add_regions(node, entered)
         else:
@@ -145,7 +146,7 @@ class StateSets:
 
 
 def in_final(node: StateNode, active: AbstractSet[StateNode]) -> bool:
-    """Whether a state has come to its end (`isInFinalState`)."""
+    """Return True if a state has finished (`isInFinalState`)."""
     if node.kind is StateKind.COMPOUND:
         return any(child.kind is StateKind.FINAL and child.parent is node for child in active)
     if node.kind is StateKind.PARALLEL:
@@ -159,7 +160,7 @@ def _innermost(nodes: Sequence[StateNode]) -> list[StateNode]:
 
 
 def _lcca(nodes: Sequence[StateNode]) -> StateNode:
-    """The least common ancestor that is compound, or the document; never a parallel state (`findLCCA`)."""
+    """Return the least common ancestor that is compound, or the document; never a parallel state (`findLCCA`)."""
     head, *tail = nodes
     compound = (a for a in head.ancestors if a.kind is StateKind.COMPOUND)
     return next(a for a in compound if all(node.lies_below(a) for node in tail))

@@ -1,4 +1,4 @@
-"""Actions in the text of a step: what they compute, and what is kept of it until the step is made."""
+"""Writes actions into the text of a generated step, and tracks what later parts of the text need of them."""
 
 from collections.abc import Callable, Container
 from copy import copy
@@ -40,36 +40,43 @@ Op: TypeAlias = Callable[["Certain"], None]
 
 @dataclass(slots=True, eq=False)
 class Certain:
-    """What is certain of the step where the writing has come to; `agenda` is what the algorithm does next.
-
-    `event` is the variable of the event that is handled, `queue` those of internal events, with their names, and
-    `raised` of all of them. `started`, `awaited` and `timed` count the ids given out; `commanded` where there may be
-    commands. It is `settled` while no eventless transition can be enabled.
-    """
+    """The facts that are certain at the current point of the text; they differ between its branches."""
 
     configuration: Configuration
+    """The active states."""
     agenda: tuple[Op, ...]
+    """The operations that the algorithm executes next."""
     event: str = "event"
+    """The variable that holds the event being processed."""
     queue: tuple[tuple[str, str], ...] = ()
+    """The internal queue: the variable and the name of each event."""
     beginnings: tuple[StateNode, ...] = ()
+    """The states that were entered and whose `do` has not begun."""
     exited: tuple[str, ...] = ()
     entered: tuple[str, ...] = ()
     transitions: tuple[Transition, ...] = ()
     raised: tuple[str, ...] = ()
+    """The variables of all internal events raised so far."""
     started: int = 0
+    """The number of ids given to commands that are not awaited (`c…`)."""
     awaited: int = 0
+    """The number of ids given to awaited commands (`d…`)."""
     timed: int = 0
+    """The number of ids given to timers."""
     commanded: bool = False
+    """True if there may be commands."""
     settled: bool = False
+    """True while no eventless transition can be enabled."""
     ended: bool = False
+    """True once this branch of the text returns."""
 
     def first(self, *ops: Op) -> None:
-        """Let the algorithm do these before the rest of its agenda."""
+        """Put operations before the rest of the agenda."""
         self.agenda = (*ops, *self.agenda)
 
 
 class ActionText(StepText):
-    """A step being written, with the actions that it does and the Step that it gives."""
+    """A step being written, with the actions that it executes and the Step that it returns."""
 
     def __init__(self, chart: Chart, start: Configuration) -> None:
         super().__init__(chart.definition)
@@ -80,18 +87,18 @@ class ActionText(StepText):
         raise NotImplementedError
 
     def either(self, condition: str, known: Certain, *ops: Op) -> None:
-        """Write all that follows where a condition holds; what is written next is for where it does not."""
+        """Write everything that follows if a condition is true; later text is for the case that it is false."""
         with self.branch(condition):
             other = copy(known)
             other.first(*ops)
             self.run(other)
 
     def block(self, actions: tuple[PlacedAction, ...], node: StateNode, active: Container[str], known: Certain) -> None:
-        """Actions that take no time, one after another (`_execute`)."""
+        """Put actions that end at once on the agenda (`_execute`)."""
         known.first(*(partial(self.act, placed.action, node, active) for placed in actions))
 
     def act(self, action: Action, node: StateNode, active: Container[str], known: Certain) -> None:
-        """One of them (`compile_action`)."""
+        """Write one action (`compile_action`); raise NotPlainError if it is not supported."""
         sight = Sight(known.event, node, active)
         match action:
             case Assign(values):
@@ -121,7 +128,7 @@ class ActionText(StepText):
                 self.emit(f"Start(f'c{{counters[0] + {known.started}}}', {command})", known)
 
     def assign(self, way: str, value: ComputedValue, sight: Sight) -> None:
-        """A context key becomes another value, if that is known to be of its type (`compile_assignment`)."""
+        """Write the assignment of a context key; the step gives up on an unexpected type (`compile_assignment`)."""
         self.line(f"value = {self.value(value, sight)}")
         key, *within = way.split(".")
         if within:
@@ -133,7 +140,7 @@ class ActionText(StepText):
         self.scope = None
 
     def command(self, action: Action, sight: Sight) -> str:
-        """The command that a robot verb stands for (`compile_command`)."""
+        """Return the text for the command of a robot verb (`compile_command`)."""
         match action:
             case SayText(texts, gestures):
                 spoken = [template.text for templates in texts.values() for template in templates]
@@ -152,7 +159,9 @@ class ActionText(StepText):
         return self.constant(action)
 
     def begin(self, action: Action, node: StateNode, known: Certain) -> str:
-        """Begin an action of a `do` (`Advance.begin`): its position, `None` where it takes no time."""
+        """Write the start of an action of a `do` (`Advance.begin`); return its position as text, `None` if it ends at
+        once.
+        """
         sight = Sight(known.event, node, known.configuration.known)
         match action:
             case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText():
@@ -172,7 +181,7 @@ class ActionText(StepText):
         return self.awaits(self.command(action, sight), known)
 
     def awaits(self, command: str, known: Certain) -> str:
-        """Start a command that is awaited; the position before its end."""
+        """Write the start of an awaited command; return the text of the position that awaits it."""
         known.awaited += 1
         variable = f"d{known.awaited}"
         self.line(f"{variable} = f'd{{counters[1] + {known.awaited}}}'")
@@ -180,36 +189,38 @@ class ActionText(StepText):
         return f"new(Awaiting, ({variable}, at))"
 
     def wait(self, seconds: float, node: StateNode, known: Certain) -> str:
-        """Set the timer of a `wait`; the position before its end."""
+        """Write the timer of a `wait` of `seconds` [s]; return the text of the position that awaits it."""
         id = self.timer_id("w", known)
         self.timer(id, nanoseconds(seconds), f"'wait.' + {id}", "None", self.constant(node.path), "wait")
         return f"new(Awaiting, ({id}, at))"
 
     def timer_id(self, letter: str, known: Certain) -> str:
+        """Write the id of a new timer; return its variable."""
         known.timed += 1
         variable = f"t{known.timed}"
         self.line(f"{variable} = f'{letter}{{counters[2] + {known.timed}}}'")
         return variable
 
     def timer(self, id: str, delay: int, event: str, data: str, path: str, kind: str) -> None:
-        """Set a timer, `delay` [ns] from now."""
+        """Write a new timer that ends `delay` [ns] from now; the other arguments are texts."""
         length = self.constant(delay)
         timer = f"({id}, nanoseconds(at) + {length}, {length}, {event}, {data}, {path}, {kind!r}, '')"
         self.line(f"timers += (new(Timer, {timer}),)")
 
     def emit(self, command: str, known: Certain) -> None:
+        """Write a command that is appended to those of the step."""
         self.line(f"commands += ({command},)")
         known.commanded = True
 
     def raises(self, name: str, data: str, known: Certain) -> None:
-        """An internal event of that name, with what computes its data."""
+        """Write an internal event of that name; `data` is the text of its data."""
         variable = f"r{len(known.raised)}"
         self.line(f"{variable} = new(Event, ({self.constant(name)}, {data}, at, '', None))")
         known.raised += (variable,)
         known.queue += ((variable, name),)
 
     def result(self, known: Certain) -> None:
-        """The Step that it comes to."""
+        """Write the return of the Step, from everything that is certain."""
         given = (known.started, known.awaited, known.timed)
         counted = ", ".join(f"counters[{number}] + {count}" for number, count in enumerate(given))
         counters = f"new(Counters, ({counted}))" if any(given) else "counters"

@@ -1,4 +1,4 @@
-"""The text of a step as a function: what the text may name, and what it has in common with the whole algorithm."""
+"""Compiles the text of a step to a function: the names that it may use, and helpers shared with the full algorithm."""
 
 from collections.abc import Callable, Mapping
 from functools import cache, lru_cache
@@ -30,7 +30,7 @@ from lumen.statechart.values import (
 
 Positions: TypeAlias = Mapping[str, Within]
 WrittenStep: TypeAlias = Callable[[Snapshot, Event], Step | None]
-"""What takes a step; None where it does not."""
+"""A function that makes a step; it returns None if it does not cover the case."""
 
 
 def leave(
@@ -41,7 +41,7 @@ def leave(
     doing: Positions,
     halted: Mapping[str, Halted],
 ) -> tuple[tuple[Timer, ...], tuple[Command, ...], Positions, Mapping[str, Halted]]:
-    """End the `do` of a state that is left; where the state says how it is resumed, where it stood is noted."""
+    """End the `do` of a state that is left; if the state has a `resume`, store the position."""
     position = doing[node.path]
     if resumption_of(node):
         halted = {**halted, node.path: Halted(position, at)}
@@ -50,7 +50,7 @@ def leave(
 
 
 def settled(position: Position | None, branch: int) -> Any:
-    """The position of a `parallel` of which that branch is over."""
+    """Return the position of a `parallel` after that branch has ended."""
     if isinstance(position, Within):
         return position._replace(inner=settled(position.inner, branch))
     assert isinstance(position, Fork)  # what else has branches
@@ -58,7 +58,7 @@ def settled(position: Position | None, branch: int) -> Any:
 
 
 def without_deadline(timers: tuple[Timer, ...], position: Position | None) -> tuple[Timer, ...]:
-    """The timers but for that of the `ask` that is awaited; raises LookupError where there is none."""
+    """Return the timers without the deadline of the awaited `ask`; raise LookupError if there is no such timer."""
     while isinstance(position, Within):
         position = position.inner
     assert isinstance(position, Fork)  # as every question has
@@ -69,7 +69,7 @@ def without_deadline(timers: tuple[Timer, ...], position: Position | None) -> tu
 
 
 def without_ended(timers: tuple[Timer, ...], event: Event) -> tuple[Timer, ...]:
-    """The timers but for the `after` that an event is the end of; raises LookupError where there is not just one."""
+    """Return the timers without the `after` that ended with an event; raise LookupError unless exactly one matches."""
     (number,) = [i for i, timer in enumerate(timers) if timer[0] == event[3]] or [-1]
     if number < 0 or timers[number][6] != "after" or timers[number][3] != event[0]:
         raise LookupError(event[0])
@@ -77,13 +77,13 @@ def without_ended(timers: tuple[Timer, ...], event: Event) -> tuple[Timer, ...]:
 
 
 def without(mapping: Mapping[str, Any], key: str) -> Mapping[str, Any]:
-    """The mapping but for that key."""
+    """Return the mapping without that key."""
     return {other: value for other, value in mapping.items() if other != key}
 
 
 @cache
 def _names() -> dict[str, Any]:
-    """Return what the text of a step may name, and nothing else."""
+    """Return the names that the text of a step may use; it has no others."""
     return code_names() | {
         "Awaiting": Awaiting, "Counters": Counters, "Event": Event, "Fork": Fork, "GoTo": GoTo, "Log": Log,
         "Publish": Publish, "Say": Say, "Scope": Scope, "Snapshot": Snapshot, "Start": Start, "Step": Step,
@@ -97,7 +97,7 @@ def _names() -> dict[str, Any]:
 
 @lru_cache(maxsize=1024)
 def function_of(text: str) -> Callable[[tuple[Any, ...], Snapshot, Event], Step | None]:
-    """The function `play` that the text defines; equal texts give the same one."""
+    """Return the function `play` that the text defines; equal texts share one function."""
     names = dict(_names())
     exec(compile(text, "<step>", "exec", dont_inherit=True), names)
     play: Callable[[tuple[Any, ...], Snapshot, Event], Step | None] = names["play"]

@@ -1,4 +1,4 @@
-"""The text of a step being written: its lines, the constants that they name, and expressions within them."""
+"""The text of a generated step: its lines, the constants that they name, and the expressions in them."""
 
 from collections.abc import Container, Iterator, Mapping
 from contextlib import contextmanager
@@ -15,9 +15,9 @@ from lumen.statechart.step_code import WrittenStep, function_of
 from lumen.statechart.values import Snapshot
 
 MAX_LINES = 200
-"""Of one function; what would be longer is not written."""
+"""Lines of one function, at most; longer ones are not generated."""
 MAX_DEPTH = 40
-"""Levels of one function: Python reads no more than a hundred."""
+"""Nesting depth of one function, at most: Python's parser allows a hundred levels."""
 
 VARIABLES = {name: name for name in Snapshot._fields} | {"configuration": "names", "at": "before"}
 """The variable of a written step that holds each field of the snapshot before it."""
@@ -34,11 +34,11 @@ _INDENT = "    "
 
 
 class NotPlainError(Exception):
-    """There is something that is not written."""
+    """Raised if something can't be written into the text of a step."""
 
 
 class Sight(NamedTuple):
-    """What an expression sees besides the context: the event, by its variable, its state, and what is active."""
+    """The values that an expression reads besides the context: the event's variable, its state, the active names."""
 
     event: str | None
     node: StateNode | None = None
@@ -46,10 +46,11 @@ class Sight(NamedTuple):
 
 
 class StepText:
-    """One function being written; `scope` is what the variable of that name shows now, None where there is none.
+    """One function that is being written.
 
-    It is for events of that `sendid`, by how it is written; most have none. `chosen` are the variables that hold which
-    row of `hears` of a state is taken.
+    `scope` describes the content of the variable of that name, None before there is one. `chosen` are the variables
+    that hold the chosen row of `hears` of a state. `sendid` is the text of the id that the event must have; most have
+    none.
     """
 
     def __init__(self, machine: MachineDefinition) -> None:
@@ -62,7 +63,7 @@ class StepText:
         self.sendid = "''"
 
     def text(self) -> str:
-        """What was written."""
+        """Return the text written so far, as a complete function."""
         names = "".join(f"c{number}, " for number in range(len(self.constants)))
         body = "\n".join(self.lines)
         head = (
@@ -73,22 +74,22 @@ class StepText:
         return f"{head}    try:\n{body}\n    except Exception:\n        return None\n"
 
     def function(self) -> WrittenStep:
-        """It as a function."""
+        """Return the text as a function."""
         return partial(function_of(self.text()), tuple(self.constants))
 
     def line(self, text: str) -> None:
-        """Raises NotPlainError where it becomes too long."""
+        """Append a line; raise NotPlainError if the function becomes too long."""
         if len(self.lines) >= MAX_LINES:
             raise NotPlainError
         self.lines.append(_INDENT * self.depth + text)
 
     def end(self) -> None:
-        """Leave it to the whole algorithm from here on."""
+        """Leave the rest to the full algorithm."""
         self.lines.append(_INDENT * self.depth + "return None")
 
     @contextmanager
     def branch(self, condition: str) -> Iterator[None]:
-        """Lines for where the condition holds; raises NotPlainError where they stand too deep."""
+        """Write the lines of the `with` block under a condition; raise NotPlainError if they are nested too deep."""
         if self.depth > MAX_DEPTH:
             raise NotPlainError
         self.line(f"if {condition}:")
@@ -98,7 +99,7 @@ class StepText:
         self.depth, self.scope, self.chosen = self.depth - 1, scope, chosen
 
     def constant(self, value: Any) -> str:
-        """What stands for a value that the text does not spell out."""
+        """Return the name of a constant that holds the value."""
         for number, known in enumerate(self.constants):
             if known is value:
                 return f"c{number}"
@@ -106,23 +107,23 @@ class StepText:
         return f"c{len(self.constants) - 1}"
 
     def several(self, values: tuple[object, ...]) -> str:
-        """What stands for a tuple."""
+        """Return the text for a tuple."""
         return self.constant(values) if values else "()"
 
     def expression(self, source: str, sight: Sight, *, guard: bool = False) -> str:
-        """An expression, between brackets; before it the line that makes the `scope` it needs."""
+        """Return the text of an expression in brackets, after a line that makes the `scope` that it needs."""
         found = inlined(source, sight.event or "", guard)
         self.see(found.needs, sight)
         return f"({found.text})"
 
     def filled(self, template: str, sight: Sight) -> str:
-        """A template filled in."""
+        """Return the text that fills in a template."""
         needed = template_needs(template)
         self.see(needed, sight)
         return f"{self.constant(compile_template(template))}({'scope' if needed else 'None'})"
 
     def value(self, value: ComputedValue, sight: Sight) -> str:
-        """A value that is computed, as `compile_value` does it."""
+        """Return the text that computes a value as `compile_value` does."""
         match value:
             case Expression(source):
                 return self.expression(source, sight)
@@ -137,7 +138,7 @@ class StepText:
         return self.constant(value)
 
     def see(self, needed: frozenset[str], sight: Sight) -> None:
-        """Let `scope` show what is needed."""
+        """Write a line that makes a `scope` with the needed parts, unless the current one has them already."""
         if not needed:
             return
         wanted = Sight(
@@ -161,6 +162,6 @@ class StepText:
 
 @lru_cache(maxsize=8192)
 def template_needs(text: str) -> frozenset[str]:
-    """What a template needs a Scope for."""
+    """Return the parts of a Scope that a template reads."""
     holes = [part for part in split_template(text) if not isinstance(part, str)]
     return frozenset[str]().union(*(scope_needs(hole.source) for hole in holes))

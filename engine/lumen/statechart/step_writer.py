@@ -1,11 +1,12 @@
-"""Writes a macrostep as Python: what the algorithm finds out anew in each step is found out once, and the rest is left.
+"""Generates a macrostep as Python code: decisions that are the same in every such step are made only once.
 
-From an event in a configuration on, the algorithm is walked with what is `Certain`: which states are active, which
-events are raised, which `do` begin. What only a step knows (the context, ids, times) is left to be computed; where that
-decides, as at a guard, both ways are written. What this can't write ends in `return None`: there the whole algorithm
-takes the step, from its beginning. So it does where anything raises.
+From an event in a configuration on, the writer follows the algorithm with everything that is `Certain`: the active
+states, the raised events, the `do` that begin. Values that only a step has (the context, ids, times) are computed by
+the text. If such a value decides something, as in a guard, both branches are written. Unsupported parts end in `return
+None`, and so does any exception: the full algorithm then computes the step from its beginning.
 
-The text names the user's states and commands by constants (`c0`, `c1`, …): what differs in them only has one text.
+The text names the user's states and commands by constants (`c0`, `c1`, …), so that steps that differ only in them share
+one text.
 """
 
 from collections.abc import Callable, Mapping
@@ -25,11 +26,11 @@ from lumen.statechart.values import Fork, Position, Within
 
 Enabled: TypeAlias = tuple[CompiledTransition, ...]
 DoPlace: TypeAlias = tuple[str, tuple[PlacedAction, ...], int]
-"""Where a `do` stands in one of its blocks: the block's name, its actions, and which of them."""
+"""The position of a `do` in one of its blocks: the block's name, its actions, and the index of the action."""
 
 
 class StepWriter(ActionText):
-    """Writes one function; what is enabled at first is written apart by `apart`, where that is given."""
+    """Writes one function; if `apart` is given, it provides the function for each set of transitions enabled first."""
 
     def __init__(
         self, planner: MicrostepPlanner, start: Configuration, apart: Callable[[Enabled], WrittenStep] | None = None
@@ -38,21 +39,21 @@ class StepWriter(ActionText):
         self.planner, self.apart, self.plain = planner, apart, False
 
     def heard(self, candidates: Candidates) -> WrittenStep | None:
-        """What an event does that has these candidates; None where nothing of it is plain."""
+        """Return the function for an event with these candidates; None if no branch of it can be written."""
         return self.written(self.select(candidates))
 
     def taken(self, enabled: Enabled) -> WrittenStep | None:
-        """What these transitions do."""
+        """Return the function that takes these transitions."""
         return self.written(partial(self.take, enabled))
 
     def elapsed(self, event: str) -> WrittenStep | None:
-        """What the end of the timer of an `after` does."""
+        """Return the function for the end of the timer of an `after`."""
         self.sendid = "event[0]"
         self.line("timers = without_ended(timers, event)")
         return self.heard(self.start.timed(event))
 
     def resumed(self, node: StateNode, position: Within, branch: int | None) -> WrittenStep | None:
-        """What is done after the command that the `do` of a state awaits there; in a `parallel`, in that branch."""
+        """Return the function for the end of a command of a `do`; `branch` is its index in a `parallel` or `ask`."""
         place, awaiting = _after(_state(node).do, position)
         if not isinstance(awaiting, Fork):
             return self.written(partial(self.do, node, place))
@@ -68,20 +69,22 @@ class StepWriter(ActionText):
         return self.written(partial(self.settle, node, branch))
 
     def unanswered(self, node: StateNode, otherwise: tuple[DoPlace, ...], known: Certain) -> None:
-        """A question has got no answer: its time is not awaited any more, and what is to be done then begins."""
+        """Write that a question stays unanswered: its deadline is removed and its `otherwise` block begins."""
         self.line(f"timers = without_deadline(timers, doing[{self.constant(node.path)}])")
         known.first(partial(self.do, node, otherwise))
 
     def settle(self, node: StateNode, branch: int, known: Certain) -> None:
+        """Write that one branch of a `parallel` has ended."""
         path = self.constant(node.path)
         self.line(f"doing = placed(doing, {path}, settled(doing[{path}], {branch}))")
 
     def written(self, op: Op) -> WrittenStep | None:
+        """Write the operation and all that follows; return the function, None if no branch completes the step."""
         self.run(Certain(self.start, (op,)))
         return self.function() if self.plain else None
 
     def run(self, known: Certain) -> None:
-        """Write it to the end: every way through it returns."""
+        """Write the text to its end: every branch returns."""
         try:
             while not known.ended:
                 self.go_on(known)
@@ -89,7 +92,7 @@ class StepWriter(ActionText):
             self.end()
 
     def go_on(self, known: Certain) -> None:
-        """What is next: the agenda, internal events, then what begins (`complete`)."""
+        """Write the next operation: the agenda first, then internal events, then new `do` blocks (`complete`)."""
         if known.agenda:
             op, *rest = known.agenda
             known.agenda = tuple(rest)
@@ -123,10 +126,10 @@ class StepWriter(ActionText):
         facts: Mapping[str, bool],
         known: Certain,
     ) -> None:
-        """The first candidate of each atomic state whose guard holds (`selectTransitions`).
+        """Write the choice of the first candidate of each atomic state whose guard is true (`selectTransitions`).
 
-        `groups` are those of the `candidates` that are left. `facts` are the guards that were asked before, for
-        another candidate, and have no other answer here.
+        `groups` are the remaining ones of the `candidates`. `facts` are the values of guards that were evaluated before
+        for another candidate, and that have the same value here.
         """
         if not groups:
             self.decide_late(candidates.later, 0, enabled, known)
@@ -156,7 +159,7 @@ class StepWriter(ActionText):
         enabled: tuple[CompiledTransition | None, ...],
         known: Certain,
     ) -> None:
-        """The late rows of `hears`, of the states from that number on which have taken nothing."""
+        """Write the choice among late rows of `hears`, for the states from index `number` on that have not reacted."""
         if passes and number == len(enabled):
             passes, number = passes[1:], 0
         if not passes or (not number and any(taken and taken.rows for taken in enabled)):
@@ -170,7 +173,7 @@ class StepWriter(ActionText):
         known.first(partial(self.decide_late, passes, number + 1, enabled))
 
     def row(self, transition: CompiledTransition, known: Certain, *, late: bool) -> str:
-        """Whether a row of `hears` is the one that is taken of its state; the rows of a state are asked once."""
+        """Return a condition that is true if this row of `hears` is chosen; the rows of a state are evaluated once."""
         block, hears = transition.rows, transition.definition.hears
         assert block is not None
         assert hears is not None
@@ -183,14 +186,14 @@ class StepWriter(ActionText):
         return f"{chosen} == {hears.number}"
 
     def take(self, enabled: Enabled, known: Certain) -> None:
-        """One microstep, with these transitions."""
+        """Write one microstep with these transitions."""
         if not enabled:
             return
         if self.apart:
             self.line(f"return {self.constant(self.apart(enabled))}(snapshot, event)")
             self.plain = known.ended = True
             return
-        if len(known.transitions) > MAX_LINES:  # of a machine that never comes to rest
+        if len(known.transitions) > MAX_LINES:  # the machine never comes to rest
             raise NotPlainError
         known.settled = False
         plan = self.planner.plan(known.configuration, enabled, {})
@@ -209,16 +212,17 @@ class StepWriter(ActionText):
         )
 
     def recalls(self, plan: MicrostepPlan) -> bool:
-        """Whether the states that are entered may depend on what history states remember."""
+        """Return True if the entered states may depend on what history states remember."""
         targets = [target for transition in plan.taken for target in transition.targets]
         inside = [node for name in plan.entered for node in self.chart.by_name[name].initial]
         return any(node.kind is StateKind.HISTORY for node in (*targets, *inside))
 
     def arrive(self, target: Configuration, known: Certain) -> None:
+        """Note the configuration after a microstep."""
         known.configuration = target
 
     def exit(self, change: StateChange, known: Certain) -> None:
-        """`exitStates`, of one state: the actions, then its `do` and timers end."""
+        """Write the exit of one state (`exitStates`): its actions, then the end of its `do` and timers."""
         node = change.node
         if node.invokes or node.schedules or node.computed:
             raise NotPlainError
@@ -226,6 +230,7 @@ class StepWriter(ActionText):
         known.first(partial(self.block, _state(node).exit, node, change.active), partial(self.stop, node))
 
     def stop(self, node: StateNode, known: Certain) -> None:
+        """Write the end of the `do` and the timers of a state."""
         path = self.constant(node.path)
         if node.do:
             left = f"leave({self.constant(node)}, at, timers, commands, doing, halted)"
@@ -235,7 +240,7 @@ class StepWriter(ActionText):
             self.line(f"timers = tuple([t for t in timers if t[6] != 'after' or t[5] != {path}]) if timers else ()")
 
     def enter(self, change: StateChange, known: Certain) -> None:
-        """`enterStates`, of one state: timers begin, then the actions, and what it has to `do` after the macrostep."""
+        """Write the entry of one state (`enterStates`): timers, then actions; its `do` begins after the macrostep."""
         node = change.node
         if node.invokes or node.schedules or node.computed or any(not parent.path for parent in change.done):
             raise NotPlainError
@@ -249,19 +254,20 @@ class StepWriter(ActionText):
         )
 
     def entered(self, node: StateNode, known: Certain) -> None:
+        """Note that the `do` of an entered state begins after the macrostep."""
         if node.do:
             path = self.constant(node.path)
             self.line(f"halted = without(halted, {path}) if {path} in halted else halted")
             known.beginnings += (node,)
 
     def ended(self, node: StateNode, parent: StateNode, known: Certain) -> None:
-        """`done.state.*`, without the data of an output."""
+        """Write the event `done.state.*`; an output as its data is not supported."""
         if node.output is not None and parent is node.parent and parent.kind is StateKind.COMPOUND:
             raise NotPlainError
         self.raises(f"done.state.{parent.name}", "None", known)
 
     def do(self, node: StateNode, place: tuple[DoPlace, ...], known: Certain) -> None:
-        """The `do` of a state from there on (`Advance.block`); the outermost block comes first."""
+        """Write the `do` of a state from a position on (`Advance.block`); `place` lists the outermost block first."""
         *around, (name, actions, number) = place
         path = self.constant(node.path)
         if number == len(actions):
@@ -287,7 +293,7 @@ class StepWriter(ActionText):
 
 
 def _after(actions: tuple[PlacedAction, ...], position: Within) -> tuple[tuple[DoPlace, ...], Position]:
-    """What comes after that position of these actions, and what is awaited there."""
+    """Return the position after `position` in these actions, and what `position` awaits."""
     block, number, inner = position
     if not isinstance(inner, Within):
         return ((block, actions, number + 1),), inner

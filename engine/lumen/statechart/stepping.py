@@ -1,4 +1,4 @@
-"""What runs a behaviour: `initial`, `step`, and for its timers `due` and `elapse`."""
+"""The functions that run a behaviour: `initial`, `step`, and `due` and `elapse` for its timers."""
 
 from collections.abc import Callable, Iterator, Mapping
 from copy import deepcopy
@@ -22,10 +22,10 @@ from lumen.statechart.values import Snapshot, Step, Timer
 from lumen.upkeep.arguments import need, need_map, need_number, need_text
 
 MAX_RATE = 10_000
-"""How many timers may end [1/s]: where each sets others, a tick would have no end."""
+"""Timers that may end per second [1/s]: timers that set further timers could make a tick endless."""
 
 _DUE = itemgetter(Timer._fields.index("due_ns"))
-_new = tuple.__new__  # a third of the price of Event(…)
+_new = tuple.__new__  # a third of the cost of Event(…)
 
 
 def initial(
@@ -38,11 +38,11 @@ def initial(
     timezone: str = "",
     seed: int = 0,
 ) -> Step:
-    """The first step: the initial states entered at `at` [s].
+    """Return the first step: the initial states are entered at `at` [s].
 
-    `input` gives context keys other first values; raises UsageError where there is no such key, or it holds another
-    type. `epoch` is when time 0 was [s since 1970, in UTC] and `timezone` where the clock on the wall hangs, an
-    IANA name (else UsageError); `seed` begins the drawing of alternatives.
+    `input` replaces initial values of context keys; raises UsageError if a key does not exist or a value has another
+    type. `epoch` is the time of `at` = 0 [s since 1970, UTC]. `timezone` is the IANA name for the wall clock; raises
+    UsageError if it is unknown. `seed` initializes the random choice of alternatives.
     """
     need(machine, MachineDefinition, "the machine to start", "a Machine")
     if input is not None:
@@ -60,22 +60,22 @@ def initial(
 
 
 def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
-    """One macrostep: `event` and all that follows from it until the next event from outside.
+    """Return the macrostep for `event`: everything that follows from it until the next event from outside.
 
-    The robot's answers and the events of `due` are known by their names and ids; those that nobody waits for any
-    more change nothing. Time never goes back: an event from the past happens at `snapshot.at`. Raises LumenError
-    where the machine never comes to rest, SnapshotError where the snapshot has states that the machine has not.
+    The robot's answers and the events of `due` are recognized by their names and ids; if nothing waits for them any
+    more, they change nothing. Time never runs backwards: an event from the past happens at `snapshot.at`. Raises
+    LumenError if the machine never comes to rest, SnapshotError if the snapshot has states that the machine lacks.
     """
     try:
         program: CompiledMachine = machine.__dict__.get("_compiled") or compiled(machine)
         taken = program.fast_paths.step(snapshot, event)
     except (KeyError, AttributeError, TypeError, ValueError):
-        taken = None  # `in_full` fails on the same, and says why
+        taken = None  # `in_full` fails for the same reason, with a message
     return taken or in_full(machine, snapshot, event)
 
 
 def in_full(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
-    """The same by the whole algorithm, for whoever has tried the fast path already."""
+    """Return the step by the full algorithm, for callers that have tried the fast path already."""
     try:
         context = open_context(compiled(machine), snapshot, event, max(snapshot.at, event.at))
     except KeyError as error:
@@ -91,14 +91,14 @@ def in_full(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Ste
 
 
 def finished(machine: MachineDefinition, snapshot: Snapshot) -> bool:
-    """Whether the machine has come to its end (SCXML 3.7.1): no step changes anything any more but the time."""
+    """Return True if the machine has ended (SCXML 3.7.1): steps change nothing but the time."""
     return compiled(machine).planner.configuration(snapshot.configuration).finished
 
 
 def due(snapshot: Snapshot) -> Event | None:
-    """The timer that ends next, as the event to step with, at its time; None where there is none.
+    """Return the event of the timer that ends next, at its time; None without timers.
 
-    Those of invoked behaviours count; of two with the same time, the outer one comes first.
+    Timers of invoked behaviours count; of two with the same time, the outer one comes first.
     """
     found = None
     if snapshot.timers:
@@ -112,16 +112,16 @@ def due(snapshot: Snapshot) -> Event | None:
 
 
 def waiting(snapshot: Snapshot) -> int:
-    """How many timers are set, those of invoked behaviours included."""
+    """Return the number of timers, including those of invoked behaviours."""
     return len(snapshot.timers) + sum(waiting(child.snapshot) for child in snapshot.invoked.values())
 
 
 def elapse(machine: MachineDefinition, current: Callable[[], Snapshot], until: float) -> Iterator[Step]:
-    """The steps of every timer that ends until `until` [s], those set on the way included, in order.
+    """Yield the steps of all timers that end up to `until` [s], in order, including timers set by these steps.
 
-    `current` gives the snapshot to step from: whoever takes a step may have more happen before the next. Raises
-    LumenError where there is no end of timers of one time, as of a `send` without delay that answers itself, or where
-    they are more than MAX_RATE; those that were set before do not count.
+    `current` returns the snapshot to step from: the caller may process further events between two steps. Raises
+    LumenError if timers of one time have no end, such as a `send` without delay that triggers itself, or if new timers
+    end at a rate of more than MAX_RATE.
     """
     left, last, soon, steps = MAX_MICROSTEPS, -inf, until + HALF, 0
     while (event := due(current())) and event.at < soon:

@@ -1,4 +1,4 @@
-"""Which values a context key keeps: those of its first value's type, or of its `types:` entry."""
+"""Types of context keys: a key keeps the type of its first value, or that of its `types:` entry."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -43,13 +43,13 @@ _NOTES = {
     "$comment",
     "$id",
 }
-"""Keywords that say nothing of a value beyond its type."""
+"""Keywords that don't restrict a value further than its type."""
 
 
 class TypeCheck:
-    """The values that a context key may hold; `quick` are Python types of which every value is certain to be one.
+    """The values that a context key may hold: those of its types or, if `types:` has more, of its JSON Schema.
 
-    Where its `types:` entry says more than a type, the whole JSON Schema holds.
+    All values of the Python types in `quick` are accepted.
     """
 
     __slots__ = ("_schema", "names", "quick")
@@ -60,19 +60,20 @@ class TypeCheck:
         self._schema = JsonSchema(schema) if schema else None
 
     def accepts(self, value: Any) -> bool:
+        """Return True if the key may hold the value."""
         if self.names and not any(_TESTS[name](value) for name in self.names):
             return False
         return self._schema is None or self._schema.fits(value) or not self._faults(value)
 
     def refusal(self, value: Any, verb: str = "be") -> str:
-        """Why a key can't hold that value, to follow the key's name; `verb` is `be` or `become`."""
+        """Return why a key can't hold that value, to follow the key's name; `verb` is `be` or `become`."""
         if self.names and not any(_TESTS[name](value) for name in self.names):
             return f"is {self} and can't {verb} {_with_article(type_name(value))}"
         shown = repr(value)
         return f"can't {verb} {shown[:40]}: {self._faults(value)[0]}"
 
     def _faults(self, value: Any) -> list[str]:
-        """What the schema says against the value; nothing where it is unsound itself, which lint tells."""
+        """Return the schema's errors for the value; empty if the schema itself is unsound, which lint reports."""
         try:
             return [error.message[:100] for error in self._schema.errors(value)] if self._schema else []
         except RecursionError:
@@ -83,27 +84,27 @@ class TypeCheck:
 
 
 def type_checks(machine: MachineDefinition) -> dict[str, TypeCheck | None]:
-    """For each context key its check, None where anything goes.
+    """Return the check of each context key, None for a key that accepts any value.
 
-    A first value of null without an entry in `types:` has no angle for what comes later. An integer may become any
-    number, as in CEL.
+    A key that begins as null, without an entry in `types:`, accepts any value. An integer may become any number, as in
+    CEL.
     """
     return {key: _check(value, machine.types.get(key)) for key, value in machine.context.items()}
 
 
 def fits(value: Any, check: TypeCheck | None) -> bool:
-    """Whether a context key with that check may hold the value."""
+    """Return True if a context key with that check may hold the value."""
     return check is None or type(value) in check.quick or check.accepts(value)
 
 
 def refusal(value: Any, check: TypeCheck | None) -> str:
-    """Why a context key with that check can't hold a value that does not fit."""
+    """Return why a context key with that check can't hold a value that does not fit."""
     assert check is not None  # without a check everything fits
     return check.refusal(value)
 
 
 def checked(name: str, checks: Mapping[str, TypeCheck | None], given: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The values given for context keys of the machine of that name; raises UsageError where one does not fit."""
+    """Return the values given for context keys of the machine of that name; raise UsageError if one does not fit."""
     for key, value in given.items():
         if key not in checks:
             hint = did_you_mean(key, checks)
@@ -114,7 +115,7 @@ def checked(name: str, checks: Mapping[str, TypeCheck | None], given: Mapping[st
 
 
 def type_name(value: Any) -> str:
-    """The JSON type of a value, in the words of JSON Schema."""
+    """Return the JSON type of a value, in the terms of JSON Schema."""
     return next((name for name, test in _TESTS.items() if name != "integer" and test(value)), type(value).__name__)
 
 

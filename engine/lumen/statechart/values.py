@@ -1,4 +1,4 @@
-"""What a step takes and gives: the whole state of a running behaviour as an immutable value."""
+"""The values that a step consumes and produces: the whole state of a running behaviour is immutable."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, Literal, NamedTuple, TypeAlias
@@ -9,45 +9,46 @@ from lumen.language.machines import Transition
 from lumen.language.nanoseconds import in_seconds
 
 MAX_TIMERS = 10_000
-"""How many timers may wait before a `send` is refused: events that send two each would fill the memory."""
+"""Timers that may wait before a `send` is refused: events that each send two more would exhaust the memory."""
 
 
 class Timer(NamedTuple):
-    """Something that happens at `due_ns` [ns], `delay_ns` [ns] after it was set: whole numbers, which add up exactly.
-
-    An `after`, an `at` and a `wait` (of a `do`) end with their state, whose path they hold; a `send` ends with
-    `cancel`, and may go `to` another behaviour.
-    """
+    """An event that will happen; times are integers [ns], so that sums are exact."""
 
     id: str
+    """Its id: that of the `send` or `wait`; for `after` and `at` the name of the event."""
     due_ns: int
+    """When it happens [ns]."""
     delay_ns: int
+    """The time between its start and `due_ns` [ns]."""
     event: str
     data: Any = None
     state: str = ""
+    """The path of the state with which an `after`, `at` or `wait` ends; empty for a `send`, which `cancel` ends."""
     kind: Literal["after", "at", "send", "wait"] = "send"
     to: str = ""
+    """The other behaviour that receives a `send`; empty for the own machine."""
 
     @property
     def due(self) -> float:
-        """When it happens [s]."""
+        """Return when it happens [s]."""
         return in_seconds(self.due_ns)
 
     @property
     def delay(self) -> float:
-        """How long after it was set that is [s]."""
+        """Return the delay [s]."""
         return in_seconds(self.delay_ns)
 
 
 class Awaiting(NamedTuple):
-    """A `do` stands before a command or a `wait` of that id, since `at` [s]."""
+    """The position of a `do` that has awaited a command or `wait` of that id since `at` [s]."""
 
     id: str
     at: float = 0.0
 
 
 class Within(NamedTuple):
-    """A `do` stands in the action number `place` of one of its blocks: the list itself, or the branch of an `if`."""
+    """The position of a `do` in the action `place` of one of its blocks: the list itself, or a branch of an `if`."""
 
     block: Literal["do", "then", "else"]
     place: int
@@ -55,7 +56,7 @@ class Within(NamedTuple):
 
 
 class Fork(NamedTuple):
-    """A `do` stands in a `parallel`: where in each branch, None in those that have ended."""
+    """The position of a `do` inside a `parallel`: one for each branch, None for those that have ended."""
 
     branches: "tuple[Position | None, ...]"
 
@@ -64,7 +65,7 @@ Position: TypeAlias = Awaiting | Within | Fork
 
 
 def awaited(position: Position | None) -> Iterator[str]:
-    """The ids that a position awaits."""
+    """Yield the ids that a position awaits."""
     match position:
         case Awaiting(id):
             yield id
@@ -76,14 +77,14 @@ def awaited(position: Position | None) -> Iterator[str]:
 
 
 class Halted(NamedTuple):
-    """Where a `do` stood when its state was left at `at` [s], for a history state that leads back into it."""
+    """The position of a `do` whose state was left at `at` [s], for a history state that restores the state."""
 
     position: Within
     at: float
 
 
 class Counters(NamedTuple):
-    """How many ids were given out: `c1, c2, …` to commands, `d1, d2, …` to awaited ones, `s1, s2, …` to timers."""
+    """The numbers of ids given out: `c1, c2, …` to commands, `d1, d2, …` to awaited ones, `s1, w2, …` to timers."""
 
     commands: int = 0
     awaited: int = 0
@@ -91,7 +92,7 @@ class Counters(NamedTuple):
 
 
 class Invoked(NamedTuple):
-    """A behaviour that the state at path `state` has invoked, where it stands, and what had been started before it."""
+    """A behaviour invoked by the state at path `state`; `commands` counts the commands started before it."""
 
     state: str
     snapshot: "Snapshot"
@@ -99,50 +100,49 @@ class Invoked(NamedTuple):
 
 
 class Snapshot(NamedTuple):
-    """Where a behaviour stands between two macrosteps.
-
-    `configuration` holds the names of the active states but the root (the alias where there is one, else the path);
-    `doing` the position of each active `do` and `history` the paths remembered by each history state, both by path.
-    `at` [s] is the time of the last event, or a later one at which it was taken off a clock; `epoch` when time 0 was
-    [s since 1970, in UTC], and `timezone` where the clock on the wall hangs; `generator` the state from which
-    alternatives of `say` are drawn. `invoked` are the behaviours that run within it, by their ids; its time, language,
-    counters and generator are theirs too. `halted` is where a `do` stood that says how it is resumed, when its state
-    was last left, by path. `place` is where the robot is, by the last `arrived` and `left`, empty where it is at none.
-    `output` is that of the final state in which the machine has come to its end.
-    Mappings in it are never changed, only replaced.
-    """
+    """The state of a behaviour between two macrosteps; its mappings are replaced, never changed."""
 
     configuration: frozenset[str]
+    """The names of the active states except the root: the alias if there is one, else the path."""
     context: Mapping[str, Any]
     at: float = 0.0
+    """The time of the last event [s], or a later one at which the snapshot was taken."""
     language: str = ""
     timers: tuple[Timer, ...] = ()
     doing: Mapping[str, Within] = {}
+    """The position of each active `do`, by the path of the state."""
     history: Mapping[str, tuple[str, ...]] = {}
+    """The paths that each history state remembers, by its own path."""
     counters: Counters = Counters()
     generator: int = 0
+    """The state of the random generator for the alternatives of `say`."""
     epoch: float = 0.0
+    """The time of `at` = 0 [s since 1970, UTC]."""
     invoked: Mapping[str, Invoked] = {}
+    """The behaviours that run inside it, by id; they share its time, language, counters and generator."""
     halted: Mapping[str, Halted] = {}
+    """The position of each `do` with a `resume` when its state was last left, by path."""
     place: str = ""
+    """The place of the robot after the last `arrived` or `left`; empty if it is at none."""
     timezone: str = ""
+    """The IANA name of the time zone of the wall clock."""
     output: Any = None
+    """The output of the final state in which the machine has ended."""
 
 
 class Step(NamedTuple):
-    """One macrostep: what happened, which states were left and entered, what has to be done, and where it ends.
-
-    `event` is None for the first step. `transitions` are those taken and `raised` the internal events, in order; an
-    `error.*` among them says its `reason`, and where the fault stands, in its data. The root is not listed. `invoked`
-    are the steps of invoked behaviours, each with its id, in order; what they ask for is among `commands`, where the
-    ids of their commands end in `@` and the id of the invoke.
-    """
+    """One macrostep: what happened, the states exited and entered (without the root), commands, and result."""
 
     event: Event | None
+    """The event that caused it; None for the first step."""
     exited: tuple[str, ...]
     entered: tuple[str, ...]
     commands: tuple[Command, ...]
+    """The commands to perform; ids of those of invoked behaviours end in `@` and the id of the invoke."""
     snapshot: Snapshot
     transitions: tuple[Transition, ...] = ()
+    """The transitions taken, in order."""
     raised: tuple[Event, ...] = ()
+    """The internal events, in order; the data of an `error.*` has its `reason` and, if known, its place."""
     invoked: "tuple[tuple[str, Step], ...]" = ()
+    """The steps of invoked behaviours, each with its id, in order."""
