@@ -38,6 +38,12 @@ def test_a_day_has_its_visits_and_numbers(browser: Browser) -> None:
     entries = browser.get(f"/api/entries?from={visit['from']}&to={visit['to']}").data["entries"]
     assert [entry["position"] for entry in entries] == list(range(visit["from"], visit["to"] + 1))
     assert all(entry["at_time"].startswith(day["date"][:4]) for entry in entries)
+    path = f"/api/search?from={visit['from']}&to={visit['to']}&text="
+    found = browser.get(f"{path}SCRIPT%3E").data
+    assert [entry["data"]["result"] for entry in found["entries"]] == ["<script>alert(1)</script>"]
+    assert not found["more"]
+    assert browser.get(f"{path}nothing%20of%20it").data["entries"] == []
+    assert browser.get(path).status == 400
     answer = browser.get("/api/day.csv")
     assert answer.headers["content-type"].startswith("text/csv")
     assert "asked,'=1+1,1" in answer.body.decode()

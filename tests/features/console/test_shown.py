@@ -9,6 +9,7 @@ from selenium.webdriver.common.keys import Keys
 
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served
+from tests.features.console.test_conversation import violations
 from tests.features.console.viewer import Viewer
 from tests.waiting import HANG, until
 
@@ -59,6 +60,30 @@ def test_a_visit_that_begins_is_in_the_day_that_is_shown(viewer: Viewer, own: tu
     visit(hosted, "Budi")
     viewer.shows("Budi", ".visit-list li")
     assert len(viewer.all(".line .bar")) == 1
+
+
+def test_a_moment_is_found_by_its_time_and_by_words(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
+    hosted, served = own
+    visit(hosted, "Budi")
+    viewer.open(served.console.address, "robot/NAO/day", ready=".find")
+    viewer.shows("1\nvisit", ".totals")
+    viewer.click(".search input")
+    viewer.type("NAME IS BUDI", Keys.ENTER)
+    viewer.shows("my name is Budi", ".found li")
+    found = viewer.run("return document.querySelector('.found time').getAttribute('datetime')")
+    viewer.click(".found button")
+    viewer.shows("my name is Budi", ".chosen")
+    viewer.click(".search input")
+    viewer.type(" and more", Keys.ENTER)
+    viewer.shows("0 found", ".find")
+    viewer.click(".go-to input")
+    viewer.type("25:00", Keys.ENTER)
+    viewer.shows("write it as 14:03", ".find")
+    local = viewer.run("return new Date(arguments[0]).toLocaleTimeString('en-GB')", found)
+    viewer.run("document.querySelector('.go-to input').select()")
+    viewer.type(local, Keys.ENTER)
+    viewer.shows(f"At {local}", ".day .entries")
+    assert violations(viewer) == []
 
 
 def test_the_page_begins_with_the_situation_in_a_sentence(viewer: Viewer, own: tuple[Hosted, Served]) -> None:

@@ -1,6 +1,6 @@
 """The paths about what was, and what would be: why, why not, days, entries, files, and a fork."""
 
-from collections.abc import AsyncIterator
+from collections.abc import Mapping, Sequence
 from datetime import date
 from typing import Any
 
@@ -53,6 +53,10 @@ class JournalSource:
 QUESTION_TIMEOUT = 20.0
 """How long an exhibition may take for a question about the past [s]."""
 MAX_QUESTION = 500
+MAX_FOUND = 200
+"""Entries that a search lists; the page says if there are more."""
+MAX_SEARCHED = 200_000
+"""Positions after the first that a search reads: several busy days."""
 ELSEWHERE = "this robot's files are on another machine: open the console there"
 SAID = ("behavior", "state", "row", "language", "text")
 """The keys of a saying that is posted."""
@@ -71,6 +75,7 @@ class Past:
             Route("/api/day", self._day),
             Route("/api/day.csv", self._csv),
             Route("/api/entries", self._entries),
+            Route("/api/search", self._search),
             Route("/api/files", self._files),
             Route("/api/passages", self._passage, methods=["POST"]),
             Route("/api/sayings", self._saying, methods=["POST"]),
@@ -141,18 +146,32 @@ class Past:
 
     async def _entries(self, request: Request) -> Response:
         view = self._asked(request, Role.OPERATOR)
-        first, last = (request.query_params.get(name, "") for name in ("from", "to"))
-        if not (first.isdigit() and last.isdigit() and len(first + last) < 36):
-            raise DeniedError(400, "`from` and `to` must be positions of entries: whole numbers")
+        return _as_entries(await self._between(view, *_positions(request)))
+
+    async def _search(self, request: Request) -> Response:
+        """The entries between two positions whose line has a text, upper and lower case alike, in any language."""
+        view, (first, last) = self._asked(request, Role.OPERATOR), _positions(request)
+        text = " ".join(request.query_params.get("text", "").split()).casefold()
+        if not 0 < len(text) <= MAX_QUESTION:
+            raise DeniedError(400, f"`text` must be a string of 1 to {MAX_QUESTION} characters")
+        found, begin = list[EncodedEntry](), first
+        while begin <= min(last, first + MAX_SEARCHED) and len(found) <= MAX_FOUND:
+            page = await self._between(view, begin, last)
+            found += [entry for entry in page if _has(orjson.loads(entry.data), text)]
+            if len(page) < MAX_SHOWN:
+                break
+            begin = page[-1].position + 1
+        return _as_entries(found[:MAX_FOUND], more=len(found) > MAX_FOUND or begin > first + MAX_SEARCHED)
+
+    async def _between(self, view: KnownRobot, first: int, last: int) -> list[EncodedEntry]:
+        """At least `MAX_SHOWN` entries between two positions, or all. Raises DeniedError."""
         try:
-            found = await self._source.entries(view, int(first), int(last))
+            return await self._source.entries(view, first, last)
         except BusError as error:
             if not self._is_ours(view):
                 raise DeniedError(503, f"the exhibition did not send its entries: {error}") from None
-            said = orjson.loads(await self._jobs.do("entries", self._home(view), int(first), int(last)))
-            found = view.entries.encoded(ToldPage(**said))
-        data = b'{"entries":[' + b",".join(entry.data for entry in found) + b"]}"
-        return Response(data, headers=NO_STORE, media_type="application/json")
+            said = orjson.loads(await self._jobs.do("entries", self._home(view), first, last))
+            return view.entries.encoded(ToldPage(**said))
 
     async def _files(self, request: Request) -> Response:
         view = self._asked(request, Role.OPERATOR)
@@ -212,6 +231,26 @@ class Past:
         if not isinstance(said, dict):
             raise DeniedError(503, "the exhibition sent an answer that cannot be shown")
         return said
+
+
+def _positions(request: Request) -> tuple[int, int]:
+    """The positions of the first and the last entry that are requested. Raises DeniedError."""
+    first, last = (request.query_params.get(name, "") for name in ("from", "to"))
+    if not (first.isdigit() and last.isdigit() and len(first + last) < 36):
+        raise DeniedError(400, "`from` and `to` must be positions of entries: whole numbers")
+    return int(first), int(last)
+
+
+def _has(entry: Mapping[str, Any], text: str) -> bool:
+    """Whether the line of an entry has a case-folded text, in English or another language."""
+    lines = (entry.get("text", ""), *(entry.get("texts") or {}).values())
+    return any(text in str(line).casefold() for line in lines)
+
+
+def _as_entries(found: Sequence[EncodedEntry], *, more: bool = False) -> Response:
+    head = b'{"more":' + orjson.dumps(more) + b',"entries":['
+    data = head + b",".join(entry.data for entry in found) + b"]}"
+    return Response(data, headers=NO_STORE, media_type="application/json")
 
 
 def _others(said: Any) -> dict[str, tuple[str, str]]:

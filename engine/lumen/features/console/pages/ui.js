@@ -58,8 +58,8 @@ export function languageName(code) {
   try { return new Intl.DisplayNames([language()], { type: "language" }).of(code) ?? code; } catch { return code; }
 }
 
-/** A full hour: 9:00, or 9.00. */
-export const fullHour = (hour) => `${hour}${language() === "id" ? "." : ":"}00`;
+/** A full hour: 09:00, or 09.00. */
+export const fullHour = (hour) => `${String(hour).padStart(2, "0")}${language() === "id" ? "." : ":"}00`;
 
 /** 14:03:20 where the console is looked at. */
 export const clock = (iso, seconds = true) => iso ? new Date(iso).toLocaleTimeString(language() === "id" ? "id-ID" : "en-GB",

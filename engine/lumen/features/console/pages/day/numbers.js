@@ -12,13 +12,19 @@ function Chart({ title, rows, all = false }) {
     ${rows.length === 0 && html`<p class="quiet">${t("day.none.numbers")}</p>`}</div>`;
 }
 
+/** The numbers of the day that an operator reads first: visits, how long they took, falls. */
+export function Totals({ numbers }) {
+  const length = (seconds) => (seconds == null ? t("unknown") : span(seconds));
+  const facts = [["day.count", fixed(numbers.visits)], ["day.mean", length(numbers.mean_seconds)],
+    ["day.longest", length(numbers.longest_seconds)], ["day.falls", fixed(numbers.falls)]];
+  return html`<dl class="totals" aria-label=${t("day.numbers")}>${facts.map(([label, value]) => html`
+    <div><dd>${value}</dd><dt>${t(label, { n: value })}</dt></div>`)}</dl>`;
+}
+
 export function Numbers({ name, day }) {
   const { numbers } = day;
-  const length = (seconds) => (seconds == null ? t("unknown") : span(seconds));
-  const facts = [["day.count", fixed(numbers.visits)], ["day.mean", length(numbers.mean_seconds)], ["day.longest", length(numbers.longest_seconds)], ["day.falls", fixed(numbers.falls)]];
   const query = new URLSearchParams({ robot: name, date: day.date });
   return html`<${Part} title=${t("day.numbers")} kind="numbers" aside=${html`<a class="button" href="/api/day.csv?${query}" download>${t("day.csv")}</a>`}>
-    <dl class="totals">${facts.map(([label, value]) => html`<div><dd>${value}</dd><dt>${t(label, { n: value })}</dt></div>`)}</dl>
     <div class="charts"><${Chart} title=${t("day.hours")} all rows=${(numbers.hours ?? []).map(([hour, count]) => [fullHour(hour), count])} />
       <${Chart} title=${t("day.asked")} rows=${numbers.asked ?? []} /><${Chart} title=${t("day.missed")} rows=${numbers.missed ?? []} />
       <${Chart} title=${t("day.answers")} rows=${numbers.answers ?? []} /><${Chart} title=${t("day.languages")} rows=${(numbers.languages ?? []).map(([code, count]) => [languageName(code), count])} /></div>

@@ -5,9 +5,10 @@ import { Entry, Why, question } from "../now/entries.js";
 import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { Part, clock, html, languageName, lineOf, span, t, useEffect, useRedraw, useRef, useState } from "../ui.js";
+import { Find } from "./find.js";
 import { Fork } from "./fork.js";
 import { Line, bounds, stretches } from "./line.js";
-import { Numbers } from "./numbers.js";
+import { Numbers, Totals } from "./numbers.js";
 
 const AROUND = 40; // entries that are shown around a moment
 const SOON = 500, AGAIN = 15000; // [ms] after what happened last, and between two looks at the day: a look is dear
@@ -85,13 +86,21 @@ export default function DayPage({ name }) {
     if (inside && inside.from !== visit?.from) choose(inside);
   };
   const parts = day ? stretches(day) : [];
+  const open = (entry) => {
+    choose(parts.filter((one) => one.from <= entry.position).at(-1) ?? parts[0]);
+    mark(entry), move(Date.parse(entry.at_time));
+  };
   const shown = parts.find((one) => one.from === visit?.from) ?? visit; // as it is by now
   if (failed) return html`<h1 class="hidden">${t("day")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;
   if (!day) return html`<p class="notice">${t("loading")}</p>`;
   return html`<div class="page-head"><h1>${t("page.day")}</h1>
-      <label><span>${t("day.date")}</span><input type="date" value=${date || day.date} min=${day.dates?.at(0)} max=${day.dates?.at(-1)} onChange=${(e) => pick(e.target.value)} /></label>
+      <label><span>${t("day.date")}</span><select class="date" value=${day.date} onChange=${(e) => pick(e.target.value)}>
+        ${[...new Set([...(day.dates ?? []), day.date])].sort().map((one) => html`
+          <option value=${one} selected=${one === day.date}>${one}</option>`)}</select></label>
       ${may("show") && html`<button type="button" onClick=${() => command(name, "mark")}>${t("day.mark")}</button>`}</div>
+    <${Totals} numbers=${day.numbers} />
     <${Line} day=${day} bounds=${bounds(day)} visit=${shown} moment=${moment} scrub=${scrub} look=${look} />
+    <${Find} name=${name} date=${day.date} parts=${parts} scrub=${scrub} open=${open} />
     <div class="day"><${Visits} day=${day} visit=${shown} choose=${look} />
       <${Around} name=${name} visit=${shown} moment=${moment} chosen=${chosen} choose=${(entry) => { mark(entry); move(Date.parse(entry.at_time)); }} />
       ${may("author") && html`<${Fork} name=${name} entry=${chosen} />`}</div>

@@ -13,6 +13,7 @@ export default [
   ["no answer came on `{0}`", "tidak ada jawaban di `{0}`"],
   ["no answer came", "tidak ada jawaban"],
   ["there is no bus", "tidak ada bus"],
+  ["`text` must be a string of 1 to {0} characters", "`text` harus berupa teks dengan 1 sampai {0} karakter"],
   ["`{0}` must be one of {1}", "`{0}` harus salah satu dari {1}"],
   ["the centre sent an answer that cannot be shown", "pusat mengirim jawaban yang tidak dapat ditampilkan"],
   ["no fleet centre answers on this bus: start one with `lumen fleet serve`", "tidak ada pusat armada yang menjawab di bus ini: jalankan dengan `lumen fleet serve`"],
