@@ -69,7 +69,7 @@ def test_a_passage_in_all_languages_makes_no_warning(copy: Path) -> None:
         text = (copy / "knowledge" / "what-is-love.yaml").read_text("utf-8")
         assert "apa itu cinta" in text
         findings = check_files(copy, read_files(copy))[1]
-        assert [str(one) for one in findings if one.file == "knowledge/what-is-love.yaml"] == []
+        assert [str(one) for one in findings if one.place.file == "knowledge/what-is-love.yaml"] == []
         half = {**passage, "also": {"id": {"question": "apa itu cinta"}}}
         assert "`answer`" in served.browser.post("/api/passages", half).data["reason"]
         wrong = served.browser.post("/api/passages", {**passage, "also": ["id"]})
