@@ -10,6 +10,7 @@ from selenium.webdriver.common.keys import Keys
 
 from tests.features.console.conftest import Hosted
 from tests.features.console.pages import Served
+from tests.features.console.test_conversation import violations
 from tests.features.console.viewer import Viewer
 from tests.fetched import fetched
 from tests.waiting import HANG, until
@@ -28,6 +29,11 @@ NARROW = 360
 ESCAPE = """
 dispatchEvent(new KeyboardEvent("keydown", { key: "Escape" }));
 return document.querySelector("rest-button[main] .rest-said").innerText;
+"""
+INSTEAD = """
+const select = document.querySelector(".fork select.instead");
+select.value = arguments[0];
+select.dispatchEvent(new Event("change", { bubbles: true }));
 """
 TOUCH = 44
 """Of what fingers press, at least [px]."""
@@ -239,9 +245,15 @@ def test_a_fork_shows_what_would_have_been_beside_what_was(viewer: Viewer, serve
         "const one = [...document.querySelectorAll('.entry button')].find((e) => e.textContent.includes('is Budi'));"
     )
     until(lambda: viewer.run(f"{choose} one?.click(); return Boolean(one)"), HANG)
+    viewer.run(INSTEAD, "event")
     viewer.click(".fork input[list]")
     viewer.type("operator.end")
     viewer.click(".fork .strong")
     viewer.shows("goodbye", ".beside > :last-child .differs")
     viewer.shows("my name is Budi", ".beside > :first-child .differs")
     assert "goodbye" not in viewer.text(".beside > :first-child")
+    viewer.click(".what-if")
+    until(lambda: viewer.run("return document.activeElement.matches('.fork input.words')"), HANG)
+    viewer.type("my name is Ani", Keys.ENTER)
+    viewer.shows("my name is Ani", ".beside > :last-child .differs")
+    assert violations(viewer) == []

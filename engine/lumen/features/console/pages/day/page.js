@@ -6,7 +6,7 @@ import { Quote, reasonOf } from "../quoted.js";
 import { may } from "../session.js";
 import { Part, clock, html, languageName, lineOf, span, t, useEffect, useRedraw, useRef, useState } from "../ui.js";
 import { Find } from "./find.js";
-import { Fork } from "./fork.js";
+import { Fork, speechOf } from "./fork.js";
 import { Line, bounds, stretches } from "./line.js";
 import { Numbers, Totals } from "./numbers.js";
 
@@ -30,7 +30,7 @@ function nearest(entries, moment) {
   return shown.slice(Math.max(0, middle - AROUND / 2), Math.max(0, middle - AROUND / 2) + AROUND);
 }
 
-function Around({ name, visit, moment, chosen, choose }) {
+function Around({ name, visit, moment, chosen, choose, change }) {
   const [entries, set] = useState(null), [failed, fail] = useState(""), [why, ask] = useState(null), of = useRef(null);
   useEffect(() => {
     if (of.current !== visit?.from) set(null); // of another visit; one that goes on keeps what is shown
@@ -47,14 +47,17 @@ function Around({ name, visit, moment, chosen, choose }) {
     <ol class="entry-list bounded" tabindex="0" aria-label=${t("day.entries")}>${shown.map((entry) => html`<${Entry} key=${entry.position} entry=${entry}
       current=${entry.position === (chosen ?? now)?.position} onOpen=${choose} />`)}</ol>
     ${chosen && html`<div class="chosen"><p><time datetime=${chosen.at_time}>${clock(chosen.at_time)}</time> ${lineOf(chosen)}</p>
-      <button type="button" onClick=${() => ask(chosen)}>${t("why")}</button></div>`}
+      <button type="button" onClick=${() => ask(chosen)}>${t("why")}</button>
+      ${may("author") && speechOf(chosen) && html`
+        <button type="button" class="what-if" onClick=${() => change(chosen)}>${t("fork.if")}</button>`}</div>`}
     ${why && html`<${Why} robot=${name} what=${question(why)} at=${why.at_time} text=${lineOf(why)} onClose=${() => ask(null)} />`}</${Part}>`;
 }
 
 export default function DayPage({ name }) {
   useRedraw();
   const [date, pick] = useState(""), [day, set] = useState(null), [failed, fail] = useState("");
-  const [visit, choose] = useState(null), [moment, move] = useState(Date.now()), [chosen, mark] = useState(null);
+  const [visit, choose] = useState(null), [moment, move] = useState(Date.now()), [chosen, mark] = useState(null), [asked, change] = useState(0);
+  const instead = () => change((before) => before + 1); // each time, the form begins anew
   const look = (one) => { choose(one); move(Date.parse(one.began)); mark(null); };
   useEffect(() => {
     let gone = false;
@@ -102,7 +105,8 @@ export default function DayPage({ name }) {
     <${Line} day=${day} bounds=${bounds(day)} visit=${shown} moment=${moment} scrub=${scrub} look=${look} />
     <${Find} name=${name} date=${day.date} parts=${parts} scrub=${scrub} open=${open} />
     <div class="day"><${Visits} day=${day} visit=${shown} choose=${look} />
-      <${Around} name=${name} visit=${shown} moment=${moment} chosen=${chosen} choose=${(entry) => { mark(entry); move(Date.parse(entry.at_time)); }} />
-      ${may("author") && html`<${Fork} name=${name} entry=${chosen} />`}</div>
+      <${Around} name=${name} visit=${shown} moment=${moment} chosen=${chosen} change=${instead} choose=${(entry) => { mark(entry); change(0); move(Date.parse(entry.at_time)); }} />
+      ${may("author") && html`<${Fork} key=${`${asked && chosen?.position} ${asked}`} name=${name} entry=${chosen}
+        asked=${asked > 0} />`}</div>
     <${Numbers} name=${name} day=${day} />`;
 }

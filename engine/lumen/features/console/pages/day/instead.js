@@ -1,0 +1,62 @@
+// What happens instead, for a fork: nothing else, other words of the visitor, or an event with its values.
+import { robotOf } from "../live.js";
+import { html, languageName, t } from "../ui.js";
+
+/** Of a form that nobody has filled in; `says` is what the visitor said then. */
+export const blank = (says = null, language = "") => ({
+  kind: says === null ? "same" : "says", words: says ?? "", language, event: "", values: [{ name: "", value: "" }],
+});
+
+/** A value as it is typed: a number, true or false, else a text. */
+function typed(text) {
+  const trimmed = text.trim();
+  if (/^-?\d+(\.\d+)?$/.test(trimmed)) return Number(trimmed);
+  return { true: true, false: false }[trimmed] ?? trimmed;
+}
+
+/** The event that a filled in form means, as `POST /api/fork` reads it; null for the same as then. */
+export function eventOf({ kind, words, language, event, values }) {
+  if (kind === "says") return { name: "heard", data: { result: words.trim(), ...(language ? { language } : {}) } };
+  if (kind === "same" || !event.trim()) return null;
+  const named = values.filter((one) => one.name.trim()).map((one) => [one.name.trim(), typed(one.value)]);
+  return { name: event.trim(), data: Object.fromEntries(named) };
+}
+
+function Words({ languages, form, write }) {
+  const spoken = form.language || languages[0];
+  return html`<label class="grow"><span>${t("fork.words")}</span>
+      <input class="words" value=${form.words} maxlength="500" required autocomplete="off" lang=${spoken}
+        onInput=${(e) => write({ words: e.target.value, language: spoken })} /></label>
+    ${languages.length > 1 && html`<label><span>${t("language")}</span>
+      <select value=${spoken} onChange=${(e) => write({ language: e.target.value })}>${languages.map((one) => html`
+        <option value=${one} selected=${one === spoken}>${languageName(one)}</option>`)}</select></label>`}`;
+}
+
+function Values({ values, write }) {
+  const change = (at, more) => write({ values: values.map((one, n) => (n === at ? { ...one, ...more } : one)) });
+  return html`<ul class="plain-list event-values">${values.map((one, n) => html`<li key=${n}>
+      <label><span>${t("fork.value.name")}</span><input class="value-name" value=${one.name} autocomplete="off"
+        spellcheck=${false} onInput=${(e) => change(n, { name: e.target.value })} /></label>
+      <label><span>${t("fork.value")}</span><input class="value" value=${one.value} autocomplete="off"
+        onInput=${(e) => change(n, { value: e.target.value })} /></label></li>`)}</ul>
+    <button type="button" onClick=${() => write({ values: [...values, { name: "", value: "" }] })}>
+      ${t("fork.value.add")}</button>`;
+}
+
+function Other({ events, form, write }) {
+  return html`<label class="grow"><span>${t("fork.name")}</span><input list="fork-events" value=${form.event} required
+      autocomplete="off" spellcheck=${false} onInput=${(e) => write({ event: e.target.value })} /></label>
+    <datalist id="fork-events">${events.map((one) => html`<option value=${one} />`)}</datalist>
+    <${Values} values=${form.values} write=${write} />`;
+}
+
+/** `form` is as `blank` makes it; `write(changes)` changes some of it. */
+export function Instead({ name, form, write }) {
+  const robot = robotOf(name), languages = robot?.languages?.length ? robot.languages : [robot?.language ?? "en"];
+  return html`<label><span>${t("fork.instead")}</span>
+      <select class="instead" value=${form.kind} onChange=${(e) => write({ kind: e.target.value })}>
+        ${["same", "says", "event"].map((one) => html`
+          <option value=${one} selected=${one === form.kind}>${t(`fork.${one}`)}</option>`)}</select></label>
+    ${form.kind === "says" && html`<${Words} languages=${languages} form=${form} write=${write} />`}
+    ${form.kind === "event" && html`<${Other} events=${robot?.events ?? []} form=${form} write=${write} />`}`;
+}
