@@ -1,6 +1,6 @@
-"""Motions: trajectories, limits, gestures, gaits, life, and what follows what is seen.
+"""Motions: trajectories, limits, gestures, gaits, idle life, and joints that follow what the camera sees.
 
-Each name is imported when it is first used. `__init__.pyi` has the same names for type checkers.
+Each name is imported on first use. `__init__.pyi` declares the same names for type checkers.
 """
 
 from lumen.upkeep.lazy_names import lazy

@@ -1,4 +1,4 @@
-"""Commands brought within the limits and speeds of a body, in one place for every robot that performs them."""
+"""Brings commands within the joint limits and speeds of a body, in one place for all robots that perform them."""
 
 import weakref
 from bisect import bisect_left
@@ -17,29 +17,31 @@ from lumen.motion.limits import LIMIT_SLACK, Excess, beyond_limits, coupled_rang
 from lumen.ports import Aim, NativeCommand, Perform
 
 MAX_FITS = 50
-"""The most rounds of changes: one change may make another necessary, each closer to the body's abilities."""
+"""Rounds of changes, at most: one change may require another, and each brings the motion closer to the limits."""
 
 SPEED_MARGIN = 1.005
-"""The factor on the time that a joint needs: rounding must not make it too fast again."""
+"""Factor on the time that a joint needs, so that rounding does not make it too fast again."""
 
 
 NOWHERE: Mapping[str, float] = MappingProxyType({})
-"""The present angles of joints while no angle is known."""
+"""The present angles of joints if no angle is known."""
 
 
 class BoundedCommand(NamedTuple):
-    """A command that a body can perform, and the changes, for the log: those of an aim, which streams in, are not
-    listed. A command that needs no change is the same object."""
+    """A command that a body can perform, and the changes for the log; it is the same object if nothing had to change.
+
+    Changes of an aim are not listed, because aims arrive as a stream.
+    """
 
     command: NativeCommand
     changes: tuple[str, ...] = ()
 
 
 def within_limits(command: NativeCommand, body: Body) -> BoundedCommand:
-    """The nearest command that keeps the limits of the joints, coupled ones included, and their speeds.
+    """Return the nearest command that respects the limits of the joints, coupled limits included, and their speeds.
 
-    Joints that the body lacks, and values that are not numbers, are left as they are. Raises BadCommandError for a
-    motion that is still beyond the limits after `MAX_FITS` rounds of changes.
+    Joints that the body lacks, and values that are not finite, are left unchanged. Raises BadCommandError for a motion
+    that still exceeds the limits after `MAX_FITS` rounds of changes.
     """
     match command:
         case Look(yaw, pitch):
@@ -63,7 +65,7 @@ def within_limits(command: NativeCommand, body: Body) -> BoundedCommand:
 
 
 def aim_within(aim: Aim, body: Body, here: Mapping[str, float] = NOWHERE) -> Aim:
-    """The nearest aim that keeps the limits of the joints, coupled ones included, at most at their greatest speed.
+    """Return the nearest aim that respects the joint limits, coupled limits included, with a speed of at most 1.
 
     `here` are the present angles of joints [rad], as far as they are known.
     """
@@ -72,16 +74,16 @@ def aim_within(aim: Aim, body: Body, here: Mapping[str, float] = NOWHERE) -> Aim
 
 
 def analyse(motions: Iterable[MotionDefinition], body: Body) -> None:
-    """Analyse motions before they are played: a dense one takes longer than a tick of the robot's loop."""
+    """Analyse motions before they are played, because a dense one takes longer than one tick of the robot's loop."""
     for motion in motions:
         _kept(motion, body)
 
 
 def nearest_angles(wanted: Mapping[str, float], body: Body, here: Mapping[str, float] = NOWHERE) -> dict[str, float]:
-    """The nearest angles [rad] inside the limits of these joints, and inside the coupled ones among them.
+    """Return the nearest angles [rad] inside the limits of these joints, coupled limits included.
 
-    `here` are the present angles of other joints, as far as they are known. One that would be beyond a coupled limit is
-    added to the result.
+    `here` are the present angles of other joints, as far as they are known. A joint in `here` that would exceed a
+    coupled limit is added to the result.
     """
     near = dict(wanted)
     for name in near.keys() & body.joints.keys():
@@ -113,7 +115,7 @@ def _shown(joint: str, angle: float, body: Body) -> str:
 
 
 class _Analysis(NamedTuple):
-    """What a motion becomes within the limits of a body; `inside` is None if it stays as it is."""
+    """The result of fitting a motion to a body; `inside` is None if the motion stays unchanged."""
 
     body: Body
     inside: MotionDefinition | None
@@ -122,11 +124,11 @@ class _Analysis(NamedTuple):
 
 
 _analyses: dict[int, _Analysis] = {}
-"""The newest analysis of each motion that exists, by its identity: its tracks can't be hashed."""
+"""The newest analysis of each living motion, by its identity, because its tracks can't be hashed."""
 
 
 def _kept(motion: MotionDefinition, body: Body) -> _Analysis:
-    """The analysis of a motion, made once for each motion object and body."""
+    """Return the analysis of a motion, made once for each motion object and body."""
     found = _analyses.get(id(motion))
     if found is None or (found.body is not body and found.body != body):
         inside, changes, fits = _analysed(motion, body)
@@ -137,7 +139,7 @@ def _kept(motion: MotionDefinition, body: Body) -> _Analysis:
 
 
 def _analysed(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, tuple[str, ...], bool]:
-    """The motion within the limits, slower if a joint needs more time; the changes, once for each joint; and `fits`."""
+    """Return the motion inside the limits, slowed down if needed; the changes, once for each joint; and `fits`."""
     if not all(isfinite(x) for keys in motion.tracks.values() for key in keys for x in (key.time, key.angle)):
         return motion, (), True
     changes: dict[str, str] = {}
@@ -165,7 +167,7 @@ def _analysed(motion: MotionDefinition, body: Body) -> tuple[MotionDefinition, t
 
 
 def _cut(keys: tuple[Keyframe, ...], excess: Excess) -> tuple[Keyframe, ...]:
-    """The keys with the excess moved to the limit; if only the curve between two keys exceeds it, without handles."""
+    """Return the keys with the excess moved to the limit; the handles of a curve that exceeds it are removed."""
     i = bisect_left([key.time for key in keys], excess.key.time)
     if i == len(keys) or keys[i].time != excess.key.time:
         beside = replace(keys[min(i, len(keys) - 1)], time=excess.key.time, angle=excess.limit)
@@ -185,7 +187,7 @@ def _level(key: Keyframe) -> Keyframe:
 
 
 def slowed(motion: MotionDefinition, fast: Iterable[Excess]) -> MotionDefinition:
-    """The motion with more time before the keys that come too soon; all joints and cues shift together."""
+    """Return the motion with more time before the keys that come too soon; all joints and cues shift together."""
     times = [0.0, *sorted({key.time for keys in motion.tracks.values() for key in keys})]
     factors = [1.0] * len(times)
     for excess in fast:
@@ -206,7 +208,7 @@ def slowed(motion: MotionDefinition, fast: Iterable[Excess]) -> MotionDefinition
 
 
 def _retimed(keys: tuple[Keyframe, ...], later: Callable[[float], float]) -> tuple[Keyframe, ...]:
-    """The keys at their new times; a handle keeps its part of the time to the key beside it, so the way is the same."""
+    """Return the keys at their new times; handles are scaled with the time to the next key, so the path is the same."""
     old = [keys[0].time - 1.0, *(key.time for key in keys), keys[-1].time + 1.0] if keys else []
     new = [later(time) for time in old]
     gaps = ([end - begin for begin, end in pairwise(times)] for times in (new, old))

@@ -1,4 +1,4 @@
-"""Motions made of motions: mirrored, faster, one after another. All of it is pure and leaves its arguments alone."""
+"""Motions made of motions: mirrored, faster, joined. The functions are pure and don't change their arguments."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -9,16 +9,16 @@ from lumen.language.mirrors import Mirror
 from lumen.language.motions import Cue, Keyframe, MotionDefinition
 
 _SOON = 1e-9
-"""[s] that two keys of a joint have to lie apart."""
+"""The shortest time between two keys of a joint [s]."""
 
 _LED_SIDE = re.compile(r"(left|right)(?=_)")
 _OTHER = {"left": "right", "right": "left"}
 
 
 def mirrored(motion: MotionDefinition, mirror: Mirror) -> MotionDefinition:
-    """The motion as a mirror shows it, left and right exchanged; twice is the motion itself.
+    """Return the motion with left and right exchanged; mirroring twice gives the original.
 
-    What has no other side is left out.
+    Joints without a counterpart are left out.
     """
     tracks, origin = {}, {}
     for joint, keys in motion.tracks.items():
@@ -32,22 +32,22 @@ def mirrored(motion: MotionDefinition, mirror: Mirror) -> MotionDefinition:
 
 
 def at_speed(motion: MotionDefinition, speed: float) -> MotionDefinition:
-    """The motion `speed` times as fast; `speed` > 0."""
+    """Return the motion `speed` times as fast; `speed` must be positive."""
     tracks = {joint: tuple(_faster(key, speed) for key in keys) for joint, keys in motion.tracks.items()}
     cues = tuple(replace(cue, time=cue.time / speed) for cue in motion.cues)
     return replace(motion, duration=motion.duration / speed, tracks=tracks, cues=cues)
 
 
 def placed(motion: MotionDefinition, where: NodePath) -> MotionDefinition:
-    """The motion with every key and cue said to stand at `where`: for one that another file plays."""
+    """Return the motion with `where` as the place of every key and cue, for one that another file plays."""
     tracks = {joint: tuple(replace(key, where=where) for key in keys) for joint, keys in motion.tracks.items()}
     return replace(motion, tracks=tracks, cues=tuple(replace(cue, where=where) for cue in motion.cues))
 
 
 def trailing(motion: MotionDefinition, lags: Mapping[str, float]) -> MotionDefinition:
-    """The motion with these joints so much [s] later than its keyframes: what hangs on a limb comes after it.
+    """Return the motion with these joints delayed by their lags [s], for parts that hang on a limb and follow it.
 
-    It ends when it did: close to its end a joint catches up.
+    The duration is unchanged: near the end, a delayed joint catches up.
     """
 
     def later(key: Keyframe, lag: float) -> Keyframe:
@@ -59,7 +59,7 @@ def trailing(motion: MotionDefinition, lags: Mapping[str, float]) -> MotionDefin
 
 
 def joined(parts: Iterable[tuple[float, MotionDefinition]], duration: float) -> MotionDefinition:
-    """One motion of parts, each with the time [s] that it begins at, in that order and not overlapping."""
+    """Return one motion made of parts, each with its start time [s]; they must be in order and must not overlap."""
     tracks: dict[str, list[Keyframe]] = {}
     cues: list[Cue] = []
     for begin, part in parts:
@@ -70,7 +70,7 @@ def joined(parts: Iterable[tuple[float, MotionDefinition]], duration: float) -> 
 
 
 def returning(part: MotionDefinition, angles: Mapping[str, float], pause: float, where: NodePath) -> MotionDefinition:
-    """The motion with a way of `pause` [s] back to `angles` behind it, where it does not stand there already."""
+    """Return the motion with `pause` [s] appended to move back to `angles`, unless it already ends there."""
     away = [j for j, keys in part.tracks.items() if j in angles and abs(keys[-1].angle - angles[j]) > 1e-3]
     if not away:
         return part
@@ -88,7 +88,7 @@ def returning(part: MotionDefinition, angles: Mapping[str, float], pause: float,
 
 
 def _later(key: Keyframe, begin: float) -> Keyframe:
-    """The key so much later; written out, for a motion has thousands and `replace` takes three times as long."""
+    """Return the key `begin` [s] later. It avoids `replace`, which takes three times as long for thousands of keys."""
     if not begin:
         return key
     return Keyframe(begin + key.time, key.angle, key.interpolation, key.handle_in, key.handle_out, key.where)

@@ -1,4 +1,4 @@
-"""What a motion asks of a body beyond what it can give."""
+"""The limits of a body that a motion exceeds."""
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
@@ -10,14 +10,14 @@ from lumen.language.robots import Body, CoupledLimit
 from lumen.motion.trajectories import JointTrack, Trajectory
 
 LIMIT_SLACK = 1e-6
-"""[rad] that an angle may lie beyond its limit, and the part by which a speed may: files round."""
+"""The accepted excess over an angle limit [rad], and over a speed limit, relative: numbers in files are rounded."""
 
 COUPLED_TOLERANCE = 1e-3
-"""[rad] that an angle may lie beyond a coupled limit: the published tables disagree with the limits by as much."""
+"""The accepted excess over a coupled limit [rad]: the published tables deviate from the joint limits by as much."""
 
 
 class Excess(NamedTuple):
-    """On the way to `key` the joint would reach `value` where `limit` is the most: [rad], or [rad/s] of a speed."""
+    """On the way to `key` the joint would reach `value`, beyond `limit`: [rad], or [rad/s] for a speed."""
 
     joint: str
     key: Keyframe
@@ -26,9 +26,9 @@ class Excess(NamedTuple):
 
 
 def beyond_limits(motion: MotionDefinition, body: Body, trajectory: Trajectory | None = None) -> list[Excess]:
-    """Where a joint leaves its limits [rad], coupled ones included: in its keys, or on a Bezier curve between them.
+    """Return the excesses over limits [rad], coupled ones included, at keys or on Bezier curves between them.
 
-    `trajectory` is `Trajectory(motion)`, for who has it already.
+    `trajectory` is `Trajectory(motion)`, for callers that have it already.
     """
     tracks = {track.joint: track for track in (trajectory or Trajectory(motion)).tracks}
     coupled = (excess for limit in body.coupled for excess in _beyond_coupled(motion, limit, tracks))
@@ -36,10 +36,10 @@ def beyond_limits(motion: MotionDefinition, body: Body, trajectory: Trajectory |
 
 
 def overspeed(motion: MotionDefinition, body: Body, trajectory: Trajectory | None = None) -> list[Excess]:
-    """Where a joint would move faster than it can [rad/s], begun in the motion's start posture.
+    """Return the excesses over maximum speeds [rad/s] of a motion that begins in its start posture.
 
-    One for each key that can't be reached in time; without a start posture the way to the first key is not judged.
-    `trajectory` is `Trajectory(motion)`, for who has it already.
+    There is one entry for each key that can't be reached in time. Without a start posture the way to the first key is
+    not checked. `trajectory` is `Trajectory(motion)`, for callers that have it already.
     """
     found = []
     for track in (trajectory or Trajectory(motion)).tracks:
@@ -51,7 +51,7 @@ def overspeed(motion: MotionDefinition, body: Body, trajectory: Trajectory | Non
 
 
 def coupled_range(limit: CoupledLimit, on: float) -> tuple[float, float]:
-    """The least and the greatest angle [rad] of `limit.joint` while `limit.on` stands at `on` [rad]."""
+    """Return the range of `limit.joint` [rad] while `limit.on` is at `on` [rad]."""
     rows = limit.rows
     if on <= rows[0][0]:
         return rows[0][1:]
@@ -76,7 +76,7 @@ def _beyond(motion: MotionDefinition, body: Body, tracks: Mapping[str, JointTrac
 def _beyond_coupled(
     motion: MotionDefinition, limit: CoupledLimit, tracks: Mapping[str, JointTrack]
 ) -> Iterator[Excess]:
-    """Judged at the keys of both joints: moving either may close the range of the other."""
+    """Yield excesses at the keys of both joints, because a movement of either may close the range of the other."""
     if limit.on not in motion.tracks or limit.joint not in motion.tracks:
         return
     keys = {key.time: key for joint in (limit.on, limit.joint) for key in motion.tracks[joint]}

@@ -1,4 +1,4 @@
-"""Which postures lie on the way from one to another."""
+"""Routes between postures."""
 
 from collections.abc import Iterator
 
@@ -6,19 +6,19 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body
 
 UPRIGHT = ("Stand", "StandInit", "StandZero", "Crouch")
-"""Those on both feet that every biped may have."""
+"""Postures on both feet that every biped may have."""
 
 RESTFUL = ("Crouch", "Sit", "SitRelax", "LyingBack", "LyingBelly")
-"""Those that a robot keeps with its motors off."""
+"""Postures that a robot keeps with its motors off."""
 
 STRAIGHT_COST = 1.0
-"""What a straight way counts [s], beside the duration of a passage."""
+"""Cost of a straight way [s], comparable with the duration of a passage."""
 
 
 def standing(body: Body) -> tuple[str, ...]:
-    """The postures between which straight ways lead: of a biped those on its feet, of another body all.
+    """Return the postures that straight ways connect: for a biped those on its feet, for other bodies all.
 
-    A biped's own postures count as such, unless a passage leads there.
+    A biped's additional postures count as such, unless a passage leads to them.
     """
     if not body.roles.base.row.legs:
         return tuple(body.postures)
@@ -28,17 +28,17 @@ def standing(body: Body) -> tuple[str, ...]:
 
 
 def lies(posture: str) -> bool:
-    """Whether that is a posture on the floor, on back or belly."""
+    """Return True for a posture on the floor, on the back or belly."""
     return posture.startswith("Lying")
 
 
 def passage(body: Body, start: str, end: str) -> MotionDefinition | None:
-    """The motion from one posture to its neighbour; None for a straight way."""
+    """Return the motion from one posture to its neighbour; None for a straight way."""
     return next((p for p in body.passages if (p.start, p.end) == (start, end)), None)
 
 
 def route(body: Body, start: str, *goals: str) -> list[str] | None:
-    """The postures from `start` (not itself) to the nearest goal, quickest way; None where there is none."""
+    """Return the postures after `start` on the quickest way to the nearest goal; None if no goal can be reached."""
     found: dict[str, list[str]] = {}
     ways: dict[str, tuple[float, list[str]]] = {start: (0.0, [])}
     while ways:

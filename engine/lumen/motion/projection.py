@@ -1,4 +1,4 @@
-"""Where a point in the robot's torso frame appears in the image of its head camera, and the head that centres it.
+"""Projection of points in the robot's torso frame into the image of its head camera, and its inverse for the head.
 
 Frames are NAO's: x forward, y left, z up, in [m]. The head turns about the neck by yaw (positive to the left), then by
 pitch (positive is down), in [rad]. In the image u grows to the right and v down, in [px], from the upper left corner.
@@ -13,9 +13,9 @@ Matrix3 = tuple[Vector3, Vector3, Vector3]
 
 
 def project(point: Vector3, camera: Camera) -> tuple[float, float] | None:
-    """The pixel (u, v) of a point in the camera's frame; None behind the camera or outside the image.
+    """Return the pixel (u, v) of a point in the camera's frame; None behind the camera or outside the image.
 
-    The camera's frame keeps the robot's axes: x looks out of the lens, y left, z up.
+    The camera's frame keeps the robot's axes: x points out of the lens, y left, z up.
     """
     pixel = _pixel(point, camera)
     inside = pixel and 0 <= pixel[0] < camera.width and 0 <= pixel[1] < camera.height
@@ -23,13 +23,13 @@ def project(point: Vector3, camera: Camera) -> tuple[float, float] | None:
 
 
 def camera_pose(camera: Camera, yaw: float, pitch: float) -> tuple[Vector3, Matrix3]:
-    """The camera's place in the torso frame [m], and its rotation: the columns are its x, y, z in that frame."""
+    """Return the camera's place in the torso frame [m], and its rotation: the columns are its x, y, z in that frame."""
     place, neck = _times(_head(yaw, pitch), camera.position), camera.neck
     return (neck[0] + place[0], neck[1] + place[1], neck[2] + place[2]), _head(yaw, pitch + camera.pitch)
 
 
 def into_camera(point: Vector3, camera: Camera, yaw: float, pitch: float) -> Vector3:
-    """A point of the torso frame in the camera's frame, with the head at `yaw`, `pitch`."""
+    """Return a point of the torso frame in the camera's frame, with the head at `yaw`, `pitch`."""
     place, rotation = camera_pose(camera, yaw, pitch)
     offset = (point[0] - place[0], point[1] - place[1], point[2] - place[2])
     columns: Matrix3 = tuple(zip(*rotation, strict=True))  # type: ignore[assignment]
@@ -37,14 +37,15 @@ def into_camera(point: Vector3, camera: Camera, yaw: float, pitch: float) -> Vec
 
 
 def seen(point: Vector3, camera: Camera, yaw: float, pitch: float) -> tuple[float, float] | None:
-    """The pixel of a point of the torso frame, with the head at `yaw`, `pitch`; None where it can't be seen."""
+    """Return the pixel of a point of the torso frame, with the head at `yaw`, `pitch`; None if it is not visible."""
     return project(into_camera(point, camera, yaw, pitch), camera)
 
 
 def centring(point: Vector3, camera: Camera) -> tuple[float, float]:
-    """The yaw and pitch that bring a point of the torso frame to the middle of the image, whatever the joints allow.
+    """Return the yaw and pitch that centre a point of the torso frame in the image, ignoring joint limits.
 
-    Exact for a camera in the head's plane of symmetry, as NAO's are; the point must be farther from the neck than it.
+    It is exact for a camera in the head's plane of symmetry, as in NAO; the point must be farther from the neck than
+    it.
     """
     neck = camera.neck
     x, y, z = point[0] - neck[0], point[1] - neck[1], point[2] - neck[2]
@@ -56,9 +57,9 @@ def centring(point: Vector3, camera: Camera) -> tuple[float, float]:
 def after_turning(
     pixel: tuple[float, float], camera: Camera, before: tuple[float, float], after: tuple[float, float]
 ) -> tuple[float, float] | None:
-    """Where something far away, seen at `pixel`, appears once the head has turned from one (yaw, pitch) to another.
+    """Return the pixel of a distant object, seen at `pixel`, after the head turns from one (yaw, pitch) to another.
 
-    It may lie outside the image; None where it is no longer before the camera.
+    It may lie outside the image; None if the object is no longer in front of the camera.
     """
     y = (1 - 2 * pixel[0] / camera.width) * tan(camera.horizontal_fov / 2)
     z = (1 - 2 * pixel[1] / camera.height) * tan(camera.vertical_fov / 2)
@@ -68,7 +69,7 @@ def after_turning(
 
 
 def _pixel(point: Vector3, camera: Camera) -> tuple[float, float] | None:
-    """The pixel of a point in the camera's frame, inside the image or not; None behind the camera."""
+    """Return the pixel of a point in the camera's frame, inside the image or not; None behind the camera."""
     x, y, z = point
     if x <= 0:
         return None
@@ -78,7 +79,7 @@ def _pixel(point: Vector3, camera: Camera) -> tuple[float, float] | None:
 
 
 def _head(yaw: float, pitch: float) -> Matrix3:
-    """Rotation by `yaw` about z, then by `pitch` about the new y; rows."""
+    """Return the rows of the rotation by `yaw` about z, then by `pitch` about the new y."""
     cy, sy, cp, sp = cos(yaw), sin(yaw), cos(pitch), sin(pitch)
     return (cy * cp, -sy, cy * sp), (sy * cp, cy, sy * sp), (-sp, 0.0, cp)
 

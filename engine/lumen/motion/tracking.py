@@ -1,14 +1,15 @@
-"""A head that follows what is seen, and looks for what it has lost.
+"""A head that follows what the camera sees, and searches for it after it is lost.
 
-Each sight moves the joints to where they stood *when the image was taken* plus the controller's output times the
-binding's gain. Adding the output to the angles last commanded instead overshoots as soon as camera and bus take time:
-the same error is then corrected again and again before its correction can be seen.
+Each sight moves the joints to their position *when the image was taken* plus the controller's output times the
+binding's gain. Adding the output to the last commanded angles instead overshoots because of the delays of camera and
+bus: the same error would be corrected again and again before the correction is visible.
 
-What the robot's life adds to the joints beneath all commands is taken off poses and images before: a follower aims the
-head that it commands, and life moves it about there. Else each look would answer a glance, or take it for sag.
+The offsets of the robot's idle life, added to the joints after all commands, are removed from poses and images first: a
+follower aims the head that it commands, and idle life moves the head about that aim. Otherwise each look would respond
+to a glance, or mistake it for sag.
 
-A head that stands still stands a little beside where it was commanded to, for its weight and for friction. How far is
-learned while it stands, and added; else it would rest about as far beside the face.
+Weight and friction keep a resting head slightly off its commanded position. The offset is learned while the head rests,
+and added; otherwise the head would stop off the face by about that much.
 """
 
 from collections.abc import Mapping
@@ -24,26 +25,26 @@ from lumen.motion.limits import coupled_range
 from lumen.motion.visual_servo import JointAngles, JointHistory, VisualServo
 
 SEARCH_SWING = 0.5235987755982988
-"""How far the first joint swings to either side in search where the file does not say: 30 deg, in [rad]."""
+"""Amplitude of the first joint's search, if the file does not specify one: 30 deg, in [rad]."""
 
 MAX_CLOCK_LEAD = 0.1
-"""How far in the future [s] a message may say it was made, as clocks go; farther, it goes by another clock."""
+"""Accepted lead of a message's time over the local clock [s]; with a greater lead the clocks are different."""
 
 STILL_TIME, STILL_ANGLE = 0.12, 0.006
-"""For how long [s] a joint that stands still has not moved, and not been commanded to, by more than this [rad]."""
+"""A joint is steady if neither its pose nor its command changed by more than this angle [rad] for this time [s]."""
 
 MAX_SAG = 0.035
-"""How far [rad] weight and friction hold a joint off its commanded angle; farther off, something else does."""
+"""Greatest offset from the commanded angle due to weight and friction [rad]; a greater one has another cause."""
 
 SAG_LEARNING_RATE = 0.4
-"""Which part of a new measurement of that is believed: the head may still be on its way."""
+"""Weight of a new measurement of the sag: the head may still be moving."""
 
 
 class Tracker:
-    """What a bound controller asks of its joints. It reads no clock and moves nothing; times are in [s].
+    """Computes joint angles for a bound controller; it reads no clock and moves nothing; times are in [s].
 
-    Give it the joints' measured angles (`pose`) and what was seen (`see`); where nothing was seen, ask it what to do
-    (`idle`). `routes` are those whose messages it wants, `joints` those that it moves.
+    Pass it the joints' measured angles (`pose`) and what the camera saw (`see`); while nothing is seen, call `idle`.
+    `routes` are the routes of the messages that it needs, `joints` those that it moves.
     """
 
     def __init__(self, controller: ControllerDefinition, body: Body) -> None:
@@ -64,7 +65,7 @@ class Tracker:
         self._sag: JointAngles = {}
 
     def succeed(self, before: "Tracker") -> None:
-        """Go on where another one stood that moved the same joints: with the poses it knew, and what it saw last."""
+        """Continue from the state of another tracker of the same joints: its past poses, and its last sight."""
         if set(self.joints) <= set(before.joints):
             pairs = (self._poses, before._poses), (self._commanded, before._commanded), (self._lived, before._lived)
             for mine, theirs in pairs:
@@ -75,12 +76,11 @@ class Tracker:
     def pose(
         self, time: float, angles: Mapping[str, float], *, now: float = inf, life: Mapping[str, float] | None = None
     ) -> None:
-        """Remember where the joints stand [rad], measured at `time`, as a message says that comes in at `now`.
+        """Store the joint angles [rad], measured at `time` according to a message that arrived at `now`.
 
-        `life` is how much of that the robot's life has added [rad]; what is no number there counts as nothing.
-
-        It is no pose where one of `joints` is missing, where something is no number, or where it lies in the future:
-        more than `MAX_CLOCK_LEAD` after `now`.
+        `life` are the parts of them that idle life has added [rad]; missing or invalid ones count as 0. The pose is
+        ignored if one of `joints` is missing, if a value is not a number, or if `time` is more than `MAX_CLOCK_LEAD`
+        after `now`.
         """
         measured = number(time)
         turned = {joint: angle for joint in self.joints if (angle := number(angles.get(joint))) is not None}
@@ -93,11 +93,11 @@ class Tracker:
     def see(
         self, fields: Mapping[str, Any], captured_at: float, route: str | None = None, *, now: float = inf
     ) -> JointAngles | None:
-        """Where the joints should go [rad], from the body of a message and when its image was taken.
+        """Return the target angles of the joints [rad], from the body of a message and the time of its image.
 
-        `route` is the message's, for a controller whose inputs come from several; `now` is when it came in. None where
-        the sight is stale, older than the one before, from the future (`MAX_CLOCK_LEAD`), lacks a field, comes before
-        the first pose, or fires no rule of an output without default.
+        `route` is the message's, for a controller with inputs from several routes; `now` is when it arrived. The
+        result is None if the sight is stale, older than the one before, from the future (`MAX_CLOCK_LEAD`) or before the
+        first pose, if it lacks a field, or if no rule fires for an output without default.
         """
         captured = number(captured_at)
         if captured is None or captured > now + MAX_CLOCK_LEAD or captured < self._seen or not self._poses:
@@ -114,7 +114,7 @@ class Tracker:
         return self._command(target, now if isfinite(now) else self._poses.last)
 
     def idle(self, now: float) -> JointAngles | None:
-        """Where the joints should go [rad] while nothing is seen: None to stay, then a search, then ahead."""
+        """Return the target angles [rad] while nothing is seen: None to stay, then a search, then straight ahead."""
         times = self.controller.tracking
         if not self._poses:
             return None
@@ -130,7 +130,7 @@ class Tracker:
         return self._command(self.clamped({joint: times.ahead.get(joint, 0.0) for joint in self.joints}), now)
 
     def _stood(self, joint: str, time: float) -> float:
-        """Where the turn counts from [rad]: the joint's pose at that time, and how far it sags, as last learned."""
+        """Return the reference for a turn [rad]: the joint's pose at that time plus its sag, which is learned here."""
         pose, start = self._poses.at(time)[joint], time - STILL_TIME
         sag = self._sag.get(joint, 0.0)
         if self._poses.steady(joint, start, time, STILL_ANGLE) and self._commanded.steady(
@@ -146,7 +146,7 @@ class Tracker:
         return target
 
     def clamped(self, angles: Mapping[str, float]) -> JointAngles:
-        """The nearest angles within the bindings', the joints' and the coupled limits [rad]."""
+        """Return the nearest angles inside the limits of bindings, joints and coupled joints [rad]."""
         result = dict(angles)
         for joint, angle in angles.items():
             low, high = self._limits(joint)
@@ -166,13 +166,13 @@ class Tracker:
         return low, high
 
     def _sweep(self, joint: str) -> float:
-        """How far the joint swings, to the side first on which the face was seen last."""
+        """Return the joint's search amplitude [rad]; its sign is that of the side on which the face was seen last."""
         sweep = self.controller.tracking.sweep
         far = sweep.get(joint, 0.0) if sweep else SEARCH_SWING * (joint == self.joints[0])
         return -far if self._turn.get(joint, 0.0) < 0.0 else far
 
     def _take(self, fields: Mapping[str, Any], route: str | None) -> bool:
-        """Read the inputs' fields; true where every input has a value by now."""
+        """Store the input fields of a message; return True once every input has a value."""
         for binding in self.controller.input_bindings:
             if route in (None, binding.route):
                 if (value := number_at(fields, binding.path)) is None:

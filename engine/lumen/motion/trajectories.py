@@ -1,4 +1,4 @@
-"""Where a motion has every joint at any time.
+"""The angles of all joints of a motion at any time.
 
 A track is compiled once into segments, one before each key: polynomials of the time in the segment for `linear`,
 `cubic` and `minimum-jerk`, a curve in time and angle for `bezier`. Only Bezier handles can carry a joint beyond its
@@ -14,7 +14,7 @@ from lumen.language.motions import Interpolation, Keyframe, MotionDefinition
 
 
 class Polynomial(NamedTuple):
-    """c0 + c1 u + … + c5 u^5, with u from 0 to 1 between `start` and `start + duration` [s]."""
+    """c0 + c1 u + … + c5 u^5 [rad], with u from 0 to 1 between `start` and `start + duration` [s]."""
 
     start: float
     duration: float
@@ -26,18 +26,19 @@ class Polynomial(NamedTuple):
     c5: float = 0.0
 
     def at(self, t: float) -> float:
+        """Return the angle [rad] at `t` [s]."""
         u = (t - self.start) / self.duration
         return self.c0 + u * (self.c1 + u * (self.c2 + u * (self.c3 + u * (self.c4 + u * self.c5))))
 
     def peak_speed(self) -> float:
-        """The greatest speed in the segment [rad/s]; exact for lines, cubics and minimum jerk."""
+        """Return the peak speed in the segment [rad/s]; exact for lines, cubics and minimum jerk."""
         moments = [0.0, 0.5, 1.0]
         if self.c3 and 0.0 < (vertex := -self.c2 / (3 * self.c3)) < 1.0:
             moments.append(vertex)
         return max(abs(self._slope(u)) for u in moments) / self.duration
 
     def extremes(self) -> tuple[float, float]:
-        """The least and the greatest angle: its ends, for no polynomial here leaves them."""
+        """Return the smallest and the greatest angle [rad]: those at the ends, which these polynomials never exceed."""
         first, last = self.c0, self.c0 + self.c1 + self.c2 + self.c3 + self.c4 + self.c5
         return min(first, last), max(first, last)
 
@@ -58,21 +59,22 @@ class Bezier(NamedTuple):
     a3: float
 
     def at(self, t: float) -> float:
+        """Return the angle [rad] at `t` [s]."""
         return _bezier(self._parameter((t - self.start) / self.duration), self.a0, self.a1, self.a2, self.a3)
 
     def peak_speed(self) -> float:
-        """The greatest speed in the segment [rad/s], from 64 samples."""
+        """Return the peak speed in the segment [rad/s], from 64 samples."""
         times = [self.start + self.duration * i / 64 for i in range(65)]
         angles = [self.at(t) for t in times]
         return max(abs(b - a) for a, b in pairwise(angles)) * 64 / self.duration
 
     def extremes(self) -> tuple[float, float]:
-        """The least and the greatest angle, from 64 samples."""
+        """Return the smallest and the greatest angle [rad], from 64 samples."""
         angles = [_bezier(i / 64, self.a0, self.a1, self.a2, self.a3) for i in range(65)]
         return min(angles), max(angles)
 
     def _parameter(self, x: float) -> float:
-        """The curve's parameter where it has reached `x` of its time: bisection, kept fast by Newton's steps."""
+        """Return the curve's parameter at the relative time `x`, by Newton's method safeguarded with bisection."""
         low, high, u = 0.0, 1.0, x
         for _ in range(40):
             error = _bezier(u, 0.0, self.x1, self.x2, 1.0) - x
@@ -97,7 +99,7 @@ _SMOOTH = (Interpolation.CUBIC, Interpolation.BEZIER)
 
 
 class JointTrack(NamedTuple):
-    """One joint's way: `segments[i]` leads to the key at `ends[i]` [s]; after the last it stays at `last` [rad]."""
+    """The path of one joint: `segments[i]` ends at `ends[i]` [s]; after the last it stays at `last` [rad]."""
 
     joint: str
     first: float
@@ -106,16 +108,17 @@ class JointTrack(NamedTuple):
     segments: Sequence[Segment]
 
     def at(self, t: float) -> float:
+        """Return the angle [rad] at `t` [s]."""
         if t <= 0.0:
             return self.first
-        i = bisect_right(self.ends, t)  # in a key the next segment begins, exactly at its angle
+        i = bisect_right(self.ends, t)  # at a key the next segment begins, exactly at its angle
         return self.segments[i].at(t) if i < len(self.segments) else self.last
 
 
 class Trajectory:
-    """A motion compiled for one performance, from the angles `start` [rad] that the joints have when it begins.
+    """A motion compiled for one performance, from the joints' angles `start` [rad] at its beginning.
 
-    Joints missing in `start` begin in the motion's start posture, or at their first key where it has none.
+    Joints missing in `start` begin in the motion's start posture, else at their first key.
     """
 
     def __init__(self, motion: MotionDefinition, start: Mapping[str, float] | None = None) -> None:
@@ -128,17 +131,17 @@ class Trajectory:
         )
 
     def sample(self, t: float) -> dict[str, float]:
-        """The angle [rad; a hand 0..1] at `t` [s] of every joint that the motion moves; it stays at either end."""
+        """Return the angle [rad; a hand 0..1] at `t` [s] of every joint of the motion; constant before and after."""
         return {track.joint: track.at(t) for track in self.tracks}
 
 
 def sample(motion: MotionDefinition, t: float, start: Mapping[str, float] | None = None) -> dict[str, float]:
-    """One sample of `Trajectory(motion, start)`; who needs many of them keeps the Trajectory."""
+    """Return one sample of `Trajectory(motion, start)`; callers that need many should keep the Trajectory."""
     return Trajectory(motion, start).sample(t)
 
 
 def track(joint: str, keys: Sequence[Keyframe], start: float) -> JointTrack:
-    """The track through `keys` from the angle `start` [rad] at time 0."""
+    """Return the track through `keys` from the angle `start` [rad] at time 0."""
     points = [Keyframe(0.0, start, keys[0].interpolation), *keys]
     slopes = _slopes(points)
     segments = [
@@ -172,7 +175,7 @@ def _hermite(a: Keyframe, h: float, d: float, slope_a: float, slope_b: float) ->
 
 
 def _handle(given: tuple[float, float], h: float, automatic: float) -> tuple[float, float]:
-    """A handle (time from its key [s], angle [rad]) shortened to the segment, so that time never runs back."""
+    """Return a handle (time from its key [s], angle [rad]), shortened to the segment: time never runs backwards."""
     dt, da = given
     if dt <= 0.0:
         return h / 3, automatic
@@ -180,7 +183,7 @@ def _handle(given: tuple[float, float], h: float, automatic: float) -> tuple[flo
 
 
 def _slopes(points: Sequence[Keyframe]) -> list[float]:
-    """The speed in which a smooth curve passes each key [rad/s]: 0 at an extreme and beside any other kind."""
+    """Return the speed of a smooth curve at each key [rad/s]: 0 at an extreme and next to keys of another kind."""
     slopes = [0.0] * len(points)
     for i in range(1, len(points) - 1):
         a, b, c = points[i - 1], points[i], points[i + 1]

@@ -25,7 +25,7 @@ JointAngles = dict[str, float]
 
 
 class JointHistory:
-    """The angles [rad] of some joints at increasing times [s]; what is older than `memory` [s] is forgotten."""
+    """The angles [rad] of some joints at increasing times [s]; entries older than `memory` [s] are dropped."""
 
     def __init__(self, memory: float) -> None:
         self.memory = memory
@@ -36,11 +36,11 @@ class JointHistory:
 
     @property
     def last(self) -> float:
-        """The time [s] of what is newest."""
+        """Return the time of the newest entry [s]."""
         return self.known[-1][0]
 
     def add(self, time: float, angles: Mapping[str, float]) -> None:
-        """Remember these; nothing where the time is not after all others."""
+        """Store the angles at `time`; ignore them if `time` is not later than all others."""
         if self.known and time <= self.last:
             return
         self.known.append((time, dict(angles)))
@@ -48,7 +48,7 @@ class JointHistory:
             self.known.popleft()
 
     def at(self, time: float) -> JointAngles:
-        """Where the joints were, on the straight way from one known place to the next; the nearest outside them."""
+        """Return the angles at `time`, linearly interpolated and constant before and after all entries."""
         i = bisect_left(self.known, time, key=lambda entry: entry[0])
         if i == 0 or i == len(self.known):
             return dict(self.known[min(i, len(self.known) - 1)][1])
@@ -57,7 +57,7 @@ class JointHistory:
         return {joint: angle + w * (after[joint] - angle) for joint, angle in before.items()}
 
     def steady(self, joint: str, start: float, end: float, within: float) -> bool:
-        """Whether what is known of the joint from `start` to `end` [s], and just before, is `within` so much [rad]."""
+        """Return True if the joint's angles from just before `start` to `end` [s] differ by at most `within` [rad]."""
         first = bisect_right(self.known, start, key=lambda entry: entry[0]) - 1
         after = bisect_right(self.known, end, key=lambda entry: entry[0])
         angles = [self.known[i][1][joint] for i in range(max(first, 0), after)]
@@ -65,7 +65,7 @@ class JointHistory:
 
 
 class VisualServo:
-    """Turns a sight into a turn, for a controller bound to joints of a body."""
+    """Computes the turn for a sight, for a controller bound to joints of a body."""
 
     def __init__(self, controller: ControllerDefinition, body: Body) -> None:
         self._controller, self._body = controller, body
@@ -76,9 +76,9 @@ class VisualServo:
         self._previous: dict[str, float] = {}
 
     def turn(self, inputs: Mapping[str, float], pose: Mapping[str, float], lived: Mapping[str, float]) -> JointAngles:
-        """How far to turn each joint [rad] for these inputs, seen with the joints at `pose` plus `lived` [rad].
+        """Return the turn of each joint [rad] for these inputs, seen with the joints at `pose` plus `lived` [rad].
 
-        What was `lived`, the robot does of its own accord: the turn is as if the image had been taken without it.
+        `lived` are the offsets of idle life: the turn is computed as if the image had been taken without them.
         """
         turned = dict.fromkeys(pose, 0.0)
         if any(lived.values()):
@@ -92,7 +92,7 @@ class VisualServo:
         return turned
 
     def _once(self, inputs: Mapping[str, float]) -> JointAngles:
-        """What the controller says of one image."""
+        """Return the turn of each joint [rad] for one image."""
         self._previous = outputs = self._magnifier.answer(inputs, self._previous)
         turn = dict.fromkeys((b.joint for b in self._bindings), 0.0)
         for binding in self._bindings:
@@ -102,7 +102,7 @@ class VisualServo:
     def _after(
         self, inputs: Mapping[str, float], pose: Mapping[str, float], turned: Mapping[str, float]
     ) -> dict[str, float] | None:
-        """The inputs as the camera would have them after the turn; None where that can't be computed."""
+        """Return the inputs that the camera would see after the turn; None if they can't be computed."""
         yaw, pitch, camera = self._yaw, self._pitch, self._body.camera
         if not (self._across and self._down and camera and (yaw or pitch)):
             return None
@@ -115,11 +115,11 @@ class VisualServo:
 
 
 def _angle(role: JointRole | None, angles: Mapping[str, float]) -> float:
-    """The angle of a role [rad]: 0 where the head does not turn that way."""
+    """Return the angle of a role [rad]; 0 if the head does not turn that way."""
     return role.sign * angles[role.joint] if role else 0.0
 
 
 def _image_inputs(controller: ControllerDefinition) -> tuple[str, str]:
-    """The inputs that are a place in the image: in pixels to the right, and down; empty where there is none."""
+    """Return the inputs that are image coordinates: pixels to the right, and down; empty strings if there are none."""
     found = {v.direction: name for name, v in controller.inputs.items() if v.unit == "px"}
     return found.get("right", ""), found.get("down", "")

@@ -8,20 +8,21 @@ from lumen.language.hall_places import HallPlace
 from lumen.ports import Whereabouts
 
 PLACE_PER_METRE, PLACE_PER_RADIAN = 0.03, 0.006
-"""How far off a robot may be after a metre straight ahead, and after a turn of 1 rad [m]."""
+"""The error of the place [m] after 1 m straight ahead, and after a turn of 1 rad."""
 
 HEADING_PER_METRE, HEADING_PER_RADIAN = 0.02, 0.022
-"""How far from where it believes it may face after these [rad].
+"""The error of the heading [rad] after 1 m straight ahead, and after a turn of 1 rad.
 
-All four are chosen so that no simulated robot was farther off, of any weight, on any floor (docs/decisions/034).
+All four exceed the error of every simulated robot, of any weight, on any floor (docs/decisions/034).
 """
 
 
 class DeadReckoning:
-    """The robot's place and heading in the frame of its start, moved on with `follow`.
+    """The robot's place and heading in the frame of its start, updated by `follow`.
 
-    `slid` [m] is how far it may have moved without walking, which is added as it is. What walking adds are errors that
-    know nothing of each other: they grow with the root of the way, and those of the heading with the way once more.
+    `slid` [m] is the distance that it may have moved without walking; it is added in full. Errors of walking are
+    independent of each other: those of the heading grow with the square root of the distance walked, those of the place
+    faster.
     """
 
     def __init__(self) -> None:
@@ -31,10 +32,11 @@ class DeadReckoning:
 
     @property
     def whereabouts(self) -> Whereabouts:
+        """Return the estimated place and heading, and the possible error of the place [m]."""
         return Whereabouts(self.x, self.y, self.theta, self.slid + sqrt(self._place))
 
     def follow(self, x: float, y: float, theta: float) -> None:
-        """The robot has come there by walking, straight from where it was."""
+        """Update the estimate: the robot has walked straight from its last place to this one."""
         way, turn = hypot(x - self.x, y - self.y), abs(turned(self.theta, theta))
         if not (way or turn):
             return
@@ -45,34 +47,34 @@ class DeadReckoning:
 
 
 def turned(before: float, after: float) -> float:
-    """How far one turns to the left from one heading to another, the shorter way [rad]."""
+    """Return the shorter turn from one heading to another, positive to the left [rad]."""
     return pi - (pi - after + before) % (2 * pi)
 
 
 def beyond(here: Whereabouts, x: float, y: float, theta: float) -> tuple[float, float, float]:
-    """Where one stands who goes by x, y and theta from there, all as seen from there."""
+    """Return the pose reached from `here` by moving by x, y and theta, which are in the frame of `here`."""
     c, s = cos(here.theta), sin(here.theta)
     return here.x + x * c - y * s, here.y + x * s + y * c, turned(0.0, here.theta + theta)
 
 
 NEAR, FACING = 0.05, 0.1
-"""Nearer than this [m], [rad], by its odometry, the robot walks no further."""
+"""The accepted distance and turn from the goal, by odometry [m], [rad]."""
 
 ASIDE = 0.3
-"""So near [m] it walks in any direction without turning first."""
+"""The distance below which the robot walks in any direction without turning first [m]."""
 
 LONGEST_LEG = 2.0
-"""So far it walks ahead [m] before it looks where its steps have led it."""
+"""The longest straight walk [m], before the robot checks its position again."""
 
 SPARE_LEGS = 6
-"""How many walks a way may take beside those it takes at least."""
+"""Walks that a way may use in addition to the necessary ones."""
 
 LEAVING = 1.2
-"""So many times as far as `within` the robot has left a place where it was: it sways, and must not come and go."""
+"""The robot leaves its place at this multiple of `within`: hysteresis, because its position sways."""
 
 
 def next_leg(here: Whereabouts, place: HallPlace) -> Walk | None:
-    """The next walk from here to that place; None where the robot is there, as far as it can tell."""
+    """Return the next walk towards that place; None if the robot is there, as far as it can tell."""
     dx, dy = place.x - here.x, place.y - here.y
     distance, c, s = hypot(dx, dy), cos(here.theta), sin(here.theta)
     ahead, left = dx * c + dy * s, dy * c - dx * s
@@ -89,19 +91,19 @@ def next_leg(here: Whereabouts, place: HallPlace) -> Walk | None:
 
 
 def most_legs(here: Whereabouts, place: HallPlace) -> int:
-    """After how many walks a robot that set out here should be there."""
+    """Return the number of walks after which a robot that starts here should be there."""
     return SPARE_LEGS + 2 * ceil(distance_to(here, place) / LONGEST_LEG)
 
 
 def distance_to(here: Whereabouts, place: HallPlace) -> float:
-    """How far it is to that place [m]."""
+    """Return the distance to that place [m]."""
     return hypot(place.x - here.x, place.y - here.y)
 
 
 def place_at(here: Whereabouts, places: Mapping[str, HallPlace], before: str) -> str:
-    """The name of the place where the robot is; empty where it is at none.
+    """Return the name of the robot's place; empty if it is not at any of them.
 
-    Of several it is the nearest, but `before`, where it was, as long as it has not left that.
+    If there are several, the nearest counts; but `before`, its last place, stays as long as the robot has not left it.
     """
     if before in places and distance_to(here, places[before]) <= LEAVING * places[before].within:
         return before

@@ -1,6 +1,7 @@
-"""Walking: footsteps, the path of the centre of mass above them, and the legs' joints, planned from each landed foot.
+"""Walking: footsteps, the path of the centre of mass above them, and the joints of the legs.
 
-Nothing here touches a robot: feet and a goal go in, joint angles come out, tick by tick.
+The walk is planned anew from each landed foot. Nothing here accesses a robot: feet and a goal are the input, joint
+angles for each tick are the output.
 """
 
 from lumen.motion.gait.footsteps import Feet, Footstep, Velocity, corners, fastest, fastest_of, middle

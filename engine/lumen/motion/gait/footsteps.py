@@ -10,30 +10,30 @@ from lumen.motion.gait.parameters import GaitParameters, paces_without_legs
 from lumen.motion.gait.poses import Pose
 
 Feet = Mapping[Side, Pose]
-"""Both soles, below the ankles."""
+"""The poses of both soles, below the ankles."""
 
 
 class Footstep(NamedTuple):
-    """That foot goes there."""
+    """A step: the foot `side` moves to `pose`."""
 
     side: Side
     pose: Pose
 
 
 def middle(feet: Feet) -> Pose:
-    """The pose between the feet: where the robot stands."""
+    """Return the pose midway between the feet, which is that of the robot."""
     return feet["L"].toward(feet["R"], 0.5)
 
 
 def beside(body: Pose, side: Side, pace: GaitParameters) -> Pose:
-    """Where that foot belongs while the robot stands at `body`."""
+    """Return the pose of a foot of a robot whose pose is `body`."""
     return body.then(Pose(0.0, sign(side) * pace.apart / 2, 0.0))
 
 
 def footsteps(feet: Feet, goal: Pose, first: Side, pace: GaitParameters) -> list[Footstep]:
-    """The steps from these feet until they stand side by side at `goal`; `first` begins, then they alternate.
+    """Return the steps from these feet until they are side by side at `goal`; `first` begins, then they alternate.
 
-    A step that goes ahead, aside and around at once goes less far each way.
+    A step that combines forward, sideways and turning motion is shorter in each of them.
     """
     here = middle(feet)
     way = goal.seen_from(here)
@@ -51,21 +51,21 @@ def footsteps(feet: Feet, goal: Pose, first: Side, pace: GaitParameters) -> list
 
 
 def clear(foot: Pose, side: Side, bearing: Pose, pace: GaitParameters) -> Pose:
-    """That place for a foot, or the nearest that neither touches the bearing foot nor strains the hips."""
+    """Return the wanted pose, or the nearest one that neither touches the bearing foot nor overstretches the hips."""
     seen = foot.seen_from(bearing)
     out = sign(side) * min(max(sign(side) * seen.y, pace.narrowest), pace.widest)
     return bearing.then(Pose(seen.x, out, seen.theta))
 
 
 def first_side(way: Pose) -> Side:
-    """The foot to begin with: the one on the side that the way `way`, seen from the robot, leads to."""
+    """Return the first foot to move: that on the side of the goal; `way` is the goal relative to the robot."""
     if abs(way.y) > 0.005:
         return "L" if way.y > 0 else "R"
     return "L" if way.theta >= 0 else "R"
 
 
 def corners(step: Footstep, sole: SoleSize) -> Sequence[complex]:
-    """The corners of a sole of that size on the ground, x + iy [m]."""
+    """Return the four corners of a sole of that size on the ground, x + iy [m]."""
     s, foot = sign(step.side), step.pose
     return [
         foot.place + complex(ahead, s * out) * foot.ahead
@@ -79,42 +79,42 @@ def corners(step: Footstep, sole: SoleSize) -> Sequence[complex]:
 
 
 MOST_CHANGE = 0.3
-"""From step to step a speed changes by that part of the pace's greatest at most: who turns round at once stumbles."""
+"""Greatest change of velocity per step, relative to the pace's maximum: a sudden reversal makes the robot stumble."""
 
 
 class Velocity(NamedTuple):
-    """Forward and to the left [m/s], turning to the left [rad/s], as the robot sees it; nothing at all is to stand."""
+    """A velocity relative to the robot: forward and left [m/s], turning left [rad/s]; zero means to stand."""
 
     x: float = 0.0
     y: float = 0.0
     theta: float = 0.0
 
     def within(self, pace: GaitParameters) -> "Velocity":
-        """This way at this speed, or at the greatest of that pace."""
+        """Return the velocity, scaled down to the maximum of the pace if it exceeds that."""
         haste = self._haste(pace)
         return Velocity(*(part / max(1.0, haste) for part in self))
 
     def toward(self, goal: "Velocity", pace: GaitParameters) -> "Velocity":
-        """How fast to go a step later where `goal` is wanted."""
+        """Return the velocity one step later, changed towards `goal`."""
         wanted = goal.within(pace)
         change = Velocity(*(there - here for here, there in zip(self, wanted, strict=True)))
         part = MOST_CHANGE / max(MOST_CHANGE, change._haste(pace))
         return Velocity(*(here + part * more for here, more in zip(self, change, strict=True)))
 
     def _haste(self, pace: GaitParameters) -> float:
-        """This speed as a factor of the greatest of that pace."""
+        """Return the speed relative to the maximum of the pace."""
         return hypot(*(part / limit for part, limit in zip(self, fastest(pace), strict=True)))
 
 
 def fastest(pace: GaitParameters) -> Velocity:
-    """How fast a robot goes straight ahead, aside or around at that pace, one of them at a time."""
+    """Return the maximum velocities forward, sideways and turning at that pace, each without the others."""
     step = pace.double + pace.single
     aside = min(pace.sideways, (pace.widest - pace.apart) / 2)
     return Velocity(pace.forward / step, aside / step, pace.turn / step)
 
 
 def fastest_of(body: Body, pace: Literal["usual", "brisk"]) -> Velocity:
-    """How fast a body goes at most, as far as its description tells: as its base drives, else at that pace."""
+    """Return the maximum velocities of a body according to its description: those of its wheels, else of the pace."""
     base = body.roles.base
     if base.row.drives:
         return Velocity(base.speed, 0.0, base.turn)
@@ -123,10 +123,11 @@ def fastest_of(body: Body, pace: Literal["usual", "brisk"]) -> Velocity:
 
 
 def strides(feet: Feet, velocity: Velocity, first: Side, pace: GaitParameters, count: int) -> list[Footstep]:
-    """The next `count` steps from these feet at that speed; `first` begins, then they alternate.
+    """Return the next `count` steps at that velocity; `first` begins, then the feet alternate.
 
-    Each begins where the foot that bears belongs, so that what one step lacks the next one does not repeat. Aside, the
-    foot on that side goes for both steps and the other one follows: feet must not touch.
+    Each step starts from the correct place of the bearing foot, so that the error of one step is not repeated. In
+    sideways motion the foot on that side makes the way of two steps and the other one follows, because the feet must
+    not touch.
     """
     speed, time = velocity.within(pace), pace.double + pace.single
     steps: list[Footstep] = []

@@ -1,4 +1,4 @@
-"""A walk to a place, or on and on, tick by tick: planned anew from each foot that has landed."""
+"""A walk to a place, or with a given velocity, tick by tick; planned anew from each landed foot."""
 
 from collections.abc import Callable, Mapping
 from math import atan2, hypot, inf
@@ -17,11 +17,12 @@ from lumen.motion.gait.stance import Stance, stand
 
 
 class StepTracker:
-    """Follows the bearing foot from step to step.
+    """Estimates the pose of the bearing foot from step to step.
 
-    Each foot has moved as the legs say while both are on the ground: one that comes down still slides a little then.
-    Where it points says the gyrometer, counted from `feet` and `heading` [rad] at the beginning: soles turn on the
-    floor, which no encoder feels, little in each step and degrees in a hundred. `measured` are the legs' angles.
+    While both feet are on the ground, the joint angles give the position of one foot relative to the other; a foot that
+    lands still slides a little then. The direction comes from the gyrometer, counted from `feet` and `heading` [rad] at
+    the beginning: soles turn on the floor without any change in the encoders, little in each step, but degrees in a
+    hundred. `measured` are the angles of the legs [rad].
     """
 
     def __init__(self, legs: LegGeometry, feet: Feet, measured: Mapping[str, float], heading: float) -> None:
@@ -30,11 +31,11 @@ class StepTracker:
         self._north = heading - left - wrap(right - left) / 2
 
     def look(self, next_side: Side, measured: Mapping[str, float]) -> None:
-        """Both feet are on the ground; `next_side` leaves it next."""
+        """Add a measurement while both feet are on the ground; `next_side` leaves it next."""
         self._seen.append(self._legs.foot_from(next_side, measured))
 
     def stands(self, bearing: Side, feet: Feet, measured: Mapping[str, float], heading: float) -> Pose:
-        """Where the bearing foot of a step that ends now has stood; `feet` as believed when it began."""
+        """Return the pose of the foot that bore the step that ends now; `feet` are the estimates from its beginning."""
         place = feet[bearing].place
         if self._seen:
             x, y, _ = np.mean(self._seen, axis=0).tolist()
@@ -43,16 +44,16 @@ class StepTracker:
         return Pose(place.real, place.imag, heading - self._north + self._yaw(bearing, measured))
 
     def _yaw(self, side: Side, measured: Mapping[str, float]) -> float:
-        """Where that foot points, seen from the torso [rad]."""
+        """Return the heading of that foot relative to the torso [rad]."""
         turned, _ = self._legs.sole(side, measured)
         return atan2(turned[1, 0], turned[0, 0])
 
 
 CentreOfMass = Callable[[Mapping[str, float]], NDArray[np.float64]]
-"""The centre of mass (3,) [m] in the torso's frame, of the robot with its legs bent like this [rad]."""
+"""A function that returns the centre of mass (3,) [m] in the torso's frame, for these leg angles [rad]."""
 
 GOAL_TOLERANCE, GOAL_HEADING_TOLERANCE = 0.008, 0.02
-"""How far from its goal the robot may stop [m], [rad]."""
+"""Accepted distance from the goal at the end of a walk [m], [rad]."""
 
 _SIDE_BY_SIDE = Pose(0.015, 0.015, 0.06)
 _FORESIGHT, _MORE, _LATEST = 3, 8, 0.5
@@ -60,7 +61,7 @@ _TORSO_TO_MASS = (0.01, 0.0, -0.05)
 
 
 class GaitTick(NamedTuple):
-    """What the legs do next: their angles [rad], the foot in the air, and how far the left foot leads [m]."""
+    """The output of a tick: leg angles [rad], the foot in the air, and the lead of the left foot [m]."""
 
     angles: Mapping[str, float]
     lifted: Side | None
@@ -68,14 +69,14 @@ class GaitTick(NamedTuple):
 
 
 class Gait:
-    """Steps until the robot stands at `goal`; `feet` and `goal` stand in the same frame, any frame on the ground.
+    """A walk to `goal`; `feet` and `goal` are in the same frame, which can be any on the ground.
 
-    Where `goal` is a velocity it steps at that speed until stopped, or until `goal` is no speed at all; `goal` may be
-    changed under way, and the steps that are planned next obey, little by little.
+    If `goal` is a velocity, the robot walks with it until stopped, or until `goal` becomes zero. `goal` may be changed
+    during the walk; the steps planned next follow it gradually.
 
-    `angles` begin the walk: what the legs do on these feet before the first step. Then `tick` says every `dt` [s] what
-    they do next, and `heading` is the torso's [rad], as planned. It knows where the feet are from the legs' measured
-    angles, and where they point from the torso's measured heading, from when it is to `face` ahead.
+    `angles` are the initial leg angles on these feet before the first step. Then `tick`, called every `dt` [s], returns
+    the next angles; `heading` is the planned heading of the torso [rad]. The poses of the feet are estimated from the
+    measured leg angles and the torso's measured heading, relative to the last call of `face`.
     """
 
     def __init__(
@@ -105,12 +106,12 @@ class Gait:
         self._phase = self._settle() if self._arrived(feet) else self._step(standing=True)
 
     def hasten(self, pace: GaitParameters) -> None:
-        """Walk at that pace from the next step on: one that carries the torso as this one does."""
+        """Use another pace from the next step on; it must carry the torso at the same height."""
         self.pace, self._planner = pace, StepPlanner(pace, self._pendulum, self._dt)
 
     @property
     def left(self) -> tuple[float, float]:
-        """How far the robot believes to be from its goal [m], [rad]; nothing where that is no place."""
+        """Return the estimated distance from the goal [m], [rad]; zeros if the goal is a velocity."""
         if isinstance(self.goal, Velocity):
             return 0.0, 0.0
         way = self.goal.seen_from(middle(self.feet))
@@ -118,20 +119,20 @@ class Gait:
 
     @property
     def coming(self) -> list[Footstep]:
-        """The steps that are left, as planned now; of a walk that goes on and on, the next one and one that ends it."""
+        """Return the remaining steps as planned now; for a velocity, the next step and one that ends the walk."""
         if isinstance(self.goal, Velocity):
             step = strides(self.feet, self._speed, self._side, self.pace, 1)[0]
             return [step, self._beside(step.pose, other(step.side))]
         return footsteps(self.feet, self.goal, self._side, self.pace)
 
     def face(self, measured: Mapping[str, float], heading: float) -> None:
-        """Believe that the feet stand as they should now; `measured` and `heading` as `tick` takes them."""
+        """Take the present feet as correct, with leg angles and heading as for `tick`."""
         self._tracker = StepTracker(self._legs, self.feet, measured, heading)
 
     def tick(self, measured: Mapping[str, float], heading: float) -> GaitTick | None:
-        """What the legs do next; None once the robot stands.
+        """Return the next output for the legs; None once the robot stands.
 
-        `measured` are the legs' angles now, `heading` the torso's, from wherever it is counted [rad].
+        `measured` are the present leg angles, `heading` that of the torso, from any fixed zero [rad].
         """
         if self._tracker is None:
             self.face(measured, heading)
@@ -151,7 +152,7 @@ class Gait:
         return GaitTick(self._stand(feet).angles, lifted, stride)
 
     def stop(self) -> None:
-        """End as soon as balance allows: a foot that has just left comes to the other one, a later one lands first."""
+        """End the walk as soon as balance permits: a foot that just took off returns, a later one lands first."""
         phase, stopping = self._phase, self._stopping
         self._stopping = True
         if stopping or phase.swing is None:
@@ -162,7 +163,7 @@ class Gait:
             self._planner.divert(phase, self.feet, self._closing().pose, self._dcm)
 
     def _go_on(self, measured: Mapping[str, float], heading: float) -> bool:
-        """Begin the next phase; false where there is none."""
+        """Begin the next phase; return False at the end of the walk."""
         last = self._phase.last
         if self._phase.swing:
             self._land(self._phase.swing.goal, measured, heading)
@@ -174,7 +175,7 @@ class Gait:
         return True
 
     def _land(self, planned: Pose, measured: Mapping[str, float], heading: float) -> None:
-        """Believe the joints where the foot has landed, and keep all plans as seen from it."""
+        """Update the feet from the joints after a landing, and move all planned points along."""
         assert self._tracker
         side, bearing = self._side, other(self._side)
         stood = self._tracker.stands(bearing, self.feet, measured, heading)
@@ -206,7 +207,7 @@ class Gait:
         return self._planner.settle(self.feet, self._dcm, self._zmp)
 
     def _next(self) -> list[Footstep]:
-        """The next steps; one alone is the last."""
+        """Return the next steps; a single one is the last."""
         if self._stopping:
             return [self._closing()]
         if isinstance(self.goal, Velocity) and any(self.goal):
@@ -216,14 +217,14 @@ class Gait:
         return steps[:1] if ends else steps
 
     def _closing(self) -> Footstep:
-        """The foot that comes next, beside the other one."""
+        """Return the step of the next foot to a place beside the other one."""
         return self._beside(self.feet[other(self._side)], self._side)
 
     def _beside(self, bearing: Pose, side: Side) -> Footstep:
         return Footstep(side, bearing.then(Pose(0.0, sign(side) * self.pace.apart)))
 
     def _stand(self, feet: Mapping[Side, Placed]) -> Stance:
-        """The joints that bring the centre of mass where the plan wants it."""
+        """Return the joints that bring the centre of mass to its planned position."""
         pace = self.pace
         torso = self._mass - complex(self._offset[0], self._offset[1])
         stance = stand(self._legs, torso, pace.torso, pace.lean, self.heading, feet)

@@ -1,4 +1,4 @@
-"""A pair of legs: from where the feet are to what the joints do, and back."""
+"""A pair of legs: joint angles from the poses of the feet, and back."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,25 +13,25 @@ from lumen.motion.gait.poses import Pose
 Side = Literal["L", "R"]
 SIDES: tuple[Side, Side] = ("L", "R")
 SIDE_ROLES: Mapping[Side, str] = {"L": "left", "R": "right"}
-"""The sides as roles have them."""
+"""The sides as they are called in roles."""
 
 RotationMatrix = NDArray[np.float64]
 LegVector = NDArray[np.float64]
 LegAngles = tuple[float, float, float, float, float, float]
-"""What the joints of a leg do [rad], in the order of `LEG_ROLES`: yaw to the left, roll to the right, pitch forward."""
+"""The joints of a leg [rad] in the order of `LEG_ROLES`: yaw to the left, roll to the right, pitch forward."""
 
 _STRETCHED = 1e-4
 
 
 class Placed(NamedTuple):
-    """A foot: its sole's pose on the ground and how high it is lifted [m]."""
+    """A foot: the pose of its sole on the ground, and the height of the sole above it [m]."""
 
     pose: Pose
     height: float = 0.0
 
 
 class SoleSize(NamedTuple):
-    """How far a sole reaches from the point below the ankle [m]."""
+    """The distances from the point below the ankle to the edges of the sole [m]."""
 
     toe: float
     heel: float
@@ -41,41 +41,46 @@ class SoleSize(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class LegGeometry:
-    """What a pair of legs measures [m], [rad], and how its joints are called and counted.
+    """The dimensions of a pair of legs, and the names and conventions of its joints.
 
-    Three axes meet in the hip (yaw, roll, pitch from the torso down), two in the ankle, and the knee lies between: that
-    has a closed form. The hips' middle is `hip_ahead` of the torso's origin, `hip_out` beside and `hip_down` below it.
-    `inclination` is how far the yaw axis leans inwards from upright; where both yaws share a motor, `shared`. `speed`
-    is that of the slowest joint that pitches [rad/s]. For each side, a joint of `names` stands at `signs` times (angle
-    minus `offsets`), in the order of `LEG_ROLES`.
+    Three axes meet in the hip (yaw, roll, pitch from the torso down), two in the ankle, with the knee between them:
+    such a leg has inverse kinematics in closed form. A joint of `names` has the angle `signs` * (angle - `offsets`),
+    for each side in the order of `LEG_ROLES`.
     """
 
     hip_ahead: float
+    """Distance of the hips' middle ahead of the torso's origin [m]."""
     hip_out: float
+    """Distance of a hip from the middle [m]."""
     hip_down: float
+    """Distance of the hips below the torso's origin [m]."""
     thigh: float
     tibia: float
     foot: float
+    """Height of the ankle above the sole [m]."""
     inclination: float
+    """Inward inclination of the yaw axis from the vertical [rad]."""
     shared: bool
+    """True if both yaws share one motor."""
     sole_size: SoleSize
     speed: float
+    """Speed of the slowest pitch joint [rad/s]."""
     names: Mapping[Side, tuple[str, ...]]
     signs: Mapping[Side, tuple[float, ...]]
     offsets: Mapping[Side, tuple[float, ...]]
 
     @property
     def length(self) -> float:
-        """From hip to ankle, stretched [m]."""
+        """Return the length of the stretched leg from hip to ankle [m]."""
         return self.thigh + self.tibia
 
     def joints(self, side: Side, angles: LegAngles) -> dict[str, float]:
-        """These angles of a leg as the robot's own joints count them [rad]."""
+        """Return these leg angles as joint angles in the robot's own convention [rad]."""
         ways = zip(self.names[side], self.signs[side], angles, self.offsets[side], strict=True)
         return {name: sign * (angle - offset) for name, sign, angle, offset in ways}
 
     def angles(self, side: Side, joints: Mapping[str, float]) -> LegAngles:
-        """What a leg does whose joints stand like this [rad]."""
+        """Return the leg angles for these joint angles of the robot [rad]."""
         yaw, roll, pitch, knee, ankle, tilt = (
             sign * joints[name] + offset
             for name, sign, offset in zip(self.names[side], self.signs[side], self.offsets[side], strict=True)
@@ -83,14 +88,14 @@ class LegGeometry:
         return yaw, roll, pitch, knee, ankle, tilt
 
     def hip(self, side: Side) -> tuple[float, float, float]:
-        """Where the axes of that hip meet in the torso's frame [m]."""
+        """Return the point where the axes of that hip meet, in the torso's frame [m]."""
         return self.hip_ahead, sign(side) * self.hip_out, -self.hip_down
 
     def bend(self, side: Side, rotation: RotationMatrix, ankle: LegVector) -> LegAngles:
-        """The angles of a leg that put its ankle there.
+        """Return the leg angles that put the ankle at a point.
 
-        `rotation` (3, 3) of the foot and `ankle` (3,) [m] in the torso's frame. A place out of reach is approached as
-        far as the leg goes.
+        `rotation` (3, 3) of the foot and `ankle` (3,) [m] are in the torso's frame. For a point out of reach, the leg
+        stretches towards it.
         """
         lean, thigh, tibia = sign(side) * self.inclination, self.thigh, self.tibia
         hip = -rotation.T @ (ankle - self.hip(side))
@@ -104,7 +109,7 @@ class LegGeometry:
         return yaw, tilt + lean, swing, knee, pitch, roll
 
     def sole(self, side: Side, joints: Mapping[str, float]) -> tuple[RotationMatrix, LegVector]:
-        """The sole's rotation (3, 3) and place (3,) [m] in the torso's frame, of joints by the robot's names [rad]."""
+        """Return the sole's rotation (3, 3) and place (3,) [m] in the torso's frame, for these joints [rad]."""
         yaw, roll, pitch, knee, ankle, tilt = self.angles(side, joints)
         lean = sign(side) * self.inclination
         hip = _about_x(lean) @ _about_z(yaw) @ _about_x(roll - lean)
@@ -114,7 +119,7 @@ class LegGeometry:
         return foot, np.array(self.hip(side)) + down
 
     def foot_from(self, side: Side, joints: Mapping[str, float]) -> Pose:
-        """The pose of the other foot seen from this one, which stands flat on the ground."""
+        """Return the pose of the other foot relative to this one, which is flat on the ground."""
         (here, origin), (there, place) = self.sole(side, joints), self.sole(other(side), joints)
         x, y, _ = here.T @ (place - origin)
         turned = here.T @ there
@@ -122,22 +127,23 @@ class LegGeometry:
 
 
 def other(side: Side) -> Side:
+    """Return the opposite side."""
     return "R" if side == "L" else "L"
 
 
 def sign(side: Side) -> int:
-    """1 on the left, -1 on the right."""
+    """Return 1 for the left side, -1 for the right."""
     return 1 if side == "L" else -1
 
 
 def torso_rotation(yaw: float, lean: float) -> RotationMatrix:
-    """The torso's rotation (3, 3), which does not roll."""
+    """Return the rotation (3, 3) of a torso turned by `yaw` and inclined forward by `lean` [rad], without roll."""
     rotation: RotationMatrix = _about_z(yaw) @ _about_y(lean)
     return rotation
 
 
 def heading_rotation(yaw: float) -> RotationMatrix:
-    """The rotation (3, 3) of what stands level and is turned to the left by that [rad]."""
+    """Return the rotation (3, 3) of a level object that is turned to the left by `yaw` [rad]."""
     return _about_z(yaw)
 
 

@@ -1,4 +1,4 @@
-"""Where the weight rests during a step, so that the body arrives where the next one begins."""
+"""The bearing point during a step, planned so that the body arrives where the next step begins."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from lumen.motion.gait.swing import Swing
 
 @dataclass(slots=True)
 class GaitPhase:
-    """A step, or the settling after the last: where the weight rests at each tick, and the foot that moves.
+    """A step, or the settling after the last one: the bearing point at each tick, and the moving foot.
 
-    The foot leaves the ground at the tick `lifts`; after the `last` step the weight is between the feet.
+    The foot leaves the ground at tick `lifts`. After the `last` step the weight is between the feet.
     """
 
     zmp: list[complex]
@@ -26,16 +26,17 @@ class GaitPhase:
 
     @property
     def over(self) -> bool:
+        """Return True after the last tick."""
         return self.tick == len(self.zmp)
 
     @property
     def part(self) -> float:
-        """How much of the way the foot in the air will have done after this tick."""
+        """Return the part of its path that the foot in the air will have covered after this tick."""
         return (self.tick + 1 - self.lifts) / max(1, len(self.zmp) - self.lifts)
 
     @property
     def lifted(self) -> Side | None:
-        """The foot in the air."""
+        """Return the foot in the air, if any."""
         return self.swing.side if self.swing and self.tick >= self.lifts else None
 
 
@@ -48,9 +49,9 @@ class StepPlanner:
         self._shift, self._settle = round(pace.shift / dt), round(pace.settle / dt)
 
     def step(self, feet: Feet, steps: Sequence[Footstep], dcm: complex, zmp: complex, *, standing: bool) -> GaitPhase:
-        """The first of these steps, seen that the others follow; one alone is the last.
+        """Return the phase of the first of these steps, which prepares for the others; a single step is the last.
 
-        A robot that was `standing` takes its time to shift its weight.
+        A robot that was `standing` needs additional time to shift its weight.
         """
         side, goal = steps[0]
         wait = self._shift if standing else 0
@@ -61,13 +62,13 @@ class StepPlanner:
         return GaitPhase(weight, swing, wait + self._double, len(steps) == 1)
 
     def settle(self, feet: Feet, dcm: complex, zmp: complex) -> GaitPhase:
-        """Both feet stay, the weight comes to rest between them."""
+        """Return a phase in which both feet stay and the weight moves between them."""
         end = between(feet, self._pace)
         weight = _ramp(zmp, end, self._double) + [end] * (self._settle - self._double)
         return GaitPhase(self._shifted(weight, dcm, end, feet["L"], self._pace.apart / 2))
 
     def divert(self, phase: GaitPhase, feet: Feet, goal: Pose, dcm: complex) -> None:
-        """Let the foot that moves go there, as the last step."""
+        """Redirect the moving foot to `goal`, as the last step."""
         assert phase.swing
         side = phase.swing.side
         phase.swing.turn(max(phase.part, 0.0), goal)
@@ -77,7 +78,7 @@ class StepPlanner:
         phase.last = True
 
     def _end(self, feet: Feet, steps: Sequence[Footstep]) -> complex:
-        """The DCM at the end of the first of these steps."""
+        """Return the DCM needed at the end of the first of these steps."""
         pace, feet = self._pace, {**feet, steps[0].side: steps[0].pose}
         last, weight = bearing_point(feet, other(steps[0].side), pace), list[complex]()
         for side, pose in steps[1:]:
@@ -88,7 +89,7 @@ class StepPlanner:
         return self._pendulum.backward(weight + _ramp(last, end, self._double), end)
 
     def _shifted(self, zmp: list[complex], dcm: complex, end: complex, foot: Pose, aside: float) -> list[complex]:
-        """These points, shifted so that the body gets from `dcm` to `end`, as far as the sole of `foot` reaches."""
+        """Return these points, shifted to bring the body from `dcm` to `end`, within the sole of `foot`."""
         shift = self._pendulum.shift(dcm, zmp, end) / foot.ahead
         most = self._pace.sole_ahead
         x = min(max(shift.real, -most), most)
@@ -97,15 +98,15 @@ class StepPlanner:
 
 
 def bearing_point(feet: Feet, side: Side, pace: GaitParameters) -> complex:
-    """Where the weight rests on that foot."""
+    """Return the point of that foot on which the weight rests."""
     return feet[side].place + complex(pace.ahead, -sign(side) * pace.inside) * feet[side].ahead
 
 
 def between(feet: Feet, pace: GaitParameters) -> complex:
-    """Where the weight rests on both feet."""
+    """Return the point between the feet on which the weight rests."""
     return (bearing_point(feet, "L", pace) + bearing_point(feet, "R", pace)) / 2
 
 
 def _ramp(start: complex, end: complex, ticks: int) -> list[complex]:
-    """From one point to another, the end included."""
+    """Return points from `start` (excluded) to `end` (included)."""
     return [start + (end - start) * (k + 1) / ticks for k in range(ticks)]

@@ -1,4 +1,4 @@
-"""Where something stands on the ground and where it faces."""
+"""Places and headings on the ground."""
 
 from cmath import rect
 from math import pi
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 
 class Pose(NamedTuple):
-    """A place [m] and a heading to the left of ahead [rad], in some frame: x forward, y left."""
+    """A place [m] and a heading, positive to the left [rad]; in its frame x is forward and y is left."""
 
     x: float = 0.0
     y: float = 0.0
@@ -14,33 +14,33 @@ class Pose(NamedTuple):
 
     @property
     def place(self) -> complex:
-        """The ground as the complex plane, x + iy [m]: turning is a product there."""
+        """Return the place as a complex number, x + iy [m]; rotation is multiplication there."""
         return complex(self.x, self.y)
 
     @property
     def ahead(self) -> complex:
-        """The unit vector that it faces along."""
+        """Return the unit vector of its heading."""
         return rect(1.0, self.theta)
 
     def then(self, other: "Pose") -> "Pose":
-        """That pose, which is seen from this one, in this one's frame."""
+        """Return `other`, which is relative to this pose, in the frame of this pose."""
         return pose(self.place + other.place * self.ahead, self.theta + other.theta)
 
     def seen_from(self, origin: "Pose") -> "Pose":
-        """This pose in the frame of `origin`, which stands in the same frame as this; -pi < theta <= pi."""
+        """Return this pose relative to `origin`, which is in the same frame; -pi < theta <= pi."""
         return pose((self.place - origin.place) * origin.ahead.conjugate(), wrap(self.theta - origin.theta))
 
     def toward(self, other: "Pose", part: float) -> "Pose":
-        """The pose that part (0..1) of the straight way to another, turned the shorter way."""
+        """Return the pose at `part` (0..1) of the straight way to another pose, turned the shorter way."""
         place = self.place + (other.place - self.place) * part
         return pose(place, self.theta + wrap(other.theta - self.theta) * part)
 
 
 def pose(place: complex, theta: float) -> Pose:
-    """The pose at a place of the complex plane."""
+    """Return the pose at a complex place."""
     return Pose(place.real, place.imag, theta)
 
 
 def wrap(angle: float) -> float:
-    """The same direction [rad] between -pi (excluded) and pi."""
+    """Return the equivalent angle in (-pi, pi] [rad]."""
     return pi - (pi - angle) % (2 * pi)

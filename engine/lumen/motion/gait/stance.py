@@ -1,4 +1,4 @@
-"""How both legs stand on their feet together, so that the torso is where it is wanted."""
+"""The joint angles of both legs that hold the torso at a given pose above the feet."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -20,7 +20,7 @@ _YAW_STEP, _YAW_ERROR, _ROUNDS = 0.2, 1e-4, 6
 
 
 class Stance(NamedTuple):
-    """Joints [rad] by the robot's names, and the torso's heading [rad] that they give it."""
+    """Joints [rad] by the robot's names, and the resulting heading of the torso [rad]."""
 
     angles: dict[str, float]
     yaw: float
@@ -29,10 +29,10 @@ class Stance(NamedTuple):
 def stand(
     legs: LegGeometry, torso: complex, height: float, lean: float, yaw: float, feet: Mapping[Side, Placed]
 ) -> Stance:
-    """The joints that carry the torso over `torso` at `height` [m], leant forward by `lean` [rad].
+    """Return the joints that hold the torso above `torso` at `height` [m], inclined forward by `lean` [rad].
 
-    Hips that share one yaw motor leave the torso no choice: its heading follows from the feet, and is sought from `yaw`
-    on, along secants, until both legs want the same of it. Other hips turn it halfway between the feet.
+    If both hips share one yaw motor, the heading of the torso follows from the feet: it is found by secant steps from
+    `yaw` on, until both legs need the same motor angle. Otherwise the heading is halfway between those of the feet.
     """
     if legs.shared:
         yaw, bent = _agreed(legs, torso, height, lean, yaw, feet)
@@ -46,7 +46,7 @@ def stand(
 def _agreed(
     legs: LegGeometry, torso: complex, height: float, lean: float, yaw: float, feet: Mapping[Side, Placed]
 ) -> tuple[float, dict[Side, LegAngles]]:
-    """The heading at which both hips' yaws are the same angle of their one motor, and how the legs are bent then."""
+    """Return the heading at which both hips need the same angle of their shared motor, and the leg angles there."""
     inward = legs.signs["R"][0]
     bent, slope = _bend_both(legs, torso, height, lean, yaw, feet), inward * _SLOPE
     apart = _apart(legs, bent)

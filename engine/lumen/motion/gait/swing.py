@@ -21,9 +21,10 @@ _LEAVES, _ARRIVES = 0.05, 0.95
 
 @dataclass(slots=True)
 class Swing:
-    """From where a foot stood to where it will stand: up and down along a cosine, across along a minimum jerk curve.
+    """The path of a foot to its next pose: a cosine in height, a minimum-jerk curve across the ground.
 
-    `turned` is the part of the way at which a new `goal` was given; until then the foot was on the way to `old`.
+    If the goal was changed on the way, `turned` is the part of the time at which that happened, and `old` the former
+    goal.
     """
 
     side: Side
@@ -34,7 +35,7 @@ class Swing:
     turned: float = 0.0
 
     def at(self, part: float) -> Placed:
-        """Where the foot is after that part (0..1) of its time."""
+        """Return the pose and height of the foot after `part` (0..1) of its time."""
         done = smooth((part - _LEAVES) / (_ARRIVES - _LEAVES))
         goal = self.goal
         if self.old:
@@ -42,24 +43,24 @@ class Swing:
         return Placed(self.start.toward(goal, done), self.lift * (1 - cos(2 * pi * min(part, 1.0))) / 2)
 
     def turn(self, part: float, goal: Pose) -> None:
-        """Go elsewhere from that part of the way on, without a jerk."""
+        """Change the goal after `part` of the time, without a jerk."""
         self.old, self.turned, self.goal = self.goal, part, goal
 
 
 def smooth(u: float) -> float:
-    """From 0 to 1 along a minimum jerk curve."""
+    """Return a minimum-jerk curve from 0 to 1; `u` is limited to that range."""
     u = min(max(u, 0.0), 1.0)
     return u * u * u * (10 - 15 * u + 6 * u * u)
 
 
 FARTHEST, WIDEST_CATCH = 0.2, 0.2
-"""How far ahead or behind, and aside, a foot can be put down [m], by legs as long as those it was found with."""
+"""The farthest placement of a foot ahead or behind, and aside [m], for legs of the length `FOUND_LENGTH`."""
 
 BEYOND = 0.02
-"""How far beyond the DCM the middle of the sole is put down [m], by such legs: what is short costs a second step."""
+"""Distance of the sole's middle beyond the DCM [m], for such legs: a step that is too short requires a second one."""
 
 HIP_STRETCHED = 0.47
-"""No thigh goes farther back than this [rad]: beyond it the knee has to."""
+"""The greatest backward angle of a thigh [rad]; beyond it, the knee bends instead."""
 
 _GAP = 0.01
 _STEP, _ERROR, _ROUNDS = 0.2, 1e-3, 4
@@ -70,9 +71,9 @@ CapturePoint = NDArray[np.float64]
 def landing(
     legs: LegGeometry, pace: GaitParameters, dcm: CapturePoint, omega: float, left: float, bears: Side
 ) -> CapturePoint:
-    """Where the foot that swings has to land in `left` [s], while the body rests on the sole that bears.
+    """Return where the swinging foot must land in `left` [s], while the body rests on the sole `bears`.
 
-    Nowhere that it could not reach, and not on the other foot.
+    The point is limited to the reach of the foot, and keeps clear of the other foot.
     """
     out, sole, scale = sign(bears), legs.sole_size, scale_of(legs)
     rest = np.array([min(max(dcm[0], -sole.heel), sole.toe), out * min(max(out * dcm[1], -sole.inner), sole.outer)])
@@ -86,10 +87,11 @@ def landing(
 def hold_level(
     legs: LegGeometry, side: Side, axes: NDArray[np.float64], sole: NDArray[np.float64], joints: Mapping[str, float]
 ) -> dict[str, float]:
-    """The joints of a leg [rad] that hold its sole there and level, whatever the torso does.
+    """Return the joints of a leg [rad] that keep its sole at `sole` and level, however the torso is tilted.
 
-    `axes` (3, 3) are forward, left and up in the torso's frame; `sole` (3,) [m] is seen from the torso along them. The
-    hip's yaw stays as it is in `joints`, for the other leg may share its motor: the foot points where it then does.
+    The rows of `axes` (3, 3) are forward, left and up in the torso's frame; `sole` (3,) [m] is relative to the torso
+    along them. The hip's yaw stays as in `joints`, because the other leg may share its motor; the foot's heading
+    follows from it.
     """
     ankle = axes.T @ (sole + np.array((0.0, 0.0, legs.foot)))
     yaw = legs.angles(side, joints)[0]

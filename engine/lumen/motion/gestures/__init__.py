@@ -1,4 +1,4 @@
-"""Which gestures accompany a text, when, and where the joints are meanwhile: pure functions."""
+"""The choice and the timing of gestures that accompany a text, and their joint angles: pure functions."""
 
 from lumen.motion.gestures.planning import PlannedGesture, plan_gestures
 from lumen.motion.gestures.posing import BEAT, GESTURE_SHARE, gesture_offsets, peak_speeds

@@ -1,7 +1,7 @@
-"""Which gesture goes with which phrase of a text.
+"""The choice of gestures for the phrases of a text.
 
-A text has a tag where one of the tag's phrases is in it, as whole words. The gesture's stroke falls on the phrase; it
-is prepared before (McNeill's phases of gesture). A long part of a text without any tag gets a beat.
+A tag matches if one of its phrases occurs in the text as whole words. The stroke of the gesture coincides with the
+phrase; its preparation comes before (McNeill's phases of gesture). A long part of the text without a tag gets a beat.
 """
 
 import re
@@ -15,16 +15,16 @@ from lumen.motion.gestures.posing import BEAT
 from lumen.motion.life.movements import chance
 
 LONG_PART = 18
-"""Characters from which on a part of a text without a tag gets a beat."""
+"""Minimum length of a part without a tag that gets a beat [characters]."""
 
 TAIL = 0.4
-"""How long after the last word a gesture may end [s]."""
+"""Maximum time from the last word to the end of a gesture [s]."""
 
 _PART = re.compile(r"[^.,;:!?…]+[.,;:!?…]*\s*")
 
 
 class PlannedGesture(NamedTuple):
-    """A gesture that begins at `at` [s from the text's first word], with the other side where that is said."""
+    """A gesture that begins `at` [s] after the text's first word, mirrored if `other_side` is set."""
 
     gesture: Gesture
     at: float
@@ -32,7 +32,7 @@ class PlannedGesture(NamedTuple):
 
 
 class _Mention(NamedTuple):
-    """A tag, and with which character of the text it is said."""
+    """A tag and the position in the text of the phrase that matched [characters]."""
 
     tag: str
     where: float
@@ -47,9 +47,9 @@ def plan_gestures(
     seed: int,
     words: Sequence[WordTime] = (),
 ) -> tuple[PlannedGesture, ...]:
-    """The gestures of a text that takes `duration` [s] to say, one after another, on the `words` where they are known.
+    """Return the gestures of a text that takes `duration` [s], in order, aligned with `words` if they are known.
 
-    None of those whose names are `recent` is among them, nor any twice; the seed draws among those that fit.
+    Gestures named in `recent` are excluded, and no gesture occurs twice; `seed` determines the choice among the rest.
     """
     planned: list[PlannedGesture] = []
     used, free_from = set(recent), 0.0
@@ -72,7 +72,7 @@ def plan_gestures(
 
 
 def _mentions(text: str, language: str, library: GestureLibrary) -> Iterator[_Mention]:
-    """The first tag of each part of the text, else a beat where the part is long."""
+    """Yield the first tag of each part of the text, or a beat if the part is long."""
     for part in _PART.finditer(text):
         found = [
             (match.start(), tag)
@@ -88,7 +88,7 @@ def _mentions(text: str, language: str, library: GestureLibrary) -> Iterator[_Me
 
 
 def _said_at(character: float, length: int, duration: float, words: Sequence[WordTime]) -> float:
-    """When that character of so many is said [s]: evenly between the beginnings of two words, else of the whole."""
+    """Return when a character is spoken [s], interpolated between the known starts of words."""
     known = (WordTime(0, 0.0), *words, WordTime(length, duration))
     for before, after in pairwise(known):
         if before.character <= character < after.character:
@@ -99,6 +99,6 @@ def _said_at(character: float, length: int, duration: float, words: Sequence[Wor
 
 @lru_cache(maxsize=5_000)
 def _words(phrase: str) -> re.Pattern[str]:
-    """The phrase as whole words, however much space lies between them; `#` is any number."""
+    """Return a pattern of the phrase as whole words with any space between them; `#` matches any number."""
     words = (r"\d+" if word == "#" else re.escape(word) for word in phrase.split())
     return re.compile(r"(?<!\w)" + r"\s+".join(words) + r"(?!\w)", re.IGNORECASE)

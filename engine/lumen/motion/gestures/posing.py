@@ -1,4 +1,4 @@
-"""Where the joints are at a moment of a gesture."""
+"""The joint angles at a moment of a gesture."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -6,17 +6,17 @@ from itertools import pairwise
 from lumen.language.gestures import Gesture
 
 BEAT = "beat"
-"""The tag of gestures that go with any phrase."""
+"""The tag of gestures that suit any phrase."""
 
 GESTURE_SHARE = 0.5
-"""The part of its greatest speed that a joint uses for a gesture."""
+"""The part of its maximum speed that a joint uses for a gesture."""
 
 _PEAK = 1.875
-"""The greatest speed of a minimum-jerk movement, in parts of the mean one."""
+"""The peak speed of a minimum-jerk movement, relative to the mean speed."""
 
 
 def gesture_offsets(gesture: Gesture, since: float, *, other_side: bool = False) -> dict[str, float]:
-    """How far each joint is from where it stands, `since` [s] the gesture began; nothing once it is over."""
+    """Return the joints' offsets [rad] `since` [s] after the gesture began; empty before and after it."""
     if not 0.0 < since < gesture.duration:
         return {}
     found = {}
@@ -30,7 +30,7 @@ def gesture_offsets(gesture: Gesture, since: float, *, other_side: bool = False)
 
 
 def peak_speeds(gesture: Gesture) -> dict[str, float]:
-    """The greatest speed of each joint [rad/s]."""
+    """Return the peak speed of each joint [rad/s]."""
     return {
         joint: max(_PEAK * abs(a1 - a0) / (t1 - t0) for (t0, a0), (t1, a1) in pairwise(keys))
         for joint, keys in gesture.tracks.items()

@@ -1,4 +1,4 @@
-"""Where the head turns of its own accord: glances, nods, and where somebody touched or spoke."""
+"""Head movements of idle life: glances, nods, and turns towards touches and voices."""
 
 from collections.abc import Collection, Mapping
 from functools import cache, lru_cache
@@ -12,14 +12,14 @@ from lumen.language.machines import MachineDefinition
 
 @lru_cache(4096)
 def chance(seed: int, what: str, number: int) -> float:
-    """A number from 0 up to 1, always the same for the same three."""
+    """Return a number in [0, 1) that depends only on the arguments."""
     return crc32(f"{seed} {what} {number}".encode()) / 2**32
 
 
 def moments(seed: int, what: str, every: float, t: float, length: float) -> tuple[int, float] | None:
-    """The event of that kind that is under way at `t` [s], and how long it has been [s]; None for none.
+    """Return the number of the event that is in progress at `t` [s], and its age [s]; None for no event.
 
-    One falls into each `every` [s], never at its edge; it takes `length` [s], which is less.
+    One event of `length` [s] falls into each interval of `every` [s], which must be longer.
     """
     number = floor(t / every)
     since = t - (number + chance(seed, what, number) * max(0.0, 1.0 - length / every)) * every
@@ -27,22 +27,22 @@ def moments(seed: int, what: str, every: float, t: float, length: float) -> tupl
 
 
 def eyes_closed(blinks: Blinks, seed: int, t: float) -> bool:
-    """Whether the robot blinks at `t` [s]."""
+    """Return True if the robot blinks at `t` [s]."""
     return moments(seed, "blink", blinks.every, t, blinks.length) is not None
 
 
 _WANDERING = ((0.5, 1.0), (0.3, 0.618), (0.2, 1.732))
-"""Parts of a sway that wanders: how much of it, and how fast; no two of these ever come together again."""
+"""The components of a wandering sway, each with its share and relative frequency; they never repeat together."""
 
 SPEED_SHARE = 0.3
-"""The part of its greatest speed that a joint uses of its own accord."""
+"""The part of its maximum speed that a joint uses in idle life."""
 
 PEAK_SLOPE = 2 * pi * max(1.0, sum(part * pace for part, pace in _WANDERING))
-"""The greatest speed of a sway, for an amplitude of 1 and a period of 1 s."""
+"""Peak speed of a sway, for an amplitude of 1 and a period of 1 s."""
 
 
 def sway(style: LifeStyle, seed: int, t: float) -> dict[str, float]:
-    """How far each joint is from where it stands at `t` [s], in [rad; hands 0..1]."""
+    """Return the offset of each joint at `t` [s] [rad; hands 0..1]."""
     found: dict[str, float] = {}
     for each in style.sways:
         phases, turns = _phases(seed, each.name), 2 * pi * t / each.period
@@ -61,14 +61,14 @@ def _phases(seed: int, name: str) -> tuple[float, ...]:
 
 
 _DECAY, _TURN = 3.0, 4.0
-"""Of a mass on a damped spring that was let go, for a settling of 1 s: it goes a tenth beyond its rest."""
+"""Parameters of a damped mass-spring system that settles within 1 s and overshoots by a tenth."""
 
 SETTLE_SLOPE = 2.5
-"""The greatest speed of a settling, for an angle of 1 and 1 s: that of the mass after atan(4 / 3) / 4 s."""
+"""Peak speed of settling, for an angle of 1 in 1 s: that of the mass after atan(4 / 3) / 4 s."""
 
 
 def settle(settles: Settles, since: float) -> Mapping[str, float]:
-    """How far joints have sunk `since` so long [s] nothing moves them [rad; hands 0..1]."""
+    """Return the joints' offsets `since` [s] after the last movement [rad; hands 0..1]."""
     u = since / settles.takes
     level = 1.0 - exp(-_DECAY * u) * (cos(_TURN * u) + _DECAY / _TURN * sin(_TURN * u))
     return {joint: level * angle for joint, angle in settles.joints.items()}
@@ -82,17 +82,17 @@ LOW, EMPTY = 25.0, 5.0
 
 
 def vigour(temperature: float, percentage: float) -> float:
-    """From 0 to 1: the part of its amplitudes that joints with this temperature show, with that much in the battery."""
+    """Return the factor on the amplitudes, 0 to 1, for a motor temperature and the charge of the battery [%]."""
     cool = (HOT - temperature) / (HOT - WARM)
     charged = (percentage - EMPTY) / (LOW - EMPTY)
     return max(0.0, min(1.0, cool, charged))
 
 
 def style_name(machine: MachineDefinition, configuration: Collection[str]) -> str:
-    """The name of the style that the active states say with `life`, `still` where none does.
+    """Return the style that the active states set with `life`; `still` if no state sets one.
 
-    What a state says holds for the states within it, until one of these says something else. Of states side by side
-    `still` goes before everything; else the first one in the file decides.
+    A state's `life` also applies to its descendants, until one of them sets another. Among parallel states `still` has
+    priority; otherwise the first one in the file decides.
     """
     active = [path for path, state in machine.states.items() if not path or state.name in configuration]
     saying = [path for path in active if machine.states[path].life]
@@ -102,7 +102,7 @@ def style_name(machine: MachineDefinition, configuration: Collection[str]) -> st
 
 
 def gestures_wanted(machine: MachineDefinition, configuration: Collection[str]) -> bool:
-    """Whether no active state says `gestures: none`."""
+    """Return True unless an active state has `gestures: none`."""
     return not any(state.gestures for path, state in machine.states.items() if not path or state.name in configuration)
 
 
@@ -111,16 +111,16 @@ def _within(path: str, outer: str) -> bool:
 
 
 TURN_TIME = 0.5
-"""How long the head takes to where it glances, and back [s]."""
+"""Time of the head to turn to a glance, and back [s]."""
 
 NOD_TIME = 0.7
-"""How long a nod takes [s]."""
+"""Duration of a nod [s]."""
 
 
 class Attention(NamedTuple):
-    """Something at `yaw` to the left and `pitch` down [rad, of the head] asks to be looked at since `at` [s].
+    """Attention to something at `yaw` to the left and `pitch` down [rad, of the head], since `at` [s].
 
-    It asked last at `latest` [s], if it asked several times.
+    `latest` is the time of the newest stimulus [s], if there were several.
     """
 
     yaw: float
@@ -139,11 +139,11 @@ TOUCHED = {
     "HandRightBack": (-0.6, 0.3), "HandRightLeft": (-0.6, 0.3), "HandRightRight": (-0.6, 0.3),
     "LeftBumper": (0.25, 0.4), "RightBumper": (-0.25, 0.4), "ChestButton": (0.0, 0.35),
 }  # fmt: skip
-"""Where the head turns to somebody who touches NAO there: yaw to the left, pitch down [rad]."""
+"""The direction of a person who touches NAO there: yaw to the left, pitch down [rad]."""
 
 
 def glance(glances: Glances, seed: int, t: float) -> tuple[float, float]:
-    """How far the head is turned at `t` [s] by glances: (yaw, pitch) [rad]."""
+    """Return the head's offset at `t` [s] due to glances: (yaw, pitch) [rad]."""
     if (now := moments(seed, "glance", glances.every, t, _length(glances))) is None:
         return 0.0, 0.0
     number, since = now
@@ -153,13 +153,13 @@ def glance(glances: Glances, seed: int, t: float) -> tuple[float, float]:
 
 
 def nod(nods: Nods, seed: int, t: float) -> float:
-    """How far down the head is at `t` [s] by nods [rad]."""
+    """Return the head's downward offset at `t` [s] due to nods [rad]."""
     now = moments(seed, "nod", nods.every, t, NOD_TIME)
     return 0.0 if now is None else nods.pitch * pulse(now[1], NOD_TIME)
 
 
 def look_towards(attention: Attention | None, lasts: float, t: float) -> tuple[float, float]:
-    """How far the head is turned at `t` [s] to what asks for attention, for as long as that `lasts` [s]."""
+    """Return the head's offset at `t` [s] due to attention that `lasts` so long [s]: (yaw, pitch) [rad]."""
     if attention is None:
         return 0.0, 0.0
     part = _smooth(_phase(attention, lasts, t))
@@ -167,7 +167,7 @@ def look_towards(attention: Attention | None, lasts: float, t: float) -> tuple[f
 
 
 def aside(asides: Asides, seed: int, number: int, since: float) -> tuple[float, float]:
-    """How far the head is turned `since` so long [s] after answer `number` began: (yaw, pitch) [rad], (0, 0) after it.
+    """Return the head's offset `since` [s] after answer `number` began: (yaw, pitch) [rad], (0, 0) at the end.
 
     People look away, mostly up, while they plan what to say; robots that do so look thoughtful (Andrist, Tan, Gleicher,
     Mutlu: Conversational gaze aversion for humanlike robots, HRI 2014, on a NAO).
@@ -179,13 +179,13 @@ def aside(asides: Asides, seed: int, number: int, since: float) -> tuple[float, 
 
 
 def pulse(since: float, length: float) -> float:
-    """From 0 to 1 and back within `length` [s], without a jerk; `since` [s] its beginning."""
+    """Return a smooth pulse from 0 to 1 and back within `length` [s]; `since` is the time from its beginning [s]."""
     turn = min(TURN_TIME, length / 2)
     return _smooth(max(0.0, min(1.0, since / turn, (length - since) / turn)))
 
 
 def _phase(attention: Attention, lasts: float, t: float) -> float:
-    """Return how much of the way to the place is done, 0 to 1, if all went at the same speed."""
+    """Return the part of the turn that is complete, 0 to 1, before smoothing."""
     turn, end = min(TURN_TIME, lasts / 2), max(attention.at, attention.latest) + lasts
     return max(0.0, min(1.0, (t - attention.at) / turn, (end - t) / turn)) if turn else 0.0
 
