@@ -1,6 +1,6 @@
 """The paths about what was, and what would be: why, why not, days, entries, files, and a fork."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import AsyncIterator, Mapping, Sequence
 from datetime import date
 from typing import Any
 
