@@ -1,6 +1,6 @@
 """Fuzzy inference: Mamdani, Takagi-Sugeno and Tsukamoto, and any mixture of them.
 
-Each name is imported when it is first used. `__init__.pyi` has the same names for type checkers.
+Each name is imported on first use. `__init__.pyi` declares the same names for type checkers.
 """
 
 from lumen.upkeep.lazy_names import lazy

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     Array = NDArray[np.float64]
-    """The values of a batch: a float for each of its rows."""
+    """The values of a batch: one float for each row."""
 
 Number = Any
 """A float, or an array of floats, depending on the arithmetic."""

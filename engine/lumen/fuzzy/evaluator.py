@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
     from lumen.fuzzy.arithmetic import Array
 
-_CHUNK = 1 << 13  # rows of a batch that are worked on together: they stay in the cache
+_CHUNK = 1 << 13  # rows of a batch that are processed together: they fit into the cache
 
 
 class Evaluator:
-    """A compiled controller. It is pure: between evaluations it keeps nothing but precomputed values."""
+    """A compiled controller; it is pure and keeps only precomputed values between evaluations."""
 
     def __init__(self, controller: ControllerDefinition) -> None:
         self.controller = controller
@@ -120,7 +120,7 @@ class Evaluator:
 
         shape, values = columns[0].shape, list(columns)
         result: dict[str, Array] = {}
-        with np.errstate(all="ignore"):  # both sides of a `where` are computed; the one that counts is in its domain
+        with np.errstate(all="ignore"):  # both sides of a `where` are computed; the selected one is in its domain
             tape = self._array_program.run(columns)
             for variable, output, slots in self._outputs:
                 degrees = [np.broadcast_to(tape[slot], shape) for slot in slots]

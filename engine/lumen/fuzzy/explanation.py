@@ -14,17 +14,18 @@ from lumen.language.controllers import Rule, Variable
 
 @dataclass(frozen=True)
 class Concluded:
-    """The rules' conclusions about an output: the degree of each term, and (not for weighted defuzzifiers) the set.
-
-    `points` are in the output's unit, and `memberships` are those of the aggregated set at these points; `fired` is
-    false if `value` is the default or the previous value, because no rule fired.
-    """
+    """The rules' conclusions about an output: its value, the degree of each term, and the aggregated set."""
 
     degrees: Mapping[str, float]
+    """The degree of each term."""
     value: float
+    """The value, in the output's unit."""
     fired: bool
+    """False if `value` is the default or the previous value, because no rule fired."""
     points: tuple[float, ...] = field(default=(), repr=False)
+    """Points in the output's unit; empty for weighted defuzzifiers."""
     memberships: tuple[float, ...] = field(default=(), repr=False)
+    """The memberships of the aggregated set at these points."""
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,13 @@
-"""The centroid of clipped terms under their maximum, exact for the sampled set and without touching its points.
+"""The centroid of clipped terms under their maximum, exact for the sampled set, but without evaluating its points.
 
 With minimum as implication and maximum as aggregation the concluded set is max over k of min(d_k, M_k(y)). Cut it into
-layers between the sorted degrees: in the layer under the m-th greatest degree exactly the m terms that fire most take
-part, so its area is F_S(top) - F_S(bottom), where S are these terms, M_S their maximum and
+layers between the sorted degrees: to the layer below the m-th greatest degree exactly the m terms with the greatest
+degrees contribute, so its area is F_S(top) - F_S(bottom), where S are these terms, M_S their maximum and
 
     F_S(t) = sum over the points y of min(t, M_S(y)),
 
 and likewise for the moment. F_S is piecewise linear in t, with a corner at each sampled membership: once these are
-sorted and summed up, one bisection gives it. So the price of a point more is the logarithm of it, not itself.
+sorted and summed up, one bisection evaluates it. So the cost grows with the logarithm of the number of points.
 """
 
 from bisect import bisect_left
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 MAX_LAYERED_TERMS = 6
 """The maximum number of terms: a layer is kept for every union of terms that occurs, so at most 2^6."""
 
-_BINS = 1 << 14  # bins of the degrees' range, by which a batch locates corners before it searches
+_BINS = 1 << 14  # bins of the degrees' range, with which a batch locates corners before it searches
 
 
 class Layer:
@@ -43,7 +43,7 @@ class Layer:
 
 
 class LayeredCentroid:
-    """Defuzzifies by centroid; `terms` is the term that each of the given degrees clips."""
+    """Defuzzifies by centroid; `terms` is the index of the term that each of the given degrees clips."""
 
     def __init__(self, points: Sequence[float], memberships: Sequence[Sequence[float]], terms: Sequence[int]) -> None:
         self._middle = (points[0] + points[-1]) / 2
@@ -121,7 +121,7 @@ class _Table:
         self.pieces = np.array([layer.area, layer.count, layer.moment, layer.above]).T.copy()
         edges = np.searchsorted(self.levels, np.arange(_BINS + 1) / _BINS)
         self.first = edges.astype(np.intp)
-        self.sure = np.append(edges[:-1] == edges[1:], False)  # a sum without bound may be above 1
+        self.sure = np.append(edges[:-1] == edges[1:], False)  # an unbounded sum may exceed 1
 
     def measure(self, t: "Array") -> "tuple[Array, Array]":
         """Return area and moment under each level. A bin with a corner needs a search; others do not."""

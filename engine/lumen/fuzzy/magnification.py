@@ -1,9 +1,9 @@
-"""Evaluate a controller for an image at the magnification that gives the greatest output.
+"""Evaluates a controller for an image at the magnification that gives the greatest output.
 
-The output for a magnified image is divided by the magnification. Of the magnifications (1, and each half an octave
-more), the one is used that brings the face to the point at which the controller's surface, seen from the neutral
-points, is steepest. If each output depends on an input of its own, the distance of the input from its neutral point
-decides that: then each image needs only one evaluation. Else all magnifications are tried.
+The output for a magnified image is divided by the magnification. Magnifications are 1 and each following half octave.
+The best one moves the face to the point at which the controller's surface, seen from the neutral points, is steepest.
+If each output depends on an input of its own, the distance of the input from its neutral point determines it, and each
+image needs only one evaluation. Otherwise all magnifications are tried.
 """
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ from lumen.language.controllers import ControllerDefinition
 ZOOM_STEP = 2**0.5
 """The ratio of a magnification to the one before."""
 HALVINGS = 20
-"""The number of bisections in the search of the distance from which the next magnification is better."""
+"""Bisections in the search for the distance from which the next magnification is better."""
 ONE_BY_ONE = frozenset(("general", "threshold"))
 """The activation methods with which the rules of a block do not affect each other."""
 
@@ -51,7 +51,7 @@ class Magnifier:
         return {name: value / zooms.get(self._own.get(name, ""), 1.0) for name, value in said.items()}
 
     def _tried(self, inputs: Mapping[str, float], previous: Mapping[str, float]) -> dict[str, float]:
-        """Return for each output its greatest value at all magnifications."""
+        """Return for each output its greatest value over all magnifications."""
         outputs: dict[str, float] = {}
         for zoom in self._zooms:
             said = self._evaluator.evaluate(self._magnified(inputs, dict.fromkeys(inputs, zoom)), previous)
@@ -77,7 +77,7 @@ class Magnifier:
 
     @cached_property
     def _far_enough(self) -> dict[InputSide, float]:
-        """The distance of each input from its neutral point beyond which a closer look gives no greater output."""
+        """Return the distance of each input from its neutral point beyond which magnification has no benefit."""
         steepest: dict[InputSide, tuple[float, float, str]] = {}
         for output, name, xs, ys in Survey(self._controller).slices():
             for x, y in zip(xs, ys, strict=True):
@@ -88,7 +88,7 @@ class Magnifier:
         return {side: self._turn(side, *found[1:]) for side, found in steepest.items()}
 
     def _turn(self, side: InputSide, steepest: float, output: str) -> float:
-        """Return the distance from which a closer look gives less, somewhat below the steepest point of the surface."""
+        """Return the distance from which magnification decreases the output; it is just below the steepest point."""
         name, above = side
 
         def steepness(off: float) -> float:

@@ -59,25 +59,30 @@ def _falling(m: Arithmetic, start: float, end: float) -> Membership:
 
 
 def triangle(m: Arithmetic, left: float, top: float, right: float) -> Membership:
+    """Return a triangle with its corners at `left`, `top` and `right`."""
     return trapezoid(m, left, top, top, right)
 
 
 def trapezoid(m: Arithmetic, a: float, b: float, c: float, d: float) -> Membership:
+    """Return a trapezoid that rises from `a` to `b` and falls from `c` to `d`."""
     up, down = _rising(m, a, b), _falling(m, c, d)
     return lambda x: m.minimum(up(x), down(x))
 
 
 def gaussian(m: Arithmetic, mean: float, sigma: float) -> Membership:
+    """Return a Gaussian bell."""
     k, exp = -0.5 / (sigma * sigma), m.exp
     return lambda x: exp(k * (x - mean) * (x - mean))
 
 
 def gaussian_product(m: Arithmetic, mean_a: float, sigma_a: float, mean_b: float, sigma_b: float) -> Membership:
+    """Return the left half of one Gaussian bell times the right half of another."""
     a, b = gaussian(m, mean_a, sigma_a), gaussian(m, mean_b, sigma_b)
     return lambda x: a(m.minimum(x, mean_a)) * b(m.maximum(x, mean_b))
 
 
 def bell(m: Arithmetic, center: float, width: float, slope: float) -> Membership:
+    """Return a generalized bell."""
     if slope == 0.0:
         return _half
 
@@ -89,6 +94,7 @@ def bell(m: Arithmetic, center: float, width: float, slope: float) -> Membership
 
 
 def sigmoid(m: Arithmetic, inflection: float, slope: float) -> Membership:
+    """Return a sigmoid; a negative `slope` makes it fall."""
     if slope == 0.0:
         return _half
     return lambda x: 1.0 / (1.0 + m.exp(m.clamp(slope * (inflection - x), -MAX_EXPONENT, MAX_EXPONENT)))
@@ -100,25 +106,30 @@ def _half(x: Number) -> Number:
 
 
 def sigmoid_difference(m: Arithmetic, left: float, rising: float, falling: float, right: float) -> Membership:
+    """Return the difference of two sigmoids."""
     a, b = sigmoid(m, left, rising), sigmoid(m, right, falling)
     return lambda x: m.abs(a(x) - b(x))
 
 
 def sigmoid_product(m: Arithmetic, left: float, rising: float, falling: float, right: float) -> Membership:
+    """Return the product of two sigmoids."""
     a, b = sigmoid(m, left, rising), sigmoid(m, right, falling)
     return lambda x: a(x) * b(x)
 
 
 def ramp(m: Arithmetic, start: float, end: float) -> Membership:
+    """Return a ramp from 0 at `start` to 1 at `end`, which may be on either side."""
     return _rising(m, start, end) if start < end else _falling(m, end, start)
 
 
 def rectangle(m: Arithmetic, start: float, end: float) -> Membership:
+    """Return 1 between `start` and `end`, both included."""
     low, high = min(start, end), max(start, end)
     return lambda x: m.where((low <= x) & (x <= high), 1.0, 0.0)
 
 
 def s_shape(m: Arithmetic, start: float, end: float) -> Membership:
+    """Return a smooth step up from `start` to `end`."""
     ramp = _rising(m, start, end)
 
     def shape(x: Number) -> Number:
@@ -129,32 +140,38 @@ def s_shape(m: Arithmetic, start: float, end: float) -> Membership:
 
 
 def z_shape(m: Arithmetic, start: float, end: float) -> Membership:
+    """Return a smooth step down from `start` to `end`."""
     mirrored = s_shape(m, -end, -start)
     return lambda x: mirrored(-x)
 
 
 def pi_shape(m: Arithmetic, a: float, b: float, c: float, d: float) -> Membership:
+    """Return a smooth step up from `a` to `b` times a step down from `c` to `d`."""
     up, down = s_shape(m, a, b), z_shape(m, c, d)
     return lambda x: up(x) * down(x)
 
 
 def spike(m: Arithmetic, center: float, width: float) -> Membership:
+    """Return a double-sided exponential decay about `center`."""
     k = -10.0 / abs(width)
     return lambda x: m.exp(k * m.abs(x - center))
 
 
 def cosine(m: Arithmetic, center: float, width: float) -> Membership:
+    """Return one period of a cosine about `center`, `width` wide."""
     half = 0.5 * width
     return lambda x: 0.5 * (1.0 + m.cos(pi * m.clamp((x - center) / half, -1.0, 1.0)))
 
 
 def concave(m: Arithmetic, inflection: float, end: float) -> Membership:
+    """Return a concave curve that reaches 1 at `end`."""
     reach = end - inflection
     clip = m.minimum if reach >= 0 else m.maximum
     return lambda x: reach / (2.0 * end - inflection - clip(x, end))
 
 
 def semi_ellipse(m: Arithmetic, start: float, end: float) -> Membership:
+    """Return the upper half of an ellipse from `start` to `end`."""
     centre, radius = 0.5 * (start + end), 0.5 * abs(end - start)
 
     def shape(x: Number) -> Number:
@@ -165,6 +182,7 @@ def semi_ellipse(m: Arithmetic, start: float, end: float) -> Membership:
 
 
 def arc(m: Arithmetic, start: float, end: float) -> Membership:
+    """Return a quarter of an ellipse from 0 at `start` to 1 at `end`."""
     quarter = ramp(m, start, end)
 
     def shape(x: Number) -> Number:
@@ -175,12 +193,14 @@ def arc(m: Arithmetic, start: float, end: float) -> Membership:
 
 
 def binary(m: Arithmetic, start: float, direction: float) -> Membership:
+    """Return a step at `start`, towards the side of `direction`."""
     if direction > start:
         return lambda x: m.where(x >= start, 1.0, 0.0)
     return lambda x: m.where(x <= start, 1.0, 0.0)
 
 
 def discrete(m: Arithmetic, *points: float) -> Membership:
+    """Return the linear interpolation between points, given as x, y, x, y, …"""
     xs, ys = points[::2], points[1::2]
     return lambda x: m.interpolate(x, xs, ys)
 

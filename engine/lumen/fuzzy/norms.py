@@ -1,6 +1,6 @@
-"""T-norms and S-norms: how `and`, `or`, implication and aggregation combine two degrees.
+"""T-norms and S-norms: the combinations of two degrees by `and`, `or`, implication and aggregation.
 
-A sum without bound may pass more than 1 to another norm; even then no denominator is zero.
+An unbounded sum may pass more than 1 to another norm; even then no denominator is zero.
 """
 
 from collections.abc import Callable, Mapping
@@ -9,7 +9,7 @@ from lumen.fuzzy.arithmetic import Arithmetic, Number
 
 Norm = Callable[[Arithmetic, Number, Number], Number]
 
-_TINY = 1e-300  # keeps a denominator from being zero if the other side of `where` is the result
+_TINY = 1e-300  # keeps a denominator above zero if the other side of `where` is the result
 
 
 def _drastic_product(m: Arithmetic, a: Number, b: Number) -> Number:
@@ -33,7 +33,7 @@ def _drastic_sum(m: Arithmetic, a: Number, b: Number) -> Number:
 
 
 def _hamacher_sum(m: Arithmetic, a: Number, b: Number) -> Number:
-    rest = 1.0 - a * b  # (a + b - 2ab) / rest, written so that nothing is cancelled near 1
+    rest = 1.0 - a * b  # (a + b - 2ab) / rest, written so that no digits cancel near 1
     return 1.0 - (1.0 - a) * (1.0 - b) / m.where(rest == 0.0, 1.0, rest)
 
 

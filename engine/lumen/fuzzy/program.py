@@ -1,8 +1,8 @@
-"""Compile a controller's rules into a sequence of operations on a tape.
+"""Compiles a controller's rules into a sequence of operations on a tape.
 
 The tape begins with the inputs, in the controller's order; every operation reads earlier values and appends one. A
-value that is needed twice is computed once, and a rule that merely passes a membership on costs nothing. Outputs read
-only their own slots, so groups of outputs that have nothing in common never meet.
+value that is needed twice is computed once, and a rule that only passes on a membership needs no operation. Outputs
+read only their own slots, so unrelated groups of outputs do not interact.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -57,7 +57,7 @@ Operation = Callable[[Tape], Any]
 
 
 class Conclusion(NamedTuple):
-    """A rule's conclusion of a `term` of an output: its degree is in `slot`, and cuts the term by `implication`."""
+    """A rule's conclusion about a `term` of an output: its degree is in `slot` and modifies it by `implication`."""
 
     term: str
     slot: int
@@ -95,7 +95,7 @@ class InferenceProgram:
         return slot
 
     def _block(self, block: RuleBlock) -> list[int]:
-        """Return the slots of the rules' degrees. A rule may use another's conclusion only if all rules are applied."""
+        """Return the slots of the rules' degrees; a rule may use another's conclusion only if all rules are applied."""
         operators = block.operators
         if operators.activation.method in ("general", "threshold"):
             return [self._conclude(rule, self._activated([rule], operators)[0], operators) for rule in block.rules]
@@ -111,7 +111,7 @@ class InferenceProgram:
         return [self._part(whole, i) for i in range(len(slots))]
 
     def _part(self, whole: int, i: int) -> int:
-        """Return the slot of a rule's degree after activation: 0 if it is not applied, where the method gives NaN."""
+        """Return the slot of a rule's degree after activation; it is 0 for a rule not applied, which has NaN before."""
         m = self._m
         part = self._add(lambda tape: tape[whole][i])
         slot = self._add(lambda tape: m.where(tape[part] == tape[part], tape[part], 0.0))
@@ -133,7 +133,7 @@ class InferenceProgram:
         return slot
 
     def _hedge(self, slot: int, hedges: tuple[str, ...], rule: int) -> int:
-        """The hedged degree; of a rule that does not take part it stays 0."""
+        """Return the slot of the hedged degree; it stays 0 for a rule that is not applied."""
         m, part = self._m, self._parts.get(rule)
         if part is None:
             return self._add(lambda tape: hedged(m, hedges, tape[slot]))
@@ -167,7 +167,7 @@ class InferenceProgram:
         return self._add(lambda tape: degree(tape[x]), node)
 
     def _value(self, name: str) -> int:
-        """The slot of an input's value: its own, or the one locked into its range."""
+        """Return the slot of an input's value, clipped to its range if `lock_range` is set."""
         variable, x = self._controller.inputs[name], self._inputs[name]
         if not variable.lock_range:
             return x
@@ -176,7 +176,7 @@ class InferenceProgram:
         return self._add(lambda tape: self._m.clamp(tape[x], variable.minimum, variable.maximum), name)
 
     def _concluded(self, node: Proposition) -> int:
-        """How far the rules so far have concluded a term of an output."""
+        """Return the slot of the degree of an output's term, as concluded by the rules so far."""
         slots = [c.slot for c in self.conclusions[node.variable] if c.term == node.term]
         aggregate = norm(self._m, self._controller.outputs[node.variable].aggregation)
         m, hedges = self._m, node.hedges

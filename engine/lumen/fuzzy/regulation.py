@@ -1,7 +1,7 @@
-"""What a controller says beside the joints that it moves: a volume, messages, the context, events.
+"""The outputs of a controller that do not move joints: a volume, messages, context keys, events.
 
-An output is told when it is known first, and again when it has changed by its binding's step since it was told last
-(send-on-delta sampling: Miskowicz, Sensors 2006). So a visitor who stands still sends nothing.
+An output is sent when it is first known, and again when it has changed by its binding's step since it was last sent
+(send-on-delta sampling: Miskowicz, Sensors 2006). So a visitor who does not move causes no messages.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -27,11 +27,11 @@ from lumen.language.events import Event
 from lumen.language.message_numbers import number, number_at
 
 RouteField = tuple[str, ...]
-"""A route and a field of its messages, step by step."""
+"""A route, and the path of a field of its messages."""
 
 
 class Signals(NamedTuple):
-    """What is to be told now: the volume, messages, and events for the behaviour."""
+    """The signals to send now: the volume, messages, and events for the behaviour."""
 
     volume: float | None = None
     messages: tuple[Publish, ...] = ()
@@ -41,14 +41,14 @@ class Signals(NamedTuple):
 NOTHING = Signals()
 
 ROUNDING = 1e-9
-"""By how much sums of floats that mean the same may differ."""
+"""Greatest difference of float sums that count as equal."""
 
 
 class Regulator:
-    """A controller that is on, as far as it moves no joint. It reads no clock and tells nobody; times are in [s].
+    """The part of an active controller that moves no joint; it reads no clock and sends nothing; times are in [s].
 
-    Give it messages (`take`) and the contexts of the behaviour and of those it has invoked (`know`); ask it what is to
-    be told (`signals`). Fields of messages that are in `whole` are rounded to integers.
+    Pass it messages (`take`) and the contexts of the behaviour and of those it has invoked (`know`); `signals` returns
+    what should be sent. Message fields in `whole` are rounded to integers.
     """
 
     def __init__(self, controller: ControllerDefinition, whole: Collection[RouteField] = ()) -> None:
@@ -63,7 +63,7 @@ class Regulator:
         self._changed, self._told_at = False, -inf
 
     def succeed(self, before: "Regulator") -> None:
-        """Go on where another version stood: with the inputs it knew, and what it told of the same bindings."""
+        """Continue from another version's state: its inputs, and the last values sent for unchanged bindings."""
         mine, theirs = _sources(self.controller), _sources(before.controller)
         same = {name for name in mine if mine[name] == theirs.get(name)}
         self._inputs = {name: value for name, value in before._inputs.items() if name in same}
@@ -73,19 +73,19 @@ class Regulator:
         self._changed = True
 
     def take(self, route: str, body: object) -> None:
-        """A message: the inputs that come from it change; what is no number there changes nothing."""
+        """Update the inputs bound to a message's route; fields that are not numbers are ignored."""
         for binding in self.controller.input_bindings:
             if binding.route == route:
                 self._set(binding.variable, number_at(body, binding.path))
 
     def know(self, contexts: Sequence[Mapping[str, Any]]) -> None:
-        """What the behaviour's context holds now, or else those of behaviours that it has invoked."""
+        """Update the inputs bound to context keys; the first context with the key counts, the behaviour's own first."""
         for source in self.controller.context_inputs:
             found = next((context[source.key] for context in contexts if source.key in context), None)
             self._set(source.variable, number(found))
 
     def signals(self, now: float) -> Signals:
-        """What has to be told now; nothing where too little changed, an input is missing, or no rule gives a value."""
+        """Return the signals to send at `now`; empty after small changes, without all inputs, or if no rule fires."""
         if not self._changed or now - self._told_at < self.controller.tracking.every - ROUNDING:
             return NOTHING
         if self._inputs.keys() != self.controller.inputs.keys():
@@ -105,7 +105,7 @@ class Regulator:
             self._changed = True
 
     def _news(self, signal: SignalBinding) -> bool:
-        """Whether a signal has to be told; it counts as told then."""
+        """Return True if a signal must be sent, and note its value as sent."""
         value = self._outputs[signal.variable]
         if isinstance(signal, ThresholdBinding):
             return self._crossed(signal, value)
@@ -118,7 +118,7 @@ class Regulator:
         return True
 
     def _crossed(self, signal: ThresholdBinding, value: float) -> bool:
-        """Whether the output has gone beyond the threshold, for the first time since it was back."""
+        """Return True if the output has passed the threshold, for the first time since it was below the hysteresis."""
         way = 1.0 if signal.rising else -1.0
         beyond = way * (value - signal.threshold)
         if signal.variable in self._beyond:
@@ -130,7 +130,7 @@ class Regulator:
         return beyond > ROUNDING
 
     def _messages(self, changed: Sequence[SignalBinding]) -> Iterator[Publish]:
-        """A message for each route of which a field has changed, with all fields that are bound."""
+        """Yield a message for each route with a changed field; it has all bound fields of the route."""
         routes = {signal.route for signal in changed if isinstance(signal, MessageBinding)}
         bound = [s for s in self.controller.signals if isinstance(s, MessageBinding) and s.route in routes]
         for route, fields in groupby(sorted(bound, key=lambda s: s.route), key=lambda s: s.route):
@@ -151,18 +151,18 @@ class Regulator:
 
 
 def _sources(controller: ControllerDefinition) -> dict[str, InputBinding | ContextInput]:
-    """Where each input comes from."""
+    """Return the binding of each input."""
     found: dict[str, InputBinding | ContextInput] = {b.variable: b for b in controller.input_bindings}
     return {**found, **{source.variable: source for source in controller.context_inputs}}
 
 
 def _rounded(value: float, step: float) -> float:
-    """The value to a tenth of its step or finer: more digits than anybody asked for help nobody."""
+    """Return the value rounded to a tenth of its step or finer: more digits have no use."""
     return round(value, 1 - floor(log10(step))) if step > 0.0 else value
 
 
 def _at(path: Sequence[str], value: Any) -> dict[str, Any]:
-    """A body with that value in that field."""
+    """Return a body with that value in the field at `path`."""
     for step in reversed(path):
         value = {step: value}
     found: dict[str, Any] = value
@@ -170,7 +170,7 @@ def _at(path: Sequence[str], value: Any) -> dict[str, Any]:
 
 
 def _merged(one: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, Any]:
-    """A body with the fields of both; where they meet the other's counts."""
+    """Return a body with the fields of both; of common fields the other's value counts."""
     both = {**one, **other}
     for key in one.keys() & other.keys():
         if isinstance(one[key], Mapping) and isinstance(other[key], Mapping):

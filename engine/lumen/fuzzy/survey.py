@@ -1,6 +1,6 @@
-"""The surface of a controller, looked over coarsely: what each output does as one of its inputs moves.
+"""A coarse survey of a controller's surface: each output as a function of one input.
 
-In plain Python and with few points, so that lint can afford it: at most 200 points of a set, 65 of an input's range.
+It uses plain Python and few points, so that lint can afford it: at most 200 points of a set, 65 of an input's range.
 """
 
 from collections.abc import Iterator, Mapping
@@ -28,7 +28,7 @@ STEP_HALVINGS = 14
 
 
 class Slice(NamedTuple):
-    """What `output` says over the range of `input`, the others resting; NaN where no rule for it fires."""
+    """The values `ys` of `output` over the range of `input`, with the other inputs at rest; NaN if no rule fires."""
 
     output: str
     input: str
@@ -37,7 +37,7 @@ class Slice(NamedTuple):
 
 
 class SurfaceJump(NamedTuple):
-    """Between two values of an input that nearly are one, an output jumps from `low` to `high`."""
+    """A jump of an output from `low` to `high` between two almost equal values of an input, near `x`."""
 
     x: float
     low: float
@@ -45,7 +45,7 @@ class SurfaceJump(NamedTuple):
 
 
 class Survey:
-    """A controller to be asked point by point; `rest` is where its inputs are while others move."""
+    """A controller that can be evaluated point by point; inputs not given have their resting values."""
 
     def __init__(self, controller: ControllerDefinition, resolution: int = SURVEY_RESOLUTION) -> None:
         self.controller = controller
@@ -53,11 +53,11 @@ class Survey:
         self.neutral_inputs = {name: resting(variable) for name, variable in controller.inputs.items()}
 
     def at(self, changed: Mapping[str, float]) -> dict[str, float]:
-        """The outputs there, NaN where no rule fires; other inputs rest."""
+        """Return the outputs for these inputs, NaN if no rule fires; the other inputs rest."""
         return self._evaluator.evaluate({**self.neutral_inputs, **changed})
 
     def slices(self) -> Iterator[Slice]:
-        """Each output over each input that it depends on and whose range has ends."""
+        """Yield each output over each input that it depends on and whose range is finite."""
         for name, variable in self.controller.inputs.items():
             outputs = [output for output in self.controller.outputs if name in asked(self.controller, output)]
             if outputs and isfinite(variable.minimum) and isfinite(variable.maximum):
@@ -67,7 +67,7 @@ class Survey:
                     yield Slice(output, name, xs, tuple(point[output] for point in said))
 
     def step(self, found: Slice, share: float) -> SurfaceJump | None:
-        """The greatest jump by more than that share of the output's range, however near one looks."""
+        """Return the greatest jump by more than that share of the output's range, located by bisection."""
         output = self.controller.outputs[found.output]
         least = share * (output.maximum - output.minimum)
         gaps = [(abs(b - a), i) for i, (a, b) in enumerate(zip(found.ys, found.ys[1:], strict=False))]
@@ -83,7 +83,7 @@ class Survey:
 
 
 def silent(controller: ControllerDefinition, resolution: int) -> ControllerDefinition:
-    """The controller without defaults, its sets sampled at no more than `resolution` points."""
+    """Return the controller without defaults, with its sets sampled at no more than `resolution` points."""
     outputs = {
         name: replace(v, default=nan, lock_previous=False, resolution=min(v.resolution, resolution))
         for name, v in controller.outputs.items()
@@ -92,19 +92,19 @@ def silent(controller: ControllerDefinition, resolution: int) -> ControllerDefin
 
 
 def grid(variable: Variable, points: int = SLICE_POINTS) -> tuple[float, ...]:
-    """Evenly spread values of a variable, both ends of its range among them."""
+    """Return evenly spread values of a variable, including both ends of its range."""
     width = variable.maximum - variable.minimum
     return tuple(variable.minimum + width * i / (points - 1) for i in range(points))
 
 
 def resting(variable: Variable) -> float:
-    """A variable's neutral point, else the middle of its range, else 0."""
+    """Return a variable's neutral point, else the middle of its range, else 0."""
     middle = (variable.minimum + variable.maximum) / 2
     return variable.neutral if variable.neutral is not None else middle if isfinite(middle) else 0.0
 
 
 def asked(controller: ControllerDefinition, output: str) -> frozenset[str]:
-    """The inputs that an output depends on, by way of other outputs too."""
+    """Return the inputs that an output depends on, also indirectly through other outputs."""
     found: set[str] = set()
     waiting, known = [output], {output}
     while waiting:
@@ -133,7 +133,7 @@ def _named(term: Term) -> Iterator[str]:
 
 
 def propositions(node: Antecedent) -> Iterator[Proposition]:
-    """Those of an antecedent, from left to right."""
+    """Yield the propositions of an antecedent, from left to right."""
     match node:
         case Proposition():
             yield node

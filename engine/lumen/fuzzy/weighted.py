@@ -1,4 +1,4 @@
-"""Weighted defuzzifiers: Takagi-Sugeno's terms have a value, Tsukamoto's are read backwards."""
+"""Weighted defuzzifiers: a Takagi-Sugeno term has a value, a Tsukamoto term is inverted."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import reduce
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from lumen.fuzzy.arithmetic import Array
 
 TermValue = Callable[[Number, Sequence[Number]], Number]
-"""What a term stands for at a degree, the controller's variables being as they are."""
+"""Returns a term's value at a degree, given the values of the controller's variables."""
 
 _TINY = 1e-300
 
@@ -56,14 +56,15 @@ INVERSE_MEMBERSHIPS: Mapping[str, Callable[..., Callable[[Number], Number]]] = {
 }
 """For each monotonic kind the x at which the membership is w, from the term's height and parameters.
 
-NaN where there is none: above the height. Straight ones and `concave` go on.
+NaN if there is no such x, for w above the height. Ramps and `concave` continue beyond it.
 """
 
 
 def value(m: Arithmetic, term: Term, names: Sequence[str] = (), inputs: int = 0) -> TermValue:
-    """The value of a term of `constant`, `linear`, `function` or a monotonic kind (`INVERSES`).
+    """Return a function for the value of a term of kind `constant`, `linear`, `function` or a monotonic kind.
 
-    It is handed the degree and the variables called `names`, of which the first `inputs` are the controller's inputs.
+    Its arguments are the degree and the variables called `names`, of which the first `inputs` are the controller's
+    inputs.
     """
     if term.kind == "constant":
         return lambda w, values: term.parameters[0]
@@ -81,9 +82,9 @@ def _line(coefficients: tuple[float, ...], inputs: Sequence[Number]) -> Number:
 
 
 class Weighted:
-    """Defuzzifies by weighted average or sum; `which` says for each degree handed in whose weight it is.
+    """Defuzzifies by weighted average or sum; `which` is the index of the term that each of the given degrees weights.
 
-    `values` are the inputs and the outputs before this one, called `names`; `inputs` is how many of them are inputs.
+    `values` are the inputs and the outputs before this one, called `names`; the first `inputs` of them are inputs.
     """
 
     def __init__(
@@ -101,11 +102,11 @@ class Weighted:
         self._on_arrays: list[TermValue] = []
 
     def crisp(self, degrees: Sequence[float], values: Sequence[float]) -> float:
-        """The output; NaN where no term has a weight, or a formula no value."""
+        """Return the output; NaN if no term has a weight, or a formula no value."""
         return float(self._crisp(NUMBERS, self._on_numbers, degrees, values))
 
     def crisp_batch(self, degrees: "Sequence[Array]", values: "Sequence[Array]") -> "Array":
-        """The outputs, Shape (n,), of degrees of Shape (n,) each; NaN where no term has a weight."""
+        """Return the outputs, Shape (n,), of degrees of Shape (n,) each; NaN if no term has a weight."""
         self._on_arrays = self._on_arrays or [value(arrays(), term, self._names, self._inputs) for term in self._terms]
         return self._crisp(arrays(), self._on_arrays, degrees, values)  # type: ignore[no-any-return]
 

@@ -96,8 +96,8 @@ class Tracker:
         """Return the target angles of the joints [rad], from the body of a message and the time of its image.
 
         `route` is the message's, for a controller with inputs from several routes; `now` is when it arrived. The
-        result is None if the sight is stale, older than the one before, from the future (`MAX_CLOCK_LEAD`) or before the
-        first pose, if it lacks a field, or if no rule fires for an output without default.
+        result is None if the sight is stale, older than the one before, from the future (`MAX_CLOCK_LEAD`) or before
+        the first pose, if it lacks a field, or if no rule fires for an output without default.
         """
         captured = number(captured_at)
         if captured is None or captured > now + MAX_CLOCK_LEAD or captured < self._seen or not self._poses:

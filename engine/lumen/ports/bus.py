@@ -12,21 +12,22 @@ from lumen.language.routes import Route
 
 
 class Message(NamedTuple):
-    """A message as a subscriber receives it; `body` is JSON data.
-
-    `id` tells it from every other message, `sender` is the program it comes from, empty where that is not known. `time`
-    is when it was sent, as far as the sender said, else when it came [s since 1970, in UTC]. `cause` is what in a
-    behaviour asked for it, as in `MessageOrigin`.
-    """
+    """A message as a subscriber receives it."""
 
     key: str
+    """The topic."""
     body: Any
+    """JSON data."""
     reply_to: str = ""
     correlation_id: str = ""
     id: str = ""
+    """The id, which no other message has."""
     sender: str = ""
+    """The program that sent it; empty if unknown."""
     time: float = 0.0
+    """When it was sent according to the sender, else when it arrived [s since 1970, UTC]."""
     cause: str = ""
+    """The part of a behaviour that caused it, as in `MessageOrigin`."""
 
 
 MessageHandler = Callable[[Message], None]
@@ -36,11 +37,11 @@ Ability = TypeVar("Ability")
 PREFIX, NUMBERS = urandom(5).hex(), count(1)
 """The parts of each message id: a prefix of this process, and a number."""
 
-_new = tuple.__new__  # half the price of Outgoing(…), which each message pays
+_new = tuple.__new__  # half the cost of Outgoing(…), which each message pays
 
 
 class Outgoing(NamedTuple):
-    """A message as it is sent; `Bus.publish` and `MessageOrigin` describe the fields. `publish` fills in the `id`."""
+    """A message to send; `Bus.publish` and `MessageOrigin` describe the fields. `publish` sets the `id`."""
 
     key: str
     body: Any
@@ -55,33 +56,32 @@ class Outgoing(NamedTuple):
 
 @runtime_checkable
 class Bus(Protocol):
-    """Messages by topic: `*` in a pattern stands for one word of the key, `#` for any number.
+    """A bus for messages by topic: in a pattern, `*` matches one word of the key, `#` any number.
 
-    A bus of your own inherits from this class and implements the methods without a body. What only some buses can do
-    is a protocol of its own, such as `CountsDrops`: ask for it with `ability`.
+    A custom bus inherits from this class and implements the abstract methods. An ability of only some buses has a
+    protocol of its own, such as `CountsDrops`; `ability` returns a bus with it.
     """
 
     def ability(self, kind: type[Ability]) -> Ability | None:
-        """Return this bus as one with that ability; None if it lacks it. A wrapper passes the question inward."""
+        """Return this bus as one with that ability; None if it lacks it. A wrapper delegates to the bus inside it."""
         return self if isinstance(self, kind) else None
 
     @abstractmethod
     def carry(self, routes: Mapping[str, Route]) -> None:
-        """From now on, carry messages with these keys as their routes say, and all others as telemetry."""
+        """From now on, carry messages with these keys as their routes specify, and all others as telemetry."""
         ...
 
     @abstractmethod
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        """Prepare `carry`, and subscribing to the incoming routes, so that neither has to wait later.
+        """Prepare `carry`, and subscriptions to the incoming routes, so that neither has to wait later.
 
-        This may wait for the network, so call it on a background thread. Afterwards subscribing does not wait.
-        Raises BusError if the broker refuses one of the routes.
+        This may wait for the network, so call it on a background thread. Raises BusError if the broker refuses a route.
         """
         ...
 
     @abstractmethod
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
-        """Call `handler` with each matching message, one by one, in the order published; the result ends it.
+        """Call `handler` with each matching message, one by one, in order; the result ends the subscription.
 
         An exception in a handler is logged and ends neither the bus nor the publisher.
         """
@@ -97,9 +97,9 @@ class Bus(Protocol):
         ttl: float | None = None,
         origin: MessageOrigin = UNKNOWN_ORIGIN,
     ) -> None:
-        """Send a body (JSON data); safe from any thread. Raises BusError after `close`, or if it is not JSON data.
+        """Send a body (JSON data), from any thread. Raises BusError after `close`, or if the body is not JSON data.
 
-        The bus fills in what `origin` leaves empty: an id that no other message has, its own `sender`, and the time.
+        The bus sets the fields that `origin` leaves empty: a unique id, its own `sender`, and the time.
         """
         id, sender, time, cause = origin
         id = id or f"{PREFIX}-{next(NUMBERS)}"
@@ -110,7 +110,7 @@ class Bus(Protocol):
         """Send a message as `publish` does.
 
         It never waits for a handler on another thread, nor for the network. A bus without its own thread (`memory://`)
-        may run handlers inside `send`, if no other thread is delivering; so a handler should only enqueue.
+        may run handlers inside `send` if no other thread is delivering; so a handler should only enqueue.
         """
         ...
 
@@ -124,23 +124,23 @@ class Bus(Protocol):
 
     @abstractmethod
     def close(self) -> None:
-        """Deliver the published messages and end; a second call does nothing."""
+        """Deliver the published messages and close the bus; a second call does nothing."""
         ...
 
 
 @runtime_checkable
 class BlockableBus(Protocol):
-    """A bus whose broker may accept no messages for a while."""
+    """A bus whose broker may temporarily refuse messages."""
 
     @property
     def blocked(self) -> str:
-        """The resource that the broker lacks while it accepts no messages; empty while it accepts them."""
+        """Return the resource that the broker lacks while it refuses messages; empty while it accepts them."""
         ...
 
 
 @runtime_checkable
 class ReturningBus(Protocol):
-    """A bus between processes that can say whether a published message has a receiver."""
+    """A bus between processes that can report messages without a receiver."""
 
     def returns(self, handler: Callable[[str], None]) -> None:
         """From now on, call `handler` with the key of each published message that has no receiver.
@@ -155,7 +155,9 @@ class SignsMessages(Protocol):
     """A bus whose messages carry the name of the program that sends them."""
 
     @property
-    def sender(self) -> str: ...
+    def sender(self) -> str:
+        """Return the name of the program."""
+        ...
 
 
 @runtime_checkable
@@ -164,37 +166,39 @@ class CountsDrops(Protocol):
 
     @property
     def dropped(self) -> Mapping[str, int]:
-        """The number of dropped messages by key."""
+        """Return the number of dropped messages by key."""
         ...
 
 
 @runtime_checkable
 class KnowsListeners(Protocol):
-    """A bus that can tell whether a message would have a receiver."""
+    """A bus that can determine whether a message would have a receiver."""
 
-    def heard(self, key: str) -> bool: ...
+    def heard(self, key: str) -> bool:
+        """Return True if a message with that key would have a receiver."""
+        ...
 
 
 @runtime_checkable
 class UsesBroker(Protocol):
-    """A bus through a broker on a machine of the network."""
+    """A bus that uses a broker in the network."""
 
     @property
     def host(self) -> str:
-        """The broker's machine."""
+        """Return the host of the broker."""
         ...
 
     @property
     def away(self) -> bool:
-        """Whether the broker can't be reached now."""
+        """Return True if the broker can't be reached now."""
         ...
 
 
 @runtime_checkable
 class EndsWithExhibition(Protocol):
-    """A bus that an exhibition serves, and that ends with it."""
+    """A bus that an exhibition serves, and that ends with the exhibition."""
 
     @property
     def gone(self) -> Signal:
-        """Set once the exhibition has ended."""
+        """Return a signal that is set once the exhibition has ended."""
         ...

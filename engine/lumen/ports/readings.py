@@ -23,10 +23,10 @@ class Sense(StrEnum):
 
 
 class PixelSource(Protocol):
-    """Renders or fetches a frame: Shape (height, width, 3), uint8 RGB.
+    """A function that renders or fetches a frame: Shape (height, width, 3), uint8 RGB.
 
-    `size` [px] is the size wanted now, None for the camera's own. If a frame was already taken in another size, the
-    robot may return it as it is, and the next frames in the wanted size.
+    `size` is the size wanted now [px], None for the camera's own. A frame that was already taken in another size may be
+    returned as it is; the next frames have the wanted size.
     """
 
     def __call__(self, size: Size | None = None) -> "NDArray[np.uint8]": ...
@@ -34,7 +34,7 @@ class PixelSource(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Image:
-    """A frame that is made only when `pixels` is called."""
+    """A frame that is rendered only when `pixels` is called."""
 
     time: float
     pixels: PixelSource
@@ -43,7 +43,7 @@ class Image:
 class Whereabouts(NamedTuple):
     """A robot's estimate of its position, relative to its start: x forward, y left [m], theta to the left [rad].
 
-    It only adds up its steps: the real position may be `doubt` [m] away.
+    It is the sum of its steps: the real position may be up to `doubt` [m] away.
     """
 
     x: float = 0.0
@@ -54,22 +54,24 @@ class Whereabouts(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Joints:
-    """Measured angles [rad, hands 0..1] and stiffness [0..1], in the order of `names`.
-
-    If the robot measures them, also: each motor's `temperature` [degrees Celsius] in that order, the inertial unit and
-    the weight on its soles, with ALMemory's names and units, and the estimate of its position. `life` is how far it has
-    moved joints of its own accord, beside where commands want them.
-    """
+    """Measured joint angles and, if the robot measures them, further values."""
 
     time: float
+    """When it was measured [s], on the robot's clock."""
     names: tuple[str, ...]
     angles: tuple[float, ...]
+    """The angles in the order of `names` [rad, hands 0..1]."""
     stiffness: tuple[float, ...]
+    """The stiffness in the order of `names` [0..1]."""
     temperature: tuple[float, ...] = ()
+    """The temperature of each motor in the order of `names` [degrees Celsius]."""
     inertial: Mapping[str, float] = field(default_factory=dict)
+    """The values of the inertial unit, with ALMemory's names and units."""
     fsr: Mapping[str, float] = field(default_factory=dict)
+    """The weight on the soles, with ALMemory's names and units."""
     position: Whereabouts | None = None
     life: Mapping[str, float] = field(default_factory=dict)
+    """The offsets of joints due to idle life, relative to their commands [rad, hands 0..1]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +85,7 @@ class Sonar:
 
 @dataclass(frozen=True, slots=True)
 class Tactile:
-    """1 where a sensor is pressed, else 0, in the order of `names`."""
+    """The states of touch sensors in the order of `names`: 1 if a sensor is pressed, else 0."""
 
     time: float
     names: tuple[str, ...]

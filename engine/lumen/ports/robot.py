@@ -21,7 +21,7 @@ class Perform:
 
 @dataclass(frozen=True, slots=True)
 class Aim:
-    """Move these joints towards angles [rad], at most at `speed` (a fraction of the greatest): NAOqi's `setAngles`."""
+    """Move these joints towards angles [rad], at most at `speed` (a fraction of the maximum): NAOqi's `setAngles`."""
 
     angles: Mapping[str, float]
     speed: float = 0.3
@@ -29,9 +29,9 @@ class Aim:
 
 @dataclass(frozen=True, slots=True)
 class Live:
-    """Be alive in this style from now on, wherever nothing else moves the robot, and speak with these gestures.
+    """Start idle life in this style, in all joints that nothing else moves, and speak with these gestures.
 
-    Nobody waits for it.
+    The command has no end, so nothing waits for it.
     """
 
     style: LifeStyle
@@ -50,33 +50,41 @@ NativeCommand = MotorCommand | Say | Perform | Aim | Record | Live
 """The commands that each robot performs in its own way."""
 
 RobotCommand = NativeCommand | Do
-"""The commands of a robot. The verbs that features add (`Do`) are performed in the same way for every robot."""
+"""The commands of a robot; verbs added by features (`Do`) are performed in the same way for every robot."""
 
 
 @runtime_checkable
 class Robot(Protocol):
-    """A robot. No method blocks. If the robot can't do something, no method raises: an event says so.
+    """A robot. No method blocks, and none raises if the robot can't do something: an event reports that.
 
     `start` is answered through `poll` by `done.command.ID`, `error.command.ID` (data: `{"reason": …}`) or
     `cancelled.command.ID`; `Aim` and `Live` are not answered. `poll` also returns what the robot noticed by itself
     (`robot_events`), each event with `at` [s] on the robot's clock.
     """
 
-    def start(self, id: str, command: RobotCommand) -> None: ...
+    def start(self, id: str, command: RobotCommand) -> None:
+        """Start a command; `poll` returns its outcome under that id."""
+        ...
 
-    def cancel(self, id: str) -> None: ...
+    def cancel(self, id: str) -> None:
+        """Cancel the command with that id."""
+        ...
 
-    def poll(self) -> Sequence[Event]: ...
+    def poll(self) -> Sequence[Event]:
+        """Return the events since the last call."""
+        ...
 
     def begun(self) -> Sequence[str]:
-        """The ids of the commands that began since the last call; other started commands still wait."""
+        """Return the ids of the commands that began since the last call; other started commands still wait."""
         ...
 
     def read(self, sense: Sense) -> Reading | None:
-        """The newest reading of a sense, None if the robot does not have it."""
+        """Return the newest reading of a sense; None if the robot does not have it."""
         ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Release the robot."""
+        ...
 
 
 class Sole(NamedTuple):
@@ -88,19 +96,19 @@ class Sole(NamedTuple):
 
 
 class Strain(NamedTuple):
-    """The mechanical state of a robot at one moment.
-
-    `played` is the time within its motion [s], `tilt` the angle of the torso from the vertical [rad]. `touching` are
-    pairs of its own links that collide, `exhausted` the joints whose motors are at their limit, `behind` the distance
-    of joints from their targets [rad].
-    """
+    """The mechanical state of a robot at one moment."""
 
     played: float
+    """The time within its motion [s]."""
     tilt: float
+    """The angle of the torso from the vertical [rad]."""
     touching: frozenset[tuple[str, str]]
+    """Pairs of its own links that collide."""
     soles: Mapping[str, Sole]
     exhausted: frozenset[str]
+    """The joints whose motors are at their limit."""
     behind: Mapping[str, float]
+    """The distances of joints from their targets [rad]."""
 
 
 class Subject(Robot, Protocol):
@@ -110,12 +118,14 @@ class Subject(Robot, Protocol):
         """Simulate `dt` [s]."""
         ...
 
-    def strain(self) -> Strain: ...
+    def strain(self) -> Strain:
+        """Return the mechanical state now."""
+        ...
 
 
 @runtime_checkable
 class Advances(Protocol):
-    """A robot that lives only while its world is simulated."""
+    """A robot that is active only while its world is simulated."""
 
     def advance(self, dt: float) -> None:
         """Simulate `dt` [s]."""
@@ -124,11 +134,11 @@ class Advances(Protocol):
 
 @runtime_checkable
 class Idles(Protocol):
-    """A robot that can tell that nothing is happening to it."""
+    """A robot that can report that nothing is happening to it."""
 
     @property
     def idle(self) -> bool:
-        """Whether no command is under way, no event waits for `poll`, and no visitor is in front of it."""
+        """Return True if no command runs, no event waits for `poll`, and no visitor is in front of the robot."""
         ...
 
 
@@ -138,7 +148,7 @@ class OtherReading(Protocol):
 
     @property
     def time(self) -> float:
-        """When it was measured [s], on the robot's clock."""
+        """Return when it was measured [s], on the robot's clock."""
         ...
 
 
@@ -147,7 +157,7 @@ class HasOtherSenses(Protocol):
     """A robot with senses that features add."""
 
     def read_other(self, sense: str) -> OtherReading | None:
-        """The newest reading of the sense with that name, None if the robot does not have it."""
+        """Return the newest reading of the sense with that name; None if the robot does not have it."""
         ...
 
 
@@ -157,5 +167,5 @@ class PerformsVerbs(Protocol):
 
     @property
     def verbs(self) -> Collection[str]:
-        """The verbs that it can perform: those of the features that are installed beside it."""
+        """Return the verbs that it can perform: those of the features installed with it."""
         ...

@@ -14,51 +14,50 @@ class SkillCall(Protocol):
 
     @property
     def skill(self) -> str:
-        """The verb."""
+        """Return the verb."""
         ...
 
     @property
     def arguments(self) -> Mapping[str, Any]:
-        """JSON data that fit the schema of the verb's arguments."""
+        """Return JSON data that match the schema of the verb's arguments."""
         ...
 
     @property
     def cancelled(self) -> bool:
-        """Whether the call should end: the robot does not wait for it any more."""
+        """Return True if the call should end, because the robot no longer waits for it."""
         ...
 
     @property
     def row(self) -> VerbRow:
-        """The row of the verb."""
+        """Return the row of the verb."""
         ...
 
     @property
     def now(self) -> float:
-        """The time by the robot's clock [s]."""
+        """Return the time by the robot's clock [s]."""
         ...
 
     def section(self, kind: type[Settings]) -> Settings:
         """Return the settings of this type from lumen.yaml, as `Project.section` does.
 
-        They are those of the files that the robot used when it was given the command: a later call has others after a
-        reload.
+        They are from the files that the robot used when it received the command; calls after a reload get new ones.
         """
         ...
 
     def wait(self, seconds: float) -> bool:
-        """Wait that long by the robot's clock; return False, at once, if the call is or gets cancelled."""
+        """Wait that long by the robot's clock [s]; return False, at once, if the call is or gets cancelled."""
         ...
 
     def wait_for(self, ready: Callable[[], bool], seconds: float = inf, within: float = inf) -> bool:
-        """Wait until the call is cancelled or `ready` returns True, which is what this returns.
+        """Wait until the call is cancelled or `ready` returns True; return whether it did.
 
-        It ends after so many `seconds` of the robot's clock, and `within` so many of real time. `ready` is called when
-        the wait begins, and after each call of `wake`.
+        The wait ends after `seconds` [s] of the robot's clock, or `within` [s] of real time. `ready` is called at the
+        start of the wait, and after each call of `wake`.
         """
         ...
 
     def wake(self) -> None:
-        """Have a wait look at its `ready` again, from any thread."""
+        """Make a wait evaluate its `ready` again; callable from any thread."""
         ...
 
 
@@ -66,9 +65,9 @@ class SkillPerformer(Protocol):
     """The code of a feature's verb: an object, or a module, with this function."""
 
     def perform(self, call: SkillCall, /) -> Mapping[str, Any] | None:
-        """Perform the verb; return its result, JSON data that fit the schema of the row.
+        """Perform the verb; return its result, JSON data that match the schema of the row.
 
-        It should return soon after `call.cancelled` turned true. Raises RobotError if it failed. Any other exception
+        It should return soon after `call.cancelled` becomes true. Raises RobotError on failure. Any other exception
         counts as a failure too, and is logged with its traceback.
         """
         ...

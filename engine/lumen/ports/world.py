@@ -18,7 +18,7 @@ class Hall(Protocol):
         ...
 
     def face(self) -> tuple[float, float] | None:
-        """The position of the visitor's face in the top camera's image now [px], None if it can't be seen."""
+        """Return the position of the visitor's face in the top camera's image [px]; None if it is not visible."""
         ...
 
 
@@ -36,21 +36,21 @@ class HearsVisitors(Protocol):
     """A hall whose robot notices that a visitor speaks."""
 
     def sound(self) -> None:
-        """Let the visitor be heard: a robot that hears from where may look there."""
+        """Let the visitor be heard: a robot that can locate sounds may look there."""
         ...
 
 
 @runtime_checkable
 class PretendsSkills(Protocol):
-    """A hall whose robot can perform the verbs of features and projects without their code, as a story says."""
+    """A hall whose robot can perform the verbs of features and projects without their code, as a story specifies."""
 
     @property
     def runs_no_skills(self) -> bool:
-        """Whether it runs their code in no case, also outside of a story."""
+        """Return True if the robot never runs their code, not even outside of a story."""
         ...
 
     def set_skills(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
-        """Have verbs end so from now on: with a result, or by `fails` or `hangs`."""
+        """Set how verbs end from now on: with a result, or by `fails` or `hangs`."""
         ...
 
 
@@ -68,7 +68,7 @@ class Clock(Protocol):
     """The exhibition's time."""
 
     def now(self) -> float:
-        """[s], never going back."""
+        """Return the time [s], which never decreases."""
         ...
 
     def wait(self, until: float) -> None:
@@ -85,7 +85,7 @@ class Dozes(Protocol):
         ...
 
     def hurry(self) -> None:
-        """End the sleep or the wait that is under way, from any thread."""
+        """End the current sleep or wait; callable from any thread."""
         ...
 
 
@@ -99,9 +99,9 @@ class HasSpeed(Protocol):
 
 @runtime_checkable
 class MeasuresPace(Protocol):
-    """A clock that measures how much of its speed the machine keeps."""
+    """A clock that measures whether the machine keeps up with its speed."""
 
     @property
     def realtime(self) -> float:
-        """The part of its speed that it kept of late: 1 if it kept all."""
+        """Return the part of its speed that it reached recently: 1 for the full speed."""
         ...

@@ -14,13 +14,13 @@ __all__ = ["Bus", "BusError", "Message", "Refused", "connect"]
 
 
 def connect(url: str, project: Project | None = None, *, on_refused: OnRefused | None = None, sender: str = "") -> Bus:
-    """The bus at `url`.
+    """Return the bus at `url`.
 
     `memory://` is a new bus inside this process, `memory://NAME` one that this process shares under that name,
-    `amqp://USER:PASSWORD@HOST:PORT/VHOST` (or `amqps://`) a broker; features may add others. With a project every body
-    is checked against the schema of its route: publishing a wrong one raises BusError; for a wrong one that comes in,
-    `on_refused` (key, reason) is called instead of the subscriber. `sender` is the program that its messages come from,
-    by default the name of the running file. If there is no such bus, it raises BusError and says what to do.
+    `amqp://USER:PASSWORD@HOST:PORT/VHOST` (or `amqps://`) a broker; features may add others. With a project, every body
+    is validated against the schema of its route: publishing an invalid one raises BusError; for an invalid one
+    received, `on_refused` (key, reason) is called instead of the subscriber. `sender` is the program named in its
+    messages, by default the name of the running file. Raises BusError if there is no such bus, with advice.
     """
     need_text(url, "the address of a bus")
     if project is not None:

@@ -28,13 +28,13 @@ class Controller(ControllerDefinition):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The controller in a file; raises UsageError if the file can't be read, ProjectError if it has mistakes."""
+        """Return the controller in a file; raise UsageError if it can't be read, ProjectError if it has mistakes."""
         path = need_path(path)
         return cls._build(read_document(path), path.stem)
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "controller") -> Self:
-        """The controller in a dict with the structure of a file; raises ProjectError if it has mistakes."""
+        """Return the controller in a dict with the structure of a file; raise ProjectError if it has mistakes."""
         need_text(name, "the name of a controller")
         need_map(data, "the data of a controller")
         return cls._build(Document(name, data), name)
@@ -52,7 +52,7 @@ class Controller(ControllerDefinition):
         return Evaluator(self)
 
     def evaluate(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> dict[str, float]:
-        """All outputs, in the file's units; outputs with `lock-previous` use the values in `previous`.
+        """Return all outputs, in the file's units; outputs with `lock-previous` use the values in `previous`.
 
         Raises UsageError for a missing, unknown or NaN input, LumenError if no rule fires and there is no default.
         """
@@ -63,14 +63,14 @@ class Controller(ControllerDefinition):
     def evaluate_batch(
         self, inputs: "Mapping[str, ArrayLike]", previous: Mapping[str, float] | None = None
     ) -> "dict[str, NDArray[np.float64]]":
-        """All outputs for inputs of Shape (n,) each: arrays of Shape (n,). Raises as `evaluate` does."""
+        """Return all outputs for inputs of Shape (n,) each: arrays of Shape (n,). Raises as `evaluate` does."""
         need(inputs, Mapping, "`inputs`", "a map of arrays")
         if previous is not None:
             need_numbers(previous, "`previous`")
         return self._evaluator.evaluate_batch(inputs, previous)
 
     def explain(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> Explanation:
-        """Memberships, each rule's degree, the concluded sets and the outputs, for these inputs."""
+        """Return memberships, each rule's degree, the concluded sets and the outputs, for these inputs."""
         need_numbers(inputs, "`inputs`")
         if previous is not None:
             need_numbers(previous, "`previous`")

@@ -42,13 +42,13 @@ else:
 
     C = TypeVar("C", bound=Clock)  # only type checkers need the default: Python has it from 3.13 on
 
-_new = tuple.__new__  # half of the price of Event(…)
+_new = tuple.__new__  # half the cost of Event(…)
 _SOON = 2 * HALF
-"""What ends within this time ends now [s]."""
+"""Timers that end within this time end now [s]."""
 
 
 def _unobserved(_: Step) -> None:
-    """Nobody looks on."""
+    """Ignore a step: the default observer."""
 
 
 class Machine(machines.MachineDefinition):
@@ -56,9 +56,10 @@ class Machine(machines.MachineDefinition):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The machine in a file; what it invokes is beside it, words are in `words/`, functions in `../functions/`.
+        """Return the machine in a file; machines that it invokes are in the same folder, words in `words/` below it.
 
-        Raises UsageError if a file can't be read, ProjectError if the files have mistakes.
+        Functions are in `../functions/`. Raises UsageError if a file can't be read, ProjectError if the files have
+        mistakes.
         """
         return cls._derived(machine_from_file(need_path(path)), {})
 
@@ -70,7 +71,7 @@ class Machine(machines.MachineDefinition):
         behaviors: Mapping[str, Mapping[str, Any]] | None = None,
         words: Mapping[str, Mapping[str, Any]] | None = None,
     ) -> Self:
-        """The machine in a dict with the structure of a file; raises ProjectError if it has mistakes.
+        """Return the machine in a dict with the structure of a file; raise ProjectError if it has mistakes.
 
         `behaviors` are those that it may invoke, by name, each a dict like `data`; `words` are the words files.
         """
@@ -83,21 +84,21 @@ class Machine(machines.MachineDefinition):
 
     @classmethod
     def _derived(cls, machine: machines.MachineDefinition, known: dict[str, Self]) -> Self:
-        """The same machine as an object of this class, with the machines that it invokes; each is made once."""
+        """Return the machine as an object of this class, with the machines that it invokes; each is made once."""
         for name, other in machine.invoked.items():
             if name not in known:
                 known[name] = cls._derived(other, known)
         made = derived(cls, replace(machine, invoked={name: known[name] for name in machine.invoked}))
-        compiled(made)  # who makes a machine expects to wait, who starts one does not
+        compiled(made)  # callers expect to wait when they make a machine, but not when they start it
         return made
 
 
 class Interpreter(Generic[C]):
     """A machine that runs on a clock. The type parameter is the type of `clock`; the default is a virtual clock.
 
-    `observe` is called with every step, in order; it may `send`. With a virtual clock everything
-    happens within `start`, `send` and `clock.advance`; with another clock call `wake` at the time `next_due`.
-    The other options are those of `initial`.
+    `observe` is called with every step, in order; it may call `send`. With a virtual clock everything happens within
+    `start`, `send` and `clock.advance`; with another clock call `wake` at the time `next_due`. The other options are
+    those of `initial`.
     """
 
     clock: C
@@ -194,11 +195,11 @@ class Interpreter(Generic[C]):
         *,
         observe: Callable[[Step], None] = _unobserved,
     ) -> "Interpreter[Any]":
-        """An interpreter that continues from a `snapshot()`; raises SnapshotError if that is from another machine.
+        """Return an interpreter that continues from a `snapshot()`; raise SnapshotError if that is of another machine.
 
-        Without a clock, time continues from the snapshot. `timers` says when running timers end: `deadline` at their
-        old time, for a clock that continues the old one (overdue timers end at once); `remaining` after the time that
-        they had left at the snapshot; `restart` after their whole delay.
+        Without a clock, time continues from the snapshot. `timers` determines when running timers end: `deadline` at
+        their old time, for a clock that continues the old one (overdue timers end at once); `remaining` after the time
+        that they had left at the snapshot; `restart` after their whole delay.
         """
         if timers not in ("deadline", "remaining", "restart"):
             raise UsageError(f"`timers` can't be `{timers}`: write `deadline`, `remaining` or `restart`")
@@ -219,7 +220,7 @@ class Interpreter(Generic[C]):
         return first
 
     def send(self, event: str | Event, data: Any = None) -> Step:
-        """Process an event now, after everything that is due; returns its step.
+        """Process an event now, after everything that is due; return its step.
 
         Raises UsageError if `data` is not JSON data, because a snapshot could not hold it.
         """
@@ -239,14 +240,14 @@ class Interpreter(Generic[C]):
         sent = _new(Event, (name, data, at, sendid, cause))
         try:
             taken = self._quick(now, sent)
-        except Exception:  # nothing has happened yet: `in_full` fails on the same, and says why
+        except Exception:  # nothing has happened yet: `in_full` fails for the same reason, with a message
             taken = None
         if taken is None:
             taken = in_full(self.machine, now, sent)
         now = self._snapshot = taken.snapshot
         if self._observe is not _unobserved:
             self._observe(taken)
-            now = self._now  # what looks on may send
+            now = self._now  # the observer may send
         if now.timers is not self._timers or now.invoked:
             self.wake()
         return taken
@@ -261,34 +262,34 @@ class Interpreter(Generic[C]):
                 self._take(taken)
 
     def next_due(self) -> float | None:
-        """When the next timer ends [s]."""
+        """Return when the next timer ends [s]; None without timers."""
         event = due(self._snapshot) if self._snapshot else None
         return event.at if event else None
 
     @property
     def done(self) -> bool:
-        """Whether the machine has ended: it takes no more events."""
+        """Return True if the machine has ended: it accepts no more events."""
         return finished(self.machine, self._now)
 
     @property
     def output(self) -> Any:
-        """The output of the final state in which the machine has ended; None before that, or without an output."""
+        """Return the output of the final state in which the machine has ended; None before, or without an output."""
         return deepcopy(self._now.output)
 
     @property
     def configuration(self) -> frozenset[str]:
-        """The active states except the root, each by its alias if it has one, otherwise by its path."""
+        """Return the active states except the root, each by its alias if it has one, otherwise by its path."""
         return self._now.configuration
 
     @property
     def context(self) -> dict[str, Any]:
-        """What the machine remembers: a copy, which the caller may change."""
+        """Return a copy of the context, which the caller may change."""
         return deepcopy(dict(self._now.context))
 
     def snapshot(self) -> dict[str, Any]:
-        """Everything needed to continue elsewhere, as JSON data; its time `at` [s] is the clock's present time.
+        """Return everything needed to continue elsewhere, as JSON data; its time `at` is the clock's present time [s].
 
-        Raises SnapshotError if the context holds something from an event that JSON can't express.
+        Raises SnapshotError if the context holds a value from an event that is not JSON.
         """
         now = self._now
         return serialize(self.machine, now._replace(at=max(now.at, self.clock.now())))

@@ -31,7 +31,7 @@ class Motion(motions.MotionDefinition):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """The motion in a file, for the robot of the file's project, otherwise of the project here or above.
+        """Return the motion in a file, for the robot of the file's project, otherwise of the project here or above.
 
         It may play the other motions of that project. Raises UsageError if the file can't be read, ProjectError if it
         has mistakes.
@@ -41,7 +41,7 @@ class Motion(motions.MotionDefinition):
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], name: str = "motion") -> Self:
-        """The motion in a dict with the structure of a file, for the shipped robot; raises ProjectError."""
+        """Return the motion in a dict with the structure of a file, for the default robot; may raise ProjectError."""
         need_text(name, "the name of a motion")
         need_map(data, "the data of a motion")
         return cls._build(Document(name, data), name, motion_parts(read_files(shipped_root())))
@@ -64,7 +64,7 @@ class Motion(motions.MotionDefinition):
         return Trajectory(self)
 
     def sample(self, t: float, start: Mapping[str, float] | None = None) -> dict[str, float]:
-        """The angle [rad; a hand 0..1] at `t` [s] of every joint that it moves.
+        """Return the angle [rad; a hand 0..1] at `t` [s] of every joint that the motion moves.
 
         It begins at the angles `start` [rad] if they are given, otherwise in its start posture. Raises UsageError for
         arguments that are not numbers.
@@ -76,7 +76,7 @@ class Motion(motions.MotionDefinition):
 
 
 def _home(path: Path) -> Path:
-    """The project of a motion file: two folders up, otherwise the project here or above."""
+    """Return the project of a motion file: two folders up, otherwise the project here or above."""
     folder = path.absolute().parent
     beside = any((folder.parent / name).exists() for name in (MAIN_FILE, "models"))
     return folder.parent if folder.name == "motions" and beside else find_project()

@@ -1,4 +1,4 @@
-"""A whole project from its folder, loaded and checked."""
+"""Loads and checks a whole project in a folder."""
 
 from pathlib import Path
 
@@ -14,11 +14,10 @@ __all__ = ["Project", "load"]
 
 @gc_paused()
 def load(path: str | Path | None = None, *, robot: str = "") -> Project:
-    """The project in that folder; without a path the one here or above, otherwise the shipped one.
+    """Return the project in that folder; without a path the one here or above, otherwise the shipped one.
 
-    Of several robots it is that of `robot`, the first where none is named.
-
-    Raises ProjectError with the diagnostics if its files have errors, and UsageError if the folder does not exist.
+    For a project with several robots, `robot` selects one; the default is the first. Raises ProjectError with the
+    diagnostics if its files have errors, and UsageError if the folder does not exist.
     """
     root = find_project(path)
     project, diagnostics = check_files(root, read_files(root, robot))
