@@ -1,8 +1,8 @@
-"""From the tree of an expression to a Python code object, built node by node: no text of a user is ever run.
+"""Builds a Python code object from the tree of an expression, node by node: no text of a user is ever executed.
 
-The code names nothing but the functions of this package; a path becomes subscripts, so that no attribute of a Python
-object can be reached. The line number of an instruction is the number of its node (in the order of `walk`, from 1),
-which is how `explain` finds the place of what fails.
+The code uses only names of this package's functions; a path becomes subscripts, so that no attribute of a Python object
+can be reached. The line number of an instruction is the number of its node (in the order of `walk`, from 1), from which
+`explain` finds the place of a failure.
 """
 
 import ast
@@ -39,7 +39,7 @@ _YES_OR_NO = {"==", "!=", "<", "<=", ">", ">=", "in"}
 
 
 def is_condition(node: ExpressionNode) -> bool:
-    """Whether the node can have no value but true or false."""
+    """Return True if the node's value can only be a boolean."""
     match node:
         case Literal(value=bool()) | Logic() | Unary(sign="!"):
             return True
@@ -53,7 +53,7 @@ def is_condition(node: ExpressionNode) -> bool:
 
 
 def _builds(tree: ExpressionNode) -> bool:
-    """Whether the expression can put together a list or map that was not there before."""
+    """Return True if the expression can create a new list, map or text."""
     if is_condition(tree):
         return False
     return any(
@@ -70,7 +70,7 @@ class CodeBuilder:
         self.temporary = count()
 
     def code(self, guard: bool) -> CodeType:
-        """A module that defines `evaluate(scope)`."""
+        """Return the code of a module that defines `evaluate(scope)`."""
         result = self.place(self.result(guard), self.tree)
         failed = self.call("failed", _load("error"), _load("scope"))
         handler = ast.ExceptHandler(_load("Exception"), "error", [ast.Return(failed)])
@@ -82,27 +82,29 @@ class CodeBuilder:
         return compile(module, EXPRESSION_FILE, "exec", dont_inherit=True, optimize=0)
 
     def result(self, guard: bool) -> ast.expr:
-        """The value of the whole expression: as a condition, or bounded where it builds something."""
+        """Return the node of the whole expression: a boolean for a guard, else bounded if it creates a value."""
         if guard:
             return self.condition(self.tree)
         built = self.node(self.tree)
         return self.call("bounded", built) if _builds(self.tree) else built
 
     def node(self, node: ExpressionNode) -> ast.expr:
+        """Return the Python node of a node, with its place."""
         built = self.build(node)
         return self.place(built, node)
 
     def place(self, built: ast.expr, node: ExpressionNode) -> ast.expr:
-        """The Python node, marked with the number of ours."""
+        """Return the Python node, with the number of the expression's node as its line number."""
         built.lineno = built.end_lineno = self.numbers[id(node)]
         built.col_offset = built.end_col_offset = 0
         return built
 
     def call(self, name: str, *arguments: ast.expr) -> ast.expr:
+        """Return the Python node of a call of a function by name."""
         return ast.Call(_load(name), list(arguments), [])
 
     def condition(self, node: ExpressionNode) -> ast.expr:
-        """The node's value, made sure to be true or false."""
+        """Return the Python node of a node, with a check that its value is a boolean."""
         built = self.node(node)
         if is_condition(node):
             return built
@@ -113,18 +115,19 @@ class CodeBuilder:
         return self.place(ast.IfExp(test, again, self.call("truth", again)), node)
 
     def named(self, value: ast.expr) -> tuple[ast.expr, ast.expr]:
-        """The value put into a variable, and the variable."""
+        """Return an assignment of the value to a new variable, and a read of that variable."""
         name = f"v{next(self.temporary)}"
         return ast.NamedExpr(ast.Name(name, ast.Store()), value), _load(name)
 
     def hidden(self, node: ExpressionNode) -> ast.expr:
-        """The node, so that Python does not see where it is constant: it would warn of `1['a']` and `1 is None`."""
+        """Return the node hidden from Python's constant check, which would warn of `1['a']` and `1 is None`."""
         built = self.node(node)
         return (
             built if isinstance(node, Identifier | FieldAccess | IndexAccess | FunctionCall) else self.named(built)[0]
         )
 
     def build(self, node: ExpressionNode) -> ast.expr:
+        """Return the Python node of a node, without its place."""
         match node:
             case Literal(value=value):
                 return ast.Constant(value)
@@ -157,13 +160,14 @@ class CodeBuilder:
                 return self.call(f"call_{function}", *first, *map(self.node, arguments))
 
     def logic(self, sign: str, operands: list[ast.expr]) -> ast.expr:
+        """Return the node of `&&` or `||`; in careful mode all operands are evaluated, if needed, after an error."""
         if not self.careful:
             return ast.BoolOp(ast.And() if sign == "&&" else ast.Or(), operands)
         nothing = ast.arguments([], [], None, [], [], None, [])
         return self.call("both" if sign == "&&" else "either", *(ast.Lambda(nothing, o) for o in operands))
 
     def has(self, target: ExpressionNode) -> ast.expr:
-        """`has(a.b.c)`: a map that has the next key, one after another; without a call where they are Python's own."""
+        """Return the node of `has(a.b.c)`: a test of one key after another, without a call if the maps are dicts."""
         keys: list[ast.expr] = []
         while isinstance(target, FieldAccess | IndexAccess):
             keys.append(ast.Constant(target.name) if isinstance(target, FieldAccess) else self.node(target.key))
@@ -171,6 +175,7 @@ class CodeBuilder:
         return self.reaches(self.node(target), keys[::-1])
 
     def reaches(self, base: ast.expr, keys: list[ast.expr]) -> ast.expr:
+        """Return the node that tests whether `keys` lead to a value from `base`."""
         if not keys or not isinstance(keys[0], ast.Constant):
             return self.call("has", base, *keys)
         value, again = self.named(base)
@@ -182,6 +187,7 @@ class CodeBuilder:
         return ast.IfExp(is_map, inside, self.call("has", again, *keys))
 
     def binary(self, sign: str, left: ExpressionNode, right: ExpressionNode) -> ast.expr:
+        """Return the node of a binary operator, specialized for literals on the right."""
         if sign in ("==", "!=") and isinstance(right, Literal):
             return self.equals_literal(sign, left, right)
         if sign == "!=":
@@ -193,7 +199,7 @@ class CodeBuilder:
         return self.call(OPERATOR_FUNCTIONS[sign], self.node(left), self.node(right))
 
     def equals_literal(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
-        """`left == literal` without a call; of all literals Python takes only 0 and 1 for something else (a bool)."""
+        """Return `left == literal` without a call; 0 and 1 need one, because in Python they equal booleans."""
         identity = right.value is None or isinstance(right.value, bool)
         negated = sign == "!="
         if not identity and right.value in (0, 1):
@@ -206,14 +212,14 @@ class CodeBuilder:
         return ast.Compare(self.hidden(left), [operator], [self.node(right)])
 
     def compares_number(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
-        """`left < number` at once where `left` is a number, and with all checks where it is not."""
+        """Return `left < number`: direct if `left` is a number, with all checks otherwise."""
         value, again = self.named(self.node(left))
         is_number = ast.Compare(self.call("type", value), [ast.In()], [_load("numbers")])
         fast = ast.Compare(again, [_ORDER[sign]()], [ast.Constant(right.value)])
         return ast.IfExp(is_number, fast, self.call(OPERATOR_FUNCTIONS[sign], again, ast.Constant(right.value)))
 
     def adds_number(self, sign: str, left: ExpressionNode, right: Literal) -> ast.expr:
-        """`left + number` at once where both are whole and the sum is not too large; with all checks where not."""
+        """Return `left + number`: direct if both are integers and the sum is in range, with all checks otherwise."""
         value, again = self.named(self.node(left))
         total, sum_ = self.named(ast.BinOp(again, _SHIFT[sign](), ast.Constant(right.value)))
         is_whole = ast.Compare(self.call("type", value), [ast.Is()], [_load("whole")])

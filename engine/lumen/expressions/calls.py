@@ -1,4 +1,4 @@
-"""What is checked of a call before it runs: its function, the number of its arguments, the names written in it."""
+"""Checks of a call before it runs: its function, the number of its arguments, and literal names in it."""
 
 from collections.abc import Collection
 
@@ -91,7 +91,7 @@ def check_purity(node: FunctionCall, around: Declarations, findings: ExpressionF
 
 
 def check_names(node: FunctionCall, around: Declarations, findings: ExpressionFindings) -> None:
-    """Look the literal names up that `heard`, `lookup` and `In` are given, and read the pattern of `matches`."""
+    """Check literal names in calls of `heard`, `lookup` and `In`, and the pattern in calls of `matches`."""
     if len(node.arguments) != len(all_functions()[node.function].parameters) or not node.arguments:
         return
     last = node.arguments[-1]

@@ -1,4 +1,4 @@
-"""What is wrong with an expression before it runs: unknown names, and kinds that can never go together."""
+"""Static checks of expressions: unknown names, and types that can never be combined."""
 
 from collections.abc import Collection, Mapping
 from types import MappingProxyType
@@ -68,7 +68,7 @@ def must_hold(tree: ExpressionNode) -> None:
 def check_tree(
     tree: ExpressionNode, around: Declarations, expected: Mapping[str, Any] | None = None
 ) -> list[ExpressionFinding]:
-    """Everything wrong with a tree; `expected` is the JSON Schema that its value has to fit."""
+    """Return all findings about a tree, in order; `expected` is the JSON Schema for its value."""
     checker = _Checker(around)
     result = checker.type(tree, KnownFacts())
     if expected is not None:
@@ -94,13 +94,12 @@ def check_expression(
     functions: KnownFunctions = MappingProxyType({}),
     expected: Mapping[str, Any] | None = None,
 ) -> list[ExpressionFinding]:
-    """Everything wrong with an expression, in the order it stands; never raises, whatever the source.
+    """Return all findings about an expression, in the order of the source; never raises, whatever the source.
 
-    `context` maps its keys to JSON Schemas; `events` maps the events that can arrive here to those of their data
-    (None: of any kind), and is None where any event can. `phrases`, `answers` and `states` are the names there are,
-    None where that is not known; `lists` and `variables` (which stand for entries of lists) map names to JSON
-    Schemas. `functions` are those of the project. `expected` is the schema of the value: `{"type": "boolean"}` for a
-    guard.
+    `context` maps its keys to JSON Schemas. `events` maps the events that can arrive here to the schemas of their data
+    (None for data of any kind); it is None if any event can arrive. `phrases`, `answers` and `states` are the existing
+    names, or None if they are unknown. `lists` and `variables` (names of list entries) map names to JSON Schemas.
+    `functions` are those of the project. `expected` is the schema of the value: `{"type": "boolean"}` for a guard.
     """
     try:
         tree = parse_expression(source)
@@ -111,7 +110,7 @@ def check_expression(
 
 
 class _Checker:
-    """Finds the type of every node from below, and collects what is wrong on the way."""
+    """Infers the type of every node, bottom up, and collects findings on the way."""
 
     def __init__(self, around: Declarations) -> None:
         self.around, self.findings = around, ExpressionFindings()
@@ -179,7 +178,7 @@ class _Checker:
         return ANY
 
     def argument(self, node: Identifier) -> ValueType:
-        """The type of a name in a function of the project, which is one of its arguments."""
+        """Return the type of a name in a function of the project, which must be one of its arguments."""
         arguments = self.around.variables
         if node.name in arguments:
             return type_of_schema(arguments[node.name])
@@ -227,7 +226,7 @@ class _Checker:
     def presence(
         self, node: FieldAccess | IndexAccess, key: str, base: ValueType, presence: FieldPresence, guarded: bool
     ) -> None:
-        """Report a field that is not there, or may be missing."""
+        """Report a field that does not exist, or that may be missing."""
         start = node.end - len(key) if isinstance(node, FieldAccess) else node.key.offset
         path = path_of(node) or ()
         owner = ".".join(path[:-1]) or "this"

@@ -1,4 +1,4 @@
-"""What went wrong while an expression was evaluated, in words, and where."""
+"""The explanation of a failed evaluation, in words, with its place."""
 
 from collections.abc import Iterable, Mapping
 from itertools import islice
@@ -20,13 +20,13 @@ from lumen.expressions.tree import (
 from lumen.language.diagnostics import did_you_mean
 
 EXPRESSION_FILE = "<expression>"
-"""The file name that compiled expressions carry, by which their frames are known."""
+"""The file name in compiled expressions, by which their stack frames are recognized."""
 
 UNKNOWN_VALUE = object()
 
 
 def explain(error: Exception, source: str, tree: ExpressionNode, scope: Scope) -> ExpressionError:
-    """The error as its author should read it; any exception of the evaluation can be handed in."""
+    """Return the error as its author should read it, from any exception of the evaluation."""
     node = _failing(error.__traceback__, tree)
     match error:
         case ExpressionError(message=message, hint=hint):
@@ -49,14 +49,14 @@ def explain(error: Exception, source: str, tree: ExpressionNode, scope: Scope) -
 def wrong_kind(
     source: str, node: ExpressionNode, culprit: ExpressionNode, kind: str, wanted: tuple[str, ...]
 ) -> ExpressionError:
-    """`culprit`, an operand of `node` or the node itself, is of `kind` where something else is needed."""
+    """Return the error for `culprit`, an operand of `node` or the node itself, whose `kind` is not one of `wanted`."""
     needed = " or ".join(KIND_DESCRIPTIONS[k] for k in wanted)
     asks = f", but `{_sign(node)}` needs {needed}" if culprit is not node else f", but {needed} is needed"
     return ExpressionError(f"`{_shown(source, culprit)}` is {KIND_DESCRIPTIONS[kind]}{asks}", culprit.offset)
 
 
 def _shown(source: str, node: ExpressionNode) -> str:
-    """The node as written, in one line and not too long."""
+    """Return the source of a node on one line, shortened to 60 characters."""
     text = " ".join(source[node.offset : node.end].split())
     return text if len(text) <= 60 else f"{text[:59]}…"
 
@@ -68,7 +68,7 @@ def _sign(node: ExpressionNode) -> str:
 
 
 def _failing(traceback: TracebackType | None, tree: ExpressionNode) -> ExpressionNode:
-    """The node whose instruction raised: the innermost frame of ours names it by its line."""
+    """Return the node whose instruction raised: the line number in the innermost frame of an expression."""
     number = 1
     while traceback is not None:
         if traceback.tb_frame.f_code.co_filename == EXPRESSION_FILE:
@@ -95,12 +95,12 @@ def _missing(
 
 
 def _few(keys: Iterable[Any]) -> list[str]:
-    """The keys worth comparing with a misspelt one: a message may bring thousands, or long ones."""
+    """Return the keys worth comparing with a misspelt one: a message may have thousands, or long ones."""
     return [key for key in islice(keys, 100) if isinstance(key, str) and len(key) <= 40]
 
 
 def _value(node: ExpressionNode, scope: Scope) -> Any:
-    """What a path leads to; UNKNOWN for anything else."""
+    """Return the value at a path; UNKNOWN_VALUE for any other node."""
     path = path_of(node)
     if path is None:
         return UNKNOWN_VALUE

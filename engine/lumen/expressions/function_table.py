@@ -15,7 +15,10 @@ KindSet = frozenset[str]
 
 
 class Function(NamedTuple):
-    """`parameters` are the kinds that each argument may have; a `scoped` function gets the Scope before them."""
+    """A function of the language; `parameters` has the kinds that each argument may have.
+
+    A `scoped` function gets the Scope before its arguments.
+    """
 
     parameters: tuple[KindSet, ...]
     returns: KindSet

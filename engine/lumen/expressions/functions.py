@@ -1,4 +1,7 @@
-"""What the functions of the language do; the manifest `features/expressions.py` lists them."""
+"""The implementation of the language's functions; the manifest `features/expressions.py` lists them.
+
+Editors show the first paragraph of a function's docstring to the authors of behaviours.
+"""
 
 from collections.abc import Iterable
 from datetime import datetime
@@ -77,7 +80,7 @@ def matches(text: Any, pattern: Any) -> bool:
 
 
 def _wall_clock(scope: Scope) -> datetime:
-    """What calendar and clock show at the time of the event."""
+    """Return the local time of the event."""
     return local_time(moment(scope.epoch, scope.at), scope.timezone)
 
 
@@ -111,14 +114,14 @@ def heard(scope: Scope, text: Any, name: Any) -> bool:
         _texts(text)
         if not isinstance(name, str):
             return _heard_of(scope, text, name)
-    known = scope[6]  # `phrases`: by its number in half the time
+    known = scope[6]  # `phrases`: by its index in half the time
     if name not in known:
         raise _unnamed("phrases", name, known)
     return phrases.is_heard(text, known[name], scope.lists)
 
 
 def _heard_of(scope: Scope, text: str, table: Any) -> bool:
-    """`heard` of phrases that stand in an entry of a list."""
+    """Return `heard` for phrases that are part of a list entry."""
     if kind_of(table) not in (LIST, MAP):
         raise WrongKindError(1, table, TEXT, LIST, MAP)
     return phrases.is_heard(text, phrases.phrases_of(table), scope.lists)

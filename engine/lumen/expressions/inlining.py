@@ -1,7 +1,7 @@
-"""Expressions as text of Python, to stand within a larger function: without a call, and mostly without a Scope.
+"""Expressions as Python text inside a larger function: without a call, and mostly without a Scope.
 
-The text is unparsed from the tree that `builder` makes: what a user wrote stands in it as literals of Python.
-Where it raises anything, `compile_expression` of the same source says what that comes to.
+The text is unparsed from the tree that `builder` makes, so that the user's source appears only as Python literals. If
+it raises, `compile_expression` of the same source determines the result.
 """
 
 import ast
@@ -17,7 +17,7 @@ from lumen.language.events import Event
 
 
 class InlinedExpression(NamedTuple):
-    """The text, in which `context` is a variable, and what it needs of the variable `scope`."""
+    """The text, in which `context` is a variable, and the parts that it needs of the variable `scope`."""
 
     text: str
     needs: frozenset[str]
@@ -25,14 +25,14 @@ class InlinedExpression(NamedTuple):
 
 @lru_cache(maxsize=8192)
 def inlined(source: str, event: str, guard: bool) -> InlinedExpression:
-    """The expression where the variable of that name holds the Event; as `compile_guard` for a `guard`."""
+    """Return the expression as text; `event` is the variable of the Event. A `guard` is as in `compile_guard`."""
     text = ast.unparse(_InlineBuilder(parse_expression(source), event).result(guard))
     return InlinedExpression(text, scope_needs(source) - {"context", "event"})
 
 
 @lru_cache(maxsize=8192)
 def scope_needs(source: str) -> frozenset[str]:
-    """What a compiled expression needs a Scope for: names it refers to, `In`, `heard`, and `scope` for others."""
+    """Return the parts of a Scope that an expression needs: root names, `In`, `heard`, else `scope`."""
     return frozenset(need for node, _ in walk(parse_expression(source)) for need in _needs_of(node))
 
 
@@ -50,7 +50,7 @@ def _needs_of(node: ExpressionNode) -> tuple[str, ...]:
 
 
 class _InlineBuilder(CodeBuilder):
-    """Names the context and the event by variables, and everything else by its place in the variable `scope`."""
+    """Uses variables for the context and the event, and subscripts of the variable `scope` for everything else."""
 
     def __init__(self, tree: ExpressionNode, event: str) -> None:
         super().__init__(tree, careful=False)

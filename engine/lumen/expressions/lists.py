@@ -1,4 +1,7 @@
-"""Functions of the language for lists: parts of lists, random draws, and texts in several languages."""
+"""Functions of the language for lists: parts of lists, random draws, and texts in several languages.
+
+Editors show the first paragraph of a function's docstring to the authors of behaviours.
+"""
 
 from collections.abc import Mapping
 from typing import Any

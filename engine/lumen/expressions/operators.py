@@ -1,4 +1,4 @@
-"""What the signs of the language do with values: the functions that compiled expressions call.
+"""The operators of the language: functions that compiled expressions call.
 
 They raise the errors of `kinds`, to which `explain` adds the place.
 """
@@ -37,13 +37,14 @@ def truth(value: Any) -> bool:
 
 
 def negation(value: Any) -> bool:
+    """Return `!value`; raise WrongKindError if it is not a boolean."""
     if value is True or value is False:
         return not value
     raise WrongKindError(0, value, BOOLEAN)
 
 
 def equal(left: Any, right: Any) -> bool:
-    """Equality of values; those of different kinds differ, 1 and 1.0 do not."""
+    """Return True if two values are equal; values of different kinds are not, but 1 and 1.0 are."""
     kind = kind_of(left)
     if kind != kind_of(right):
         return False
@@ -55,7 +56,7 @@ def equal(left: Any, right: Any) -> bool:
 
 
 def contained(value: Any, collection: Any) -> bool:
-    """`value in collection`: an element of a list, or a key of a map."""
+    """Return `value in collection`: an element of a list, or a key of a map."""
     kind = kind_of(collection)
     if kind is LIST:
         return any(equal(value, element) for element in collection)
@@ -71,21 +72,25 @@ def _comparable(left: Any, right: Any) -> None:
 
 
 def less(left: Any, right: Any) -> bool:
+    """Return `left < right`; raise MismatchError unless both are numbers, texts or booleans."""
     _comparable(left, right)
     return bool(left < right)
 
 
 def at_most(left: Any, right: Any) -> bool:
+    """Return `left <= right`, as `less`."""
     _comparable(left, right)
     return bool(left <= right)
 
 
 def greater(left: Any, right: Any) -> bool:
+    """Return `left > right`, as `less`."""
     _comparable(left, right)
     return bool(left > right)
 
 
 def at_least(left: Any, right: Any) -> bool:
+    """Return `left >= right`, as `less`."""
     _comparable(left, right)
     return bool(left >= right)
 
@@ -108,7 +113,7 @@ def _numbers(left: Any, right: Any) -> None:
 
 
 def add(left: Any, right: Any) -> Any:
-    """The sum of numbers, texts one after the other, or lists one after the other."""
+    """Return the sum of two numbers, or the concatenation of two texts or lists."""
     if type(left) is int and type(right) is int and MIN_INT <= (total := left + right) <= MAX_INT:
         return total
     kind = kind_of(left)
@@ -132,11 +137,13 @@ def bounded_text(length: int) -> None:
 
 
 def subtract(left: Any, right: Any) -> Any:
+    """Return the difference of two numbers; raise FaultError if it is out of range."""
     _numbers(left, right)
     return _in_range(left - right)
 
 
 def multiply(left: Any, right: Any) -> Any:
+    """Return the product of two numbers; raise FaultError if it is out of range."""
     _numbers(left, right)
     return _in_range(left * right)
 
@@ -163,13 +170,14 @@ def remainder(left: Any, right: Any) -> Any:
 
 
 def negative(value: Any) -> Any:
+    """Return the number with the opposite sign."""
     if kind_of(value) != NUMBER:
         raise WrongKindError(0, value, NUMBER)
     return _in_range(-value)
 
 
 def item(base: Any, key: Any) -> Any:
-    """`base[key]`: an element of a list, counted from 0, or the value of a key."""
+    """Return `base[key]`: an element of a list, counted from 0, or the value of a key."""
     kind = kind_of(base)
     if kind is MAP:
         if not isinstance(key, str):
@@ -198,7 +206,7 @@ def has(base: Any, *keys: Any) -> bool:
 
 
 def bounded(value: Any) -> Any:
-    """The value, unless the lists, maps and texts in it are too many, too deep or too long."""
+    """Return the value; raise FaultError if it has too many values or levels, or too long texts."""
     if type(value) in _SCALARS:
         return value
     count, characters, level, values = 0, 0, 0, [value]

@@ -1,4 +1,4 @@
-"""From the text of an expression to its tree."""
+"""Parses the text of an expression to its tree."""
 
 from collections.abc import Collection
 from functools import lru_cache
@@ -20,7 +20,7 @@ _PAIRS = {
     "<>": "write `!=`", "=>": "write `>=`", "=<": "write `<=`", "++": "to change a value, use `assign`",
     "??": "write `has(…) ? … : …`", "?.": "check with `has(…)` first",
 }  # fmt: skip
-"""Signs of other languages that are two tokens here."""
+"""Operators of other languages that are two tokens here."""
 
 
 MAX_REMEMBERED_TREES = 10_000
@@ -28,9 +28,9 @@ MAX_REMEMBERED_TREES = 10_000
 
 @lru_cache(maxsize=MAX_REMEMBERED_TREES)
 def parse_expression(source: str) -> ExpressionNode:
-    """The tree of an expression; raises ExpressionError with the offset of what can't be read.
+    """Return the tree of an expression; raise ExpressionError with the offset of an invalid part.
 
-    Trees are frozen, and those of the same source are one.
+    Trees are frozen, and equal sources share one tree.
     """
     return _ExpressionParser(tokenize(source)).bounded()
 
@@ -40,6 +40,7 @@ class _ExpressionParser(PrattParser):
     max_levels = 2 * MAX_TREE_DEPTH
 
     def unexpected(self, hint: str = "") -> ExpressionError:
+        """Return the error for a token that is not allowed at its place."""
         token = self.token
         if token.kind == "end":
             what = "the expression ends too early" if self.position else "there is no expression"
@@ -48,16 +49,17 @@ class _ExpressionParser(PrattParser):
         return ExpressionError(f"`{token.text[:40]}` is not allowed here", token.offset, hint)
 
     def _pair(self) -> str:
-        """This sign and the one right before it, as other languages write them together."""
+        """Return this sign together with an adjacent one before it, as other languages write them."""
         before, token = self.tokens[max(self.position - 1, 0)], self.token
         return before.text + token.text if before.end == token.offset else ""
 
     def too_deep(self, offset: int) -> ExpressionError:
+        """Return the error for an expression with too many levels."""
         hint = "split it: assign a part to a key of the context, and use that key"
         return ExpressionError(f"the expression has more than {MAX_TREE_DEPTH} levels", offset, hint)
 
     def minus(self, power: int) -> ExpressionNode:
-        """`-operand`; right before a number it is that number's sign."""
+        """Parse `-operand`; directly before a number it is the sign of the number."""
         if self.tokens[self.position + 1].kind in ("int", "float"):
             following = self.tokens[self.position + 2].text
             if following not in (".", "["):
@@ -65,6 +67,7 @@ class _ExpressionParser(PrattParser):
         return self.unary(power)
 
     def number(self, minus: Token | None = None) -> ExpressionNode:
+        """Parse a number; raise ExpressionError if it exceeds 64 bits."""
         token = self.advance()
         value = token.value if isinstance(token.value, int | float) else 0
         value = -value if minus else value
@@ -74,6 +77,7 @@ class _ExpressionParser(PrattParser):
         return Literal(value, offset=offset, end=token.end)
 
     def map_key(self, entries: Collection[str]) -> str:
+        """Parse the key of a map entry, which must be a text that is not in `entries`."""
         key = self.token
         if key.kind != "text":
             raise self.unexpected(f"put the key in quotes: '{key.text}'" if key.kind == "name" else "")

@@ -1,4 +1,4 @@
-"""Phrases in the language of expressions: `heard` and `lookup`."""
+"""Phrases in expressions: `heard` and `lookup`."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias, cast
@@ -18,19 +18,22 @@ _NO_LISTS: Lists = {}
 
 
 class _ByIdentity:
-    """What was prepared from a table, for as long as it is among the last few hundred used.
+    """A cache of values prepared from tables, which keeps the last few hundred.
 
-    Tables are frozen values, so an identity stands for its content; keeping the table keeps its identity its own.
+    Tables are frozen, so their identity represents their content; the cache keeps each table alive, so that its
+    identity is not reused.
     """
 
     def __init__(self) -> None:
         self.kept: dict[int, tuple[Any, Any]] = {}
 
     def get(self, table: Any) -> Any:
+        """Return the value prepared from the table; None if it is not in the cache."""
         found = self.kept.get(id(table))
         return found[1] if found and found[0] is table else None
 
     def put(self, table: Any, prepared: Any) -> Any:
+        """Store and return the value prepared from the table."""
         if len(self.kept) >= _MAX_PREPARED_TABLES:
             self.kept.clear()
         self.kept[id(table)] = (table, prepared)
@@ -40,7 +43,7 @@ class _ByIdentity:
 _phrases = _ByIdentity()
 _kept = _phrases.kept
 _last = [("", "")]
-"""The text compared last, and its words: the guards of a state compare one text, one after the other."""
+"""The last text compared, and its words: the guards of a state compare the same text one after another."""
 
 _answers = _ByIdentity()
 _finders = _ByIdentity()
@@ -48,7 +51,7 @@ _entries = _ByIdentity()
 
 
 def _prepared(phrases: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """The forms without slots, padded."""
+    """Return the padded forms without slots."""
     found = (form for texts in phrases.values() for text in texts for form in forms(text) if form.plain)
     return tuple({f" {' '.join(form.literals)} ": None for form in found})
 
@@ -58,7 +61,7 @@ def _with_slots(phrases: Mapping[str, tuple[str, ...]]) -> bool:
 
 
 def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _NO_LISTS) -> bool:
-    """Whether any of the phrases, in any language, is in the text as whole words; a negation changes nothing.
+    """Return True if any phrase, in any language, is in the text as whole words; negations have no influence.
 
     `lists` are those that a slot may name.
     """
@@ -79,7 +82,7 @@ def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _
 
 
 def _is_caught(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists) -> bool:
-    """Whether a form with slots is in the text."""
+    """Return True if a form with slots is in the text."""
     finder = _finders.get(phrases)
     if finder is None:
         entries = {name: [(phrases_in(entry), entry) for entry in rows] for name, rows in lists.items()}
@@ -89,7 +92,7 @@ def _is_caught(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists) 
 
 
 def phrases_of(value: Any) -> Mapping[str, tuple[str, ...]]:
-    """Phrases as they stand in an entry of a list: a list of texts, or one for each language.
+    """Return the phrases in a list entry: a list of texts, or one for each language.
 
     Raises FaultError if the value is anything else.
     """
@@ -106,10 +109,10 @@ def phrases_of(value: Any) -> Mapping[str, tuple[str, ...]]:
 
 
 def answer(scope: Scope, text: str, table: Any) -> Any:
-    """The value of the first entry of an `answers:` table one of whose phrases is heard, else null.
+    """Return the value of the first `answers:` row with a phrase that is in the text, else None.
 
-    Of a value that is a map of languages, the current one's, or the first where that is missing. A map counts as one
-    of languages where every key of it is a language that the table has phrases in, or the current one.
+    If the value is a map of languages, that of the current one is returned, or the first if it is missing. A map counts
+    as one of languages if every key is the current language, or one in which the table has phrases.
     """
     prepared = _answers.get(table) or _answers.put(table, _AnswerTable(table))
     found = prepared.entry(padded(text[:MAX_TEXT_EXAMINED]))
@@ -117,7 +120,7 @@ def answer(scope: Scope, text: str, table: Any) -> Any:
 
 
 class _AnswerTable:
-    """An `answers:` table: `phrases` of each row by their first word, and the text looked up last."""
+    """An `answers:` table: the phrases of each row by their first word, and a cache of the last lookup."""
 
     def __init__(self, table: Sequence[Answer]) -> None:
         self.table = tuple(table)
@@ -129,7 +132,7 @@ class _AnswerTable:
         self.last: tuple[str, Answer | None] = ("", None)
 
     def entry(self, said: str) -> Answer | None:
-        """The first row one of whose phrases stands in the words."""
+        """Return the first row with a phrase that is in the words."""
         before, found = self.last
         if before is not said:
             begun = (row for word in said.split() if word in self.phrases for row in self.phrases[word])

@@ -1,8 +1,9 @@
-"""A parser of operator precedence: the machine under every expression language here.
+"""A parser for operator precedence, the base of every expression language here.
 
-V. Pratt, "Top Down Operator Precedence", POPL 1973. A language is a subclass with three tables: the signs that an
-expression begins with, the kinds of tokens that are operands, and what goes on from a left side (operators, `? :`,
-`.field`, `[index]`), each with the power it binds its operands with: of two, the stronger has the operand between.
+V. Pratt, "Top Down Operator Precedence", POPL 1973. A language is a subclass with three tables: the signs at the
+beginning of an expression, the kinds of tokens that are operands, and the continuations of a left side (operators, `?
+:`, `.field`, `[index]`), each with the power with which it binds its operands: an operand between two operators belongs
+to the stronger one.
 """
 
 from abc import ABC, abstractmethod
@@ -28,13 +29,13 @@ from lumen.expressions.tree import (
 )
 
 CONSTANTS: Mapping[str, bool | None] = {"true": True, "false": False, "null": None}
-"""The names that are values."""
+"""The names that are literals."""
 
 Prefix = tuple[int, Callable[[Any, int], ExpressionNode]]
-"""A power, and the parser's method that is handed it and reads the sign with what belongs to it."""
+"""A power, and the parser's method that receives it and parses the sign with its operand."""
 
 Infix = tuple[int, Callable[[Any, ExpressionNode, Token, int], ExpressionNode]]
-"""A power, and the parser's method that is handed the left side, the sign (which is read already) and the power."""
+"""A power, and the parser's method that receives the left side, the sign (already consumed) and the power."""
 
 
 class PrattParser(ABC):
@@ -45,34 +46,34 @@ class PrattParser(ABC):
     infixes: ClassVar[Mapping[str, Infix]]
 
     reserved: ClassVar[Collection[str]] = ()
-    """Names that are no operands."""
+    """Names that can't be operands."""
 
     method_prefix: ClassVar[str] = ""
-    """What the function is called that `a.name()` calls, before the name."""
+    """Prefix of the function name that a call `a.name()` gets."""
 
     max_levels: ClassVar[int]
-    """How many expressions stand inside each other at most; brackets count here, though not in the tree."""
+    """Maximum nesting of expressions; brackets count here, though they are not in the tree."""
 
     def __init__(self, tokens: list[Token]) -> None:
         self.tokens, self.token, self.position, self.level = tokens, tokens[0], 0, 0
 
     @abstractmethod
     def unexpected(self, hint: str = "") -> Exception:
-        """The error to raise where the next token can't stand."""
+        """Return the error for a token that is not allowed at its place."""
 
     @abstractmethod
     def too_deep(self, offset: int) -> Exception:
-        """The error to raise for more levels than are allowed."""
+        """Return the error for too many levels."""
 
     def whole(self) -> ExpressionNode:
-        """The tree of all tokens."""
+        """Parse all tokens; return the tree."""
         tree = self.expression(0)
         if self.token.kind != "end":
             raise self.unexpected()
         return tree
 
     def bounded(self) -> ExpressionNode:
-        """The tree of all tokens, with at most MAX_TREE_DEPTH levels."""
+        """Parse all tokens; return the tree, which has at most MAX_TREE_DEPTH levels."""
         tree = self.whole()
         for node, level in walk(tree):
             if level > MAX_TREE_DEPTH:
@@ -80,7 +81,7 @@ class PrattParser(ABC):
         return tree
 
     def expression(self, power: int) -> ExpressionNode:
-        """An expression whose operators all bind more tightly than `power`."""
+        """Parse an expression whose operators all bind more tightly than `power`."""
         self.level += 1
         if self.level > self.max_levels:
             raise self.too_deep(self.token.offset)
@@ -91,7 +92,7 @@ class PrattParser(ABC):
         return left
 
     def begin(self) -> ExpressionNode:
-        """What stands before the first operator."""
+        """Parse the part before the first operator."""
         if prefix := self.prefixes.get(self.token.text):
             return prefix[1](self, prefix[0])
         if operand := self.operands.get(self.token.kind):
@@ -101,34 +102,34 @@ class PrattParser(ABC):
     # Tokens
 
     def advance(self) -> Token:
-        """The next token, which is read."""
+        """Consume the next token and return it."""
         read = self.token
         self.position += 1
         self.token = self.tokens[self.position]
         return read
 
     def accept(self, text: str) -> bool:
-        """Whether the next token is this one, which is read."""
+        """Consume the next token if it is this one; return whether it was."""
         found = self.token.text == text
         if found:
             self.advance()
         return found
 
     def expect(self, text: str) -> Token:
-        """The next token, which has to be this one, and is read."""
+        """Consume the next token, which must be this one, and return it."""
         if self.token.text != text:
             raise self.unexpected(f"a `{text}` is missing")
         return self.advance()
 
-    # What an expression begins with
+    # The beginning of an expression
 
     def literal(self) -> ExpressionNode:
-        """A number or a text."""
+        """Parse a number or a text."""
         token = self.advance()
         return Literal(token.value, offset=token.offset, end=token.end)
 
     def name(self) -> ExpressionNode:
-        """`true`, `f(…)` or a name."""
+        """Parse `true`, `f(…)` or a name."""
         if self.token.text in self.reserved:
             raise self.unexpected()
         token = self.advance()
@@ -140,26 +141,26 @@ class PrattParser(ABC):
         return Identifier(token.text, offset=token.offset, end=token.end)
 
     def unary(self, power: int) -> Unary:
-        """`!operand`."""
+        """Parse `!operand`."""
         sign = self.advance()
         operand = self.expression(power)
         return Unary(sign.text, operand, offset=sign.offset, end=operand.end)
 
     def group(self, power: int) -> ExpressionNode:
-        """`(inner)`."""
+        """Parse `(inner)`."""
         self.advance()
         inner = self.expression(power)
         self.expect(")")
         return inner
 
     def list_literal(self, _: int) -> ExpressionNode:
-        """`[items]`."""
+        """Parse `[items]`."""
         start = self.advance()
         items, end = self.listed("]")
         return ListLiteral(items, offset=start.offset, end=end)
 
     def map_literal(self, power: int) -> ExpressionNode:
-        """`{key: value}`."""
+        """Parse `{key: value}`."""
         start = self.advance()
         entries: dict[str, ExpressionNode] = {}
         while self.token.text != "}":
@@ -172,37 +173,37 @@ class PrattParser(ABC):
         return MapLiteral(tuple(entries), tuple(entries.values()), offset=start.offset, end=end)
 
     def map_key(self, entries: Collection[str]) -> str:
-        """The key of the next entry, which is read; `entries` has those before."""
+        """Parse the key of the next entry; `entries` has the previous ones."""
         raise self.unexpected()
 
-    # What goes on from a left side
+    # Continuations of a left side
 
     def binary(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
-        """`left sign right`, several of them from the left."""
+        """Parse the rest of `left sign right`, which associates to the left."""
         right = self.expression(power)
         return Binary(sign.text, left, right, offset=left.offset, end=right.end)
 
     def logic(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
-        """`left && right`, several of them as one."""
+        """Parse the rest of `left && right`; several operands become one node."""
         operands = [left, self.expression(power)]
         while self.accept(sign.text):
             operands.append(self.expression(power))
         return Logic(sign.text, tuple(operands), offset=left.offset, end=operands[-1].end)
 
     def conditional(self, left: ExpressionNode, _: Token, __: int) -> ExpressionNode:
-        """`left ? then : otherwise`."""
+        """Parse the rest of `left ? then : otherwise`."""
         then = self.expression(0)
         self.expect(":")
         otherwise = self.expression(0)
         return Conditional(left, then, otherwise, offset=left.offset, end=otherwise.end)
 
     def index(self, left: ExpressionNode, _: Token, __: int) -> ExpressionNode:
-        """`left[key]`."""
+        """Parse the rest of `left[key]`."""
         key = self.expression(0)
         return IndexAccess(left, key, offset=left.offset, end=self.expect("]").end)
 
     def member(self, left: ExpressionNode, _: Token, __: int) -> ExpressionNode:
-        """`left.field` or `left.function(arguments)`."""
+        """Parse the rest of `left.field` or `left.function(arguments)`."""
         if self.token.kind != "name":
             raise self.unexpected("write a name after the `.`")
         name = self.advance()
@@ -213,7 +214,7 @@ class PrattParser(ABC):
         return FunctionCall(function, (left, *arguments), name.offset, offset=left.offset, end=end)
 
     def listed(self, close: str) -> tuple[tuple[ExpressionNode, ...], int]:
-        """Expressions between commas up to `close`, and where that ends; a last comma is allowed."""
+        """Parse expressions between commas up to `close`; return them and its end. A trailing comma is allowed."""
         items: list[ExpressionNode] = []
         while self.token.text != close:
             items.append(self.expression(0))

@@ -1,4 +1,4 @@
-"""From the tree of an expression back to its text, with as few brackets as its meaning allows."""
+"""Converts the tree of an expression back to text, with as few brackets as possible."""
 
 from collections.abc import Iterable
 
@@ -23,9 +23,9 @@ _ESCAPES = {"\\": "\\\\", "'": "\\'", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 
 def unparse(node: ExpressionNode) -> str:
-    """The expression as text; parsed again it is the same tree.
+    """Return the expression as text, which parses to the same tree.
 
-    Other languages with these operators (CEL, ECMAScript) print with it too: a call of `.name` is that of a method.
+    It also serves other languages with these operators (CEL, ECMAScript): a call of `.name` becomes that of a method.
     """
     match node:
         case Literal(value=value):
@@ -63,7 +63,7 @@ def _listed(nodes: Iterable[ExpressionNode]) -> str:
 
 
 def _unary(sign: str, operand: ExpressionNode) -> str:
-    """With brackets around a sign or a number: `-1` is a number by itself, and `!!x` is `x` to some CELs."""
+    """Return the text, with brackets around a sign or number: `-1` is a number, and some CELs read `!!x` as `x`."""
     text = _at_least(_POSTFIX, operand)
     return f"{sign} {text}" if sign.isalpha() else sign + text
 

@@ -36,28 +36,30 @@ def no_draw(count: int) -> int:
 
 
 class Scope(NamedTuple):
-    """The values that names and functions stand for; plain JSON data throughout.
-
-    `event` is `{"name": …, "data": …}`, or None where no event has arrived; `state` has `path`, `language` and `place`.
-    `configuration` is whether a state is active, for `In()`. `at` [s] is the time of the event, and `epoch` that of
-    the clock's zero [s since 1970, in UTC], and `timezone` that of `hour()` and its kin. `language` is the one that
-    `lookup` answers in; `draw` gives one of as many numbers, from 0.
-    `machine` has the rows of `hears` that `heard` is about.
-    """
+    """The values of an expression's names, and the environment of its functions; all values are plain JSON data."""
 
     context: Mapping[str, Any] = _NOTHING
     event: Mapping[str, Any] | None = None
+    """`{"name": …, "data": …}`, or None if no event has arrived."""
     state: Mapping[str, Any] = _NOTHING
+    """The current state: `path`, `language` and `place`."""
     configuration: Callable[[str], bool] = _nowhere
+    """Returns whether a state is active, for `In()`."""
     at: float = 0.0
+    """The time of the event [s]."""
     language: str = ""
+    """The language in which `lookup` answers."""
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = _NOTHING
     answers: Mapping[str, tuple[Answer, ...]] = _NOTHING
     epoch: float = 0.0
+    """The time of the clock's zero [s since 1970, UTC]."""
     timezone: str = ""
+    """The IANA name of the time zone for `hour()` and similar functions."""
     lists: Mapping[str, Sequence[Any]] = _NOTHING
     draw: Callable[[int], int] = no_draw
+    """Returns a random number from 0 to one less than its argument."""
     machine: MachineDefinition | None = None
+    """The machine with the rows of `hears` for `heard`."""
 
 
 ROOTS = ("context", "event", "state", "lists")

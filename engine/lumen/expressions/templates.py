@@ -1,4 +1,4 @@
-"""Texts with `{{ expression }}` in them."""
+"""Texts that contain `{{ expression }}`."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -25,10 +25,10 @@ class Placeholder(NamedTuple):
 
 @lru_cache(maxsize=8192)
 def compile_template(text: str) -> Callable[[Scope], str]:
-    """The text as a function of a Scope that fills its holes in; offsets of errors count from the text's begin.
+    """Return the text as a function of a Scope that fills in its placeholders; errors have offsets in the text.
 
-    null prints as nothing, true and false as such, whole numbers without a fraction (1.0 is "1"), lists and maps as
-    JSON.
+    null becomes an empty text; true and false are printed as such, integral numbers without a fraction (1.0 as "1"),
+    lists and maps as JSON.
     """
     parts = split_template(text)
     if all(isinstance(part, str) for part in parts):
@@ -64,12 +64,12 @@ def _filler(hole: Placeholder) -> Callable[[Scope], str]:
 
 
 def moved(error: ExpressionError, offset: int) -> ExpressionError:
-    """The same error in an expression that begins at `offset` of a text."""
+    """Return the error with its offset moved, for an expression that begins at `offset` of a text."""
     return ExpressionError(error.message, error.offset + offset, error.hint)
 
 
 def split_template(text: str) -> list[str | Placeholder]:
-    """The plain texts and the holes, in order; raises ExpressionError where a hole is not closed."""
+    """Return the plain texts and the placeholders, in order; raise ExpressionError if a placeholder is not closed."""
     parts: list[str | Placeholder] = []
     position = 0
     while (start := text.find("{{", position)) >= 0:
@@ -81,7 +81,7 @@ def split_template(text: str) -> list[str | Placeholder]:
 
 
 def _closing(text: str, offset: int) -> int:
-    """Where the `}}` stands that ends the hole: outside of maps and texts."""
+    """Return the offset of the `}}` that ends the placeholder, outside of maps and texts."""
     start, level = offset - 2, 0
     while offset < len(text):
         if level == 0 and text.startswith("}}", offset):
@@ -93,7 +93,7 @@ def _closing(text: str, offset: int) -> int:
 
 
 def printed(value: Any) -> str:
-    """A value as it stands in a text; raises ExpressionError for a list or map that is too large."""
+    """Return a value as text; raise ExpressionError for a list or map that is too large."""
     if isinstance(value, str):
         return value
     try:
@@ -113,7 +113,7 @@ def _plain(value: Any) -> Any:
 
 
 def expanded_template(text: str, functions: KnownFunctions) -> str:
-    """Return the text with `expanded` done in each `{{ expression }}`; raises what that does."""
+    """Return the text with `expanded` applied to each `{{ expression }}`; raise the same errors."""
     if not any(name in text for name in functions):
         return text
     parts = []
@@ -130,7 +130,7 @@ def expanded_template(text: str, functions: KnownFunctions) -> str:
 
 
 def check_template(text: str, *, context: Mapping[str, Any] | None, **around: Any) -> list[ExpressionFinding]:
-    """What `check_expression` (with the same arguments) finds in the holes, with offsets in the text."""
+    """Return the findings of `check_expression` (same arguments) in the placeholders, with offsets in the text."""
     try:
         holes = [part for part in split_template(text) if isinstance(part, Placeholder)]
     except ExpressionError as error:
@@ -140,7 +140,7 @@ def check_template(text: str, *, context: Mapping[str, Any] | None, **around: An
 
 
 def _meant(hole: Placeholder, findings: list[ExpressionFinding]) -> list[ExpressionFinding]:
-    """The findings in a hole; of one with three braces, as Handlebars has them, the third brace instead."""
+    """Return the findings in a placeholder; for three braces, as in Handlebars, one about the third brace."""
     inner = hole.source.removeprefix("{").removesuffix("}").strip()
     if not hole.source.startswith("{") or not any(f.code == EXPRESSION_SYNTAX for f in findings):
         return findings

@@ -1,4 +1,4 @@
-"""The words of an expression, with their offsets."""
+"""The tokens of an expression, with their offsets."""
 
 import re
 from typing import NamedTuple
@@ -37,7 +37,7 @@ _HINTS = {
 
 
 class Token(NamedTuple):
-    """`kind` is int, float, text, name, sign or end; `text` as written; `value` of a literal."""
+    """A token: `kind` is int, float, text, name, sign or end; `text` is the source; `value` that of a literal."""
 
     kind: str
     text: str
@@ -46,11 +46,12 @@ class Token(NamedTuple):
 
     @property
     def end(self) -> int:
+        """Return the offset after the token."""
         return self.offset + len(self.text)
 
 
 def tokenize(source: str) -> list[Token]:
-    """The tokens of a whole expression, the last one of kind `end`; raises ExpressionError."""
+    """Return the tokens of a whole expression, the last of kind `end`; raise ExpressionError for invalid parts."""
     if len(source) > MAX_EXPRESSION_LENGTH:
         raise ExpressionError(
             f"the expression has {len(source):,} characters",
@@ -67,7 +68,7 @@ def tokenize(source: str) -> list[Token]:
 
 
 def token_at(source: str, offset: int) -> Token:
-    """The token (or `blank`) that begins at `offset`."""
+    """Return the token (or `blank`) at `offset`."""
     match = _TOKEN.match(source, offset)
     if match is None or match.lastgroup is None:
         character = source[offset]
@@ -84,7 +85,7 @@ def token_at(source: str, offset: int) -> Token:
 
 
 def _filter(source: str, offset: int) -> str:
-    """The hint for `| title`, a filter; empty for anything else."""
+    """Return the hint for a filter such as `| title`; empty for anything else."""
     found = _FILTER.match(source, offset)
     if found is None or found["name"] not in _FILTERS:
         return ""
@@ -98,7 +99,7 @@ def _filter(source: str, offset: int) -> str:
 
 
 def _other(source: str, offset: int) -> str:
-    """The hint for a character that no expression has: one that looks like another, or a letter with an accent."""
+    """Return the hint for a character that is never allowed: one that resembles another, or an accented letter."""
     if (sign := other_sign(source[offset])) and (meant := typed(source[offset])).isascii():
         return f"write `{meant}`: {sign}" if meant else f"delete it: {sign}"
     return "write a field with such a letter in brackets: context['…']" if source[offset].isalpha() else ""

@@ -1,4 +1,4 @@
-"""The tree of an expression: frozen nodes that know where they stand."""
+"""The tree of an expression: frozen nodes with their places in the source."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SourceSpan:
-    """Where a node stands in the source: characters from 0, the end exclusive; it does not count in equality."""
+    """The place of a node in the source: characters from 0, the end exclusive; it does not count in equality."""
 
     offset: int = field(default=0, compare=False)
     end: int = field(default=0, compare=False)
@@ -117,7 +117,7 @@ ExpressionNode = (
 
 
 def children(node: ExpressionNode) -> tuple[ExpressionNode, ...]:
-    """The nodes directly below, in the order written."""
+    """Return the child nodes, in the order written."""
     match node:
         case FieldAccess(base=base):
             return (base,)
@@ -137,7 +137,7 @@ def children(node: ExpressionNode) -> tuple[ExpressionNode, ...]:
 
 
 def rebuilt(node: ExpressionNode, change: Callable[[ExpressionNode], ExpressionNode]) -> ExpressionNode:
-    """The node with each of its children replaced by what `change` returns for it."""
+    """Return the node with each child replaced by what `change` returns for it."""
     match node:
         case FieldAccess(base=base):
             return replace(node, base=change(base))
@@ -161,7 +161,7 @@ def rebuilt(node: ExpressionNode, change: Callable[[ExpressionNode], ExpressionN
 
 
 def walk(tree: ExpressionNode) -> Iterator[tuple[ExpressionNode, int]]:
-    """Every node of the tree with its level, the root's being 1."""
+    """Yield every node of the tree with its level; the root's is 1."""
     stack = [(tree, 1)]
     while stack:
         node, level = stack.pop()
@@ -170,7 +170,7 @@ def walk(tree: ExpressionNode) -> Iterator[tuple[ExpressionNode, int]]:
 
 
 def path_of(node: ExpressionNode) -> tuple[str, ...] | None:
-    """`("event", "data", "x")` for `event.data.x` and `event.data['x']`; None for what is not such a path."""
+    """Return `("event", "data", "x")` for `event.data.x` and `event.data['x']`; None for other nodes."""
     keys: list[str] = []
     while not isinstance(node, Identifier):
         match node:
@@ -186,18 +186,23 @@ def path_of(node: ExpressionNode) -> tuple[str, ...] | None:
 
 
 class MentionedNames(NamedTuple):
-    """What an expression names: keys of the context, fields of the event's data, functions, and literal names."""
+    """The names in an expression."""
 
     context: frozenset[str]
+    """Keys of the context."""
     event: frozenset[str]
+    """Fields of the event's data."""
     functions: frozenset[str]
     phrases: frozenset[str]
+    """Literal names of phrases in `heard`."""
     answers: frozenset[str]
+    """Literal names of answers in `lookup`."""
     states: frozenset[str]
+    """Literal names of states in `In`."""
 
 
 def names(tree: ExpressionNode) -> MentionedNames:
-    """Everything that the expression names, for rules that look across files."""
+    """Return all names in the expression, for lint rules across files."""
     nodes = [node for node, _ in walk(tree)]
     paths = [path for node in nodes if (path := path_of(node))]
     calls = [node for node in nodes if isinstance(node, FunctionCall)]

@@ -1,4 +1,4 @@
-"""What is known of a value before anything runs, read from JSON Schemas."""
+"""Static types of values, derived from JSON Schemas."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ _BEYOND = frozenset(("$ref", "$dynamicRef", "allOf", "anyOf", "oneOf", "if", "pa
 
 
 class FieldPresence(Enum):
-    """Whether a field is there: declared, declared and not required, or not declared at all."""
+    """The presence of a field: declared, declared and not required, or not declared at all."""
 
     SURE = "sure"
     OPTIONAL = "optional"
@@ -24,13 +24,13 @@ class FieldPresence(Enum):
 
 @dataclass(frozen=True)
 class ValueType:
-    """The kinds that a value may be of; `schemas` are the alternatives that describe its fields or elements."""
+    """The kinds that a value may have; `schemas` are the alternatives that describe its fields or elements."""
 
     kinds: frozenset[str] = KINDS
     schemas: tuple[Mapping[str, Any], ...] = ()
 
     def field(self, name: str) -> tuple["ValueType", FieldPresence]:
-        """The type of a field and whether it is there, in the worst of the alternatives."""
+        """Return the type of a field, and its presence in the worst alternative."""
         if not self.schemas:
             return ANY, FieldPresence.SURE
         found = [_field(schema, name) for schema in self.schemas]
@@ -41,11 +41,11 @@ class ValueType:
         return union(t for t, _ in found), FieldPresence.SURE
 
     def fields(self) -> set[str]:
-        """The names of all declared fields."""
+        """Return the names of all declared fields."""
         return {name for schema in self.schemas for name in schema.get("properties", ())}
 
     def element(self) -> "ValueType":
-        """The type of what stands in the list."""
+        """Return the type of the list's elements."""
         return union(type_of_schema(schema.get("items")) for schema in self.schemas)
 
 
@@ -53,12 +53,12 @@ ANY = ValueType()
 
 
 def of(*kinds: str) -> ValueType:
-    """A value of one of these kinds, nothing more known."""
+    """Return the type of a value of one of these kinds, without schemas."""
     return ValueType(frozenset(kinds))
 
 
 def union(types: Iterable[ValueType]) -> ValueType:
-    """A value of any of these types; of any at all where there are none."""
+    """Return the type of a value that has any of these types; ANY for an empty list."""
     listed = list(types)
     if not listed:
         return ANY
@@ -68,7 +68,7 @@ def union(types: Iterable[ValueType]) -> ValueType:
 
 
 def type_of_schema(schema: object) -> ValueType:
-    """The type that a JSON Schema declares; any where it declares none, or more than is understood here."""
+    """Return the type that a JSON Schema declares; ANY if it has no type, or keywords that are not supported here."""
     if not isinstance(schema, Mapping) or not _BEYOND.isdisjoint(schema):
         return ANY
     if "const" in schema:
@@ -86,7 +86,7 @@ def type_of_schema(schema: object) -> ValueType:
 
 
 def type_of_values(values: Iterable[Any]) -> ValueType:
-    """The type of something that is one of these values."""
+    """Return the type of a value that is one of these."""
     try:
         return of(*(kind_of(value) for value in values))
     except FaultError:
@@ -94,7 +94,7 @@ def type_of_values(values: Iterable[Any]) -> ValueType:
 
 
 def schema_of(value: Any) -> dict[str, Any]:
-    """The JSON Schema of a context key that begins with `value` and keeps its type."""
+    """Return the JSON Schema of a context key that begins with `value` and keeps its type."""
     names = {NULL: "null", BOOLEAN: "boolean", NUMBER: "number", TEXT: "string", LIST: "array", MAP: "object"}
     return {"type": names[kind_of(value)]}
 

@@ -1,7 +1,7 @@
-"""The clock on the wall: which local time a moment has in a time zone, and when a time of day comes next.
+"""The wall clock: the local time of a moment in a time zone, and the next occurrence of a time of day.
 
-A moment is a whole number of [µs] since 1970 began in UTC: exact, and finer than anybody asks of a time of day. The
-rules of time zones are those of `zoneinfo`.
+A moment is an integer [µs since 1970, UTC]: it is exact, and finer than a time of day needs. The rules of time zones
+are those of `zoneinfo`.
 """
 
 from datetime import UTC, date, datetime, time, timedelta, tzinfo
@@ -15,20 +15,20 @@ from lumen.language.hours import Schedule
 from lumen.language.nanoseconds import nanoseconds
 
 MICROSECONDS = 1_000_000
-"""In a second."""
+"""Microseconds per second."""
 
 _ZERO = datetime(1970, 1, 1, tzinfo=UTC)
 _MICROSECOND, _SECOND = timedelta(microseconds=1), timedelta(seconds=1)
 _FIRST, _LAST = ((datetime(year, 1, 1, tzinfo=UTC) - _ZERO) // _MICROSECOND for year in (2, 9998))
-"""Before and after these no time zone can be asked."""
+"""The range of moments in which time zones are defined."""
 
 _WEEK = 8
-"""Within so many days, today included, each time of each weekday comes again."""
+"""Days, including today, after which each time on each weekday has occurred."""
 
 
 @lru_cache(maxsize=64)
 def zone(name: str) -> tzinfo:
-    """The time zone of an IANA name, or `UTC+02:00`; UTC for an empty one. Raises UsageError for any other."""
+    """Return the time zone of an IANA name or of `UTC+02:00`; UTC for an empty name; raise UsageError for others."""
     if not name:
         return UTC
     if fixed := fullmatch(r"UTC([+-])([01]\d|2[0-3]):([0-5]\d)", name):
@@ -36,26 +36,26 @@ def zone(name: str) -> tzinfo:
         return fixed_zone(east if fixed[1] == "+" else -east)
     try:
         return ZoneInfo(name)
-    except (KeyError, ValueError, OSError):  # KeyError is ZoneInfoNotFoundError's; a folder's name is an OSError
+    except (KeyError, ValueError, OSError):  # KeyError: unknown; OSError: the name of a folder
         raise UsageError(f"there is no time zone `{name[:60]}`: write one such as `Europe/Berlin`") from None
 
 
 def moment(epoch: float, at: float) -> int:
-    """The moment at which a clock shows `at` [s] whose zero was at `epoch` [s since 1970]."""
+    """Return the moment at which a clock shows `at` [s] if its zero was at `epoch` [s since 1970]."""
     shown = (nanoseconds(epoch) + nanoseconds(at) + 500) // 1000
     return min(max(shown, _FIRST), _LAST)
 
 
 def local_time(moment: int, timezone: str) -> datetime:
-    """What calendar and clock show then."""
+    """Return the local date and time of a moment."""
     return (_ZERO + moment * _MICROSECOND).astimezone(zone(timezone))
 
 
 def next_moment(schedule: Schedule, after: int, timezone: str) -> int | None:
-    """The first moment of a schedule that is later than `after`; None where there is none.
+    """Return the first moment of a schedule that is later than `after`; None if the schedule is over.
 
-    A time of day comes when the clock on the wall first shows it or a later one: one that spring skips at the moment
-    after the gap, one that autumn repeats once.
+    A time of day occurs when the wall clock first shows it or a later one. A time skipped in spring occurs at the
+    moment after the gap, one repeated in autumn only the first time.
     """
     region = zone(timezone)
     today = local_time(after, timezone).date()
@@ -68,10 +68,11 @@ def next_moment(schedule: Schedule, after: int, timezone: str) -> int | None:
 
 
 def readjusted(due: int, schedule: Schedule, was: int, now: int, timezone: str) -> int | None:
-    """When a schedule comes that was waited for until `due`, where the clock was set from `was` to `now`.
+    """Return the next moment of a schedule after the clock was set from `was` to `now`; `due` was the one before.
 
-    Where it was off by no more than an hour, when it would have come. After more the wait begins anew: from `now`, or,
-    if that is later than it was, from the midnight before; what has passed today is due at once.
+    After a correction of up to an hour it stays `due`. After a greater one it is the next moment from `now`, or, if the
+    clock was put forward, from the midnight before `now` or from `was`, whichever is later; a moment that has passed
+    today is due at once.
     """
     if abs(now - was) <= 3600 * MICROSECONDS:
         return due
@@ -82,15 +83,15 @@ def readjusted(due: int, schedule: Schedule, was: int, now: int, timezone: str) 
 
 
 def _days(schedule: Schedule, today: date) -> list[date]:
-    """The days on which a schedule may come next, in their order."""
+    """Return the days on which a schedule may occur next, in order."""
     soon = (today + timedelta(days=i) for i in range(_WEEK))
     return sorted({day for day in soon if schedule.holds(day)}.union(day for day in schedule.dates if day >= today))
 
 
 def _first(wanted: datetime, region: tzinfo) -> int:
-    """The moment at which the clock on the wall first shows this, or jumps over it."""
+    """Return the moment at which the wall clock first shows a time, or skips it."""
     late = wanted.replace(tzinfo=region).astimezone(UTC)
-    if late.astimezone(region).replace(tzinfo=None) != wanted:  # skipped: `fold` says by which offset it is read
+    if late.astimezone(region).replace(tzinfo=None) != wanted:  # skipped: `fold` selects the offset
         early = wanted.replace(tzinfo=region, fold=1).astimezone(UTC)
         while late - early > _SECOND:
             middle = early + (late - early) // 2 // _SECOND * _SECOND
