@@ -1,10 +1,9 @@
-"""How alive the robot looks: how much of the shipped tour passes without any movement, by the joints on the bus.
+"""Measure how alive the robot looks: the share of the shipped tour without any movement, from the joints on the bus.
 
     python benchmarks/alive.py [--without] [STORY]
 
-A joint has moved where its angle, in steps of 0.1 degrees as encoders have them, is not that of the message before. The
-encoders are those of a robot without noise, which would count as movement.
-`--without` plays the same tour with a robot that does nothing of its own accord.
+A joint has moved if its angle, in the encoders' steps of 0.1 degrees, differs from that of the message before. The
+simulated encoders have no noise, which would count as movement. `--without` plays the same tour without idle life.
 """
 
 import argparse
@@ -36,22 +35,23 @@ from lumen.run.setup import set_up_with
 
 ROOT = Path(__file__).parents[1]
 STEP = 0.1
-"""What an encoder tells apart [degrees]."""
+"""Resolution of an encoder [degrees]."""
 
 TICKS = 20_000
 
 
 class Movement:
-    """Adds up for how long none of some joints moved, while the robot was awake [s]."""
+    """Adds up the time in which none of some joints moved while the robot was awake [s]."""
 
     def __init__(self, chosen: Sequence[str] = ()) -> None:
+        """Watch the `chosen` joints, or all if there are none."""
         self.chosen = chosen
         self.time = self.still = self.longest = 0.0
         self._last: tuple[float, tuple[int, ...]] | None = None
         self._since = 0.0
 
     def see(self, body: dict[str, Any], counts: bool) -> None:
-        """A message of the sense `joint`; it `counts` where the robot is awake, and in what is measured."""
+        """Process a message of the sense `joint`; it `counts` if the robot is awake and the moment is measured."""
         at, angles = float(body["time"]), dict(zip(body["name"], body["angle"], strict=True))
         stands = tuple(round(degrees(angles[name]) / STEP) for name in (self.chosen or angles))
         if not counts:
@@ -75,7 +75,7 @@ class Movement:
 
 
 class Motions(Observer):
-    """Whether a motion plays."""
+    """Collects the motions that play and the texts that are said."""
 
     def __init__(self) -> None:
         self.playing: set[str] = set()
@@ -93,9 +93,9 @@ class Motions(Observer):
 
 
 def measured(project: Project, name: str) -> tuple[Movement, Movement, Movement, Sequence[Say]]:
-    """How the robot of a story moves in simulation, and what it says.
+    """Return the movements of the robot in a simulated story, and the texts that it says.
 
-    First all joints, then arms and legs, then the head, these two while no motion plays.
+    The movements are those of all joints; of arms and legs; and of the head, the latter two only while no motion plays.
     """
     parts, bus, motions = project.body.parts, MemoryBus(), Motions()
     whole, trunk, head = Movement(), Movement([*parts["arms"], *parts["legs"]]), Movement(parts["head"])
@@ -140,7 +140,7 @@ def _threes(drawn: Sequence[Sequence[str]]) -> Iterator[Sequence[Sequence[str]]]
 
 
 def _gestures(project: Project, texts: Sequence[Say]) -> None:
-    """How many texts have gestures, and how often one comes again too soon."""
+    """Print how many texts have gestures, and how often a gesture is repeated within three texts."""
     player = GesturePlayer(project.body)
     player.library = merged(project.gestures)
     drawn = [player.say(text, speech_duration(text.text), 0.0) for text in texts]
@@ -153,7 +153,7 @@ def _gestures(project: Project, texts: Sequence[Say]) -> None:
 
 
 def _cost(project: Project) -> None:
-    """What a control period costs."""
+    """Print the processor time of idle life in a control period."""
     for name, style in project.life.items():
         layer = LifeLayer(project.body)
         layer.style = style

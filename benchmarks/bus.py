@@ -63,7 +63,7 @@ def main() -> None:
 
 
 def in_process(seconds: float) -> None:
-    """One publisher, one subscriber, a body of the face detector, on the embedded bus."""
+    """Measure one publisher and one subscriber with bodies of the face detector, on the embedded bus."""
     off, on = checks(seconds)
     print(f"in process, schema checks off    {off:>9,.0f} msg/s")
     print(
@@ -72,7 +72,7 @@ def in_process(seconds: float) -> None:
 
 
 def forms(seconds: float) -> None:
-    """What an image of 320 x 240 pixels and a reading of 26 joints take as JSON and as bytes, without a bus."""
+    """Print sizes and processor times of an image and a joint reading as JSON and as bytes, without a bus."""
     noise = np.random.default_rng(0).normal(128.0, 20.0, (240, 320, 3)).clip(0, 255).astype(np.uint8)
     image = image_body(Image(1.5, lambda size=None: noise), 7, "2026-11-23T10:00:00.000+00:00", camera="CameraTop")
     robot = RecordingRobot(lumen.load().body)
@@ -101,7 +101,7 @@ def forms(seconds: float) -> None:
 
 
 def checks(seconds: float) -> tuple[float, float]:
-    """Messages a second within this process, unchecked and checked."""
+    """Return the messages per second within this process, unchecked and checked."""
     project, body = lumen.load(), {"x": 160, "y": 120, "time": 12.5}
     face = "lumen.visual.face.detection"
     rates = []
@@ -113,7 +113,7 @@ def checks(seconds: float) -> tuple[float, float]:
 
 
 def best(work: Callable[[], object], seconds: float, at_once: int = 1_000) -> float:
-    """Calls a second of CPU time, the best of several rounds."""
+    """Return the calls per second of CPU time, the best of several rounds."""
     rates = []
     for _ in range(ROUNDS):
         began, count = time.process_time(), 0
@@ -126,7 +126,7 @@ def best(work: Callable[[], object], seconds: float, at_once: int = 1_000) -> fl
 
 
 def over_the_broker(url: str, seconds: float) -> None:
-    """Sending until the last is confirmed, into a queue that nobody reads; the rounds of both alternate."""
+    """Measure sending until the last confirmation, into a queue without a reader; rounds of both sides alternate."""
     for size, length in SIZES.items():
         body = {"filler": "x" * (length - len('{"filler":""}'))}
         for what, confirms, route in (("confirmed", True, COMMAND), ("telemetry", False, TELEMETRY)):
@@ -142,7 +142,7 @@ def over_the_broker(url: str, seconds: float) -> None:
 
 
 def raw(url: str, body: bytes, confirms: bool, seconds: float) -> float:
-    """Messages a second of pika's BlockingConnection."""
+    """Return the messages per second of pika's BlockingConnection."""
     connection = pika.BlockingConnection(pika.URLParameters(url))
     channel = connection.channel()
     sink(channel)
@@ -160,9 +160,9 @@ def raw(url: str, body: bytes, confirms: bool, seconds: float) -> float:
 
 
 def lumens(url: str, body: Any, route: Route, seconds: float) -> float:
-    """Messages a second of ours, the broker's word for the last one included, whether it was asked for or not.
+    """Return the messages per second of Lumen until the last is confirmed, even if that is not required.
 
-    Who publishes is at most 300 messages ahead of what sends: a camera is less.
+    The publisher is at most 300 messages ahead of the sender, which is more than a camera ever is.
     """
     bus: Any = connect(url)
     bus.carry({KEY: route})
@@ -185,13 +185,13 @@ def lumens(url: str, body: Any, route: Route, seconds: float) -> float:
 
 
 def sink(channel: Any) -> None:
-    """A queue that keeps one message, so that what is measured is the way to it."""
+    """Bind a queue that keeps one message, so that only the way to it is measured."""
     queue = channel.queue_declare("", exclusive=True, arguments={"x-max-length": 1}).method.queue
     channel.queue_bind(queue, "amq.topic", KEY)
 
 
 def round_trip(url: str) -> None:
-    """A command and its answer, one after the other."""
+    """Measure commands with answers, one after another."""
     for name, asks in (("ours", asking), ("pika", asking_raw)):
         ask = asks(url)
         times = []
@@ -205,7 +205,7 @@ def round_trip(url: str) -> None:
 
 
 class Pace(NamedTuple):
-    """How late messages of a steady stream are [ms], the middle one and the 99th of 100; processor time of one [us]."""
+    """Latencies in a steady stream [ms], median and 99th percentile, and the processor time of a message [us]."""
 
     p50: float
     p99: float
@@ -213,7 +213,7 @@ class Pace(NamedTuple):
 
 
 class Ours:
-    """One side publishes, the other subscribes, each with a bus of its own in this process."""
+    """A publisher and a subscriber, each with a bus of its own in this process."""
 
     def __init__(self, url: str, came: Callable[[bytes], None]) -> None:
         self._sender, receiver = connect(url), connect(url)
@@ -227,7 +227,7 @@ class Ours:
 
 
 class Pikas:
-    """The same by two BlockingConnections, the consumer on a thread."""
+    """A publisher and a subscriber with BlockingConnection, the subscriber on a thread."""
 
     def __init__(self, url: str, came: Callable[[int], None]) -> None:
         self._sender = pika.BlockingConnection(pika.URLParameters(url))
@@ -259,7 +259,7 @@ class Pikas:
 
 
 def paced(url: str, kind: Callable[[str, Callable[[Any], None]], "Ours | Pikas"], seconds: float = 5.0) -> Pace:
-    """A thousand messages a second, each with when it was sent."""
+    """Send a thousand messages per second, each with its time of sending; return latencies and processor time."""
     late: list[float] = []
     ends = kind(url, lambda sent: late.append((time.perf_counter_ns() - sent) / 1e6))
     count, began, spent = round(PACE * seconds), time.perf_counter(), time.process_time()
@@ -292,12 +292,12 @@ def asking(url: str) -> Iterator[None]:
             yield
     finally:
         client.close()
-        undo()  # and with it the queue, which would keep what pika sends next
+        undo()  # its queue would keep the messages that pika sends next
         server.close()
 
 
 def asking_raw(url: str) -> Iterator[None]:
-    """Both sides with BlockingConnection, the sender with confirms, as ours."""
+    """Yield after each answered command; both sides use BlockingConnection, the sender with confirms, as Lumen does."""
     ready, ending = threading.Event(), threading.Event()
 
     def serve() -> None:

@@ -1,13 +1,13 @@
 """The same ten mistakes, and what other checkers say of them: prints the table of docs/lint-compared.md.
 
-The peers are those that a YAML author has: check-jsonschema, the YAML language server and Spectral get our schemas, so
-they know every key; ESPHome checks its own kind of project, the same mistake made in that. Give their folders:
+The other checkers are those available to a YAML author. check-jsonschema, the YAML language server and Spectral get
+Lumen's schemas, so they know every key. ESPHome checks its own kind of project with a corresponding mistake. Give their
+folders:
 
     python benchmarks/compare_lint.py --python VENV --node FOLDER
 
-with `pip install check-jsonschema esphome` in VENV and `npm install yaml-language-server
-@stoplight/spectral-cli` in FOLDER.
-Nothing of them is kept here; one that is missing has an empty column.
+with `pip install check-jsonschema esphome` in VENV and `npm install yaml-language-server @stoplight/spectral-cli` in
+FOLDER. This repository contains none of them; the column of a missing one is empty.
 """
 
 import argparse
@@ -25,7 +25,7 @@ import yaml
 
 ROOT = Path(__file__).parents[1]
 PROJECT = ROOT / "tests/golden/projects/tour"
-"""A tour that stays as it is, so that the mistakes stay the same."""
+"""A tour that never changes, so that the mistakes stay the same."""
 sys.path[:0] = [str(ROOT), str(ROOT / "engine")]
 
 from tests.features.editor.client import Client  # noqa: E402
@@ -53,7 +53,7 @@ script:
 
 
 class Mistake(NamedTuple):
-    """What is wrong, where: old and new text of a file of ours, and of ESPHome's project where it has the like."""
+    """A mistake: the old and new text in a file of Lumen's, and in ESPHome's project if that can have it."""
 
     what: str
     file: str
@@ -63,13 +63,13 @@ class Mistake(NamedTuple):
 
 
 def mistakes() -> list[Mistake]:
-    """Those of mistakes.yaml."""
+    """Return the mistakes of mistakes.yaml."""
     rows = yaml.safe_load((Path(__file__).parent / "mistakes.yaml").read_text("utf-8"))
     return [Mistake(r["what"], r["file"], r["old"], r["new"], r.get("esphome")) for r in rows]
 
 
 def project(mistake: Mistake, folder: Path) -> dict[str, bytes]:
-    """A tour with the mistake in it, and the schemas, in a folder."""
+    """Write a tour with the mistake, and the schemas, to a folder; return its files."""
     shutil.copy(PROJECT / MAIN, folder)
     for name in PROJECT_FOLDERS:
         if (PROJECT / name).is_dir():
@@ -123,7 +123,7 @@ def language_server(mistake: Mistake, folder: Path, tool: Path) -> str:
 
 
 def esphome(mistake: Mistake, folder: Path, tool: Path) -> str | None:
-    """None where their kind of project can't hold the mistake."""
+    """Return ESPHome's messages; None if its kind of project can't have the mistake."""
     if mistake.theirs is None:
         return None
     old, new = mistake.theirs
@@ -143,7 +143,7 @@ def run(words: list[object], folder: Path) -> CompletedProcess[str]:
 
 
 def cell(text: str | None, folder: Path) -> str:
-    """What was said, in a cell of a table."""
+    """Return the messages as a cell of a table."""
     if text is None:
         return "–"
     text = re.sub(r"\x1b\[[0-9;]*m", "", text).replace(f"{folder}/", "").replace(str(folder), "")

@@ -40,25 +40,32 @@ from lumen.run.setup import set_up
 
 ROOT = Path(__file__).parents[1]
 SETTLED = 3.0
-"""After which is measured [s]."""
+"""Time before the measurement [s]."""
 TICKS_PER_SECOND = os.sysconf("SC_CLK_TCK")
 WATCHERS = 5
 
 
 class Round(NamedTuple):
-    """Ticks [s] and how many were late, CPU time of a second [s] of exhibition and console, bytes a second of each."""
+    """The measurements of one block."""
 
     p99: float
+    """99th percentile of the delay of ticks [s]."""
     latest: float
+    """Greatest delay of a tick [s]."""
     late: float
+    """Number of ticks late by a whole period."""
     exhibition: float
+    """CPU time of the exhibition per second [s]."""
     console: float
+    """CPU time of the console per second [s]."""
     page: float
+    """Bytes per second of a page."""
     watcher: float
+    """Bytes per second of a watcher."""
 
 
 class Pair(NamedTuple):
-    """The same run without a console, and `having` one."""
+    """A run's block without a console, and its block `having` one."""
 
     without: Round
     having: Round
@@ -102,7 +109,7 @@ def main() -> None:
 
 
 def quartiles(values: list[float]) -> tuple[float, float, float]:
-    """The quarter, the middle and the three quarters of some values."""
+    """Return the lower quartile, the median and the upper quartile."""
     if len(values) < 2:
         return (values[0],) * 3
     first, middle, third = statistics.quantiles(values, n=4, method="inclusive")
@@ -110,7 +117,7 @@ def quartiles(values: list[float]) -> tuple[float, float, float]:
 
 
 def paired(robot: str, lookers: tuple[int, int], seconds: float, *, console_first: bool) -> Pair:
-    """One run of the tour: a block without a console, and one with so many pages and watchers."""
+    """Run the tour once: a block without a console, and one with a console, pages and watchers."""
     folder = temporary_folder("lumen-console-")
     shutil.copy(ROOT / MAIN_FILE, folder)
     for name in (name for name in PROJECT_FOLDERS if (ROOT / name).is_dir()):
@@ -135,7 +142,7 @@ def paired(robot: str, lookers: tuple[int, int], seconds: float, *, console_firs
 
 
 def measured(exhibition: Exhibition, seconds: float, server: Guarded[str] | None, pages: Guarded[str] | None) -> Round:
-    """Tick, and measure from `SETTLED` on."""
+    """Tick, and measure after `SETTLED` [s]."""
     late, began, before, counting, bytes_before = list[float](), time.monotonic(), 0.0, False, (0.0, 0.0)
     cpu = server_cpu = 0.0
     told = Told(pages) if pages else None
@@ -160,7 +167,7 @@ def measured(exhibition: Exhibition, seconds: float, server: Guarded[str] | None
 
 
 class Told:
-    """What the listening process says that each of its pages and watchers has read so far [bytes]."""
+    """The bytes that each page and watcher has read so far, as reported by the listening process."""
 
     def __init__(self, process: Guarded[str]) -> None:
         self.bytes = (0.0, 0.0)
@@ -169,14 +176,14 @@ class Told:
 
     def _read(self) -> None:
         assert self._process.stdout
-        with suppress(ValueError):  # closed while it reads: the block is over
+        with suppress(ValueError):  # closed during a read: the block is over
             for line in self._process.stdout:
                 page, watcher = json.loads(line)
                 self.bytes = page, watcher
 
 
 def cpu_of(process: Guarded[str] | None) -> float:
-    """CPU time of a process so far [s]."""
+    """Return the CPU time of a process so far [s]."""
     if process is None:
         return 0.0
     fields = Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
@@ -206,7 +213,7 @@ def listeners(port: int, pages: int, watchers: int) -> Iterator[Guarded[str]]:
 
 
 def listen(port: int, pages: int, watchers: int) -> None:
-    """Be so many pages, of which the last of several never reads; say ten times a second how much each has read."""
+    """Act as that many pages, of which the last of several never reads; print the bytes read ten times per second."""
     counts = {"/api/events": 0, "/camera/NAO": 0}
 
     def look(path: str, *, reads: bool = True) -> None:
@@ -217,7 +224,7 @@ def listen(port: int, pages: int, watchers: int) -> None:
                     counts[path] += len(read)
                 if not reads:
                     threading.Event().wait()
-            threading.Event().wait(0.5)  # a camera that shows nothing yet ends its answer
+            threading.Event().wait(0.5)  # a camera without an image ends its answer
 
     reading = max(1, pages - 1) if pages else 0
     ways = ["/api/events"] * reading + ["/camera/NAO"] * watchers

@@ -59,7 +59,7 @@ ALONE, ALL, ACTIVE = "alone", "all states", "active states"
 
 
 class Spoken(NamedTuple):
-    """A sentence, how it sounds, and the state in which it is said."""
+    """A sentence, its sound, and the state in which it is said."""
 
     text: str
     sound: Sound
@@ -67,7 +67,7 @@ class Spoken(NamedTuple):
 
 
 def spoken(sentences: Mapping[str, str], language: str, noise: float | None) -> list[Spoken]:
-    """Each sentence by the next voice, with so much less noise than voice [dB]."""
+    """Return each sentence with the next voice, and noise that is `noise` [dB] below the voice."""
     random = np.random.default_rng(1)
     found = []
     pairs = [(text, state) for state, lines in sentences.items() for text in re.split("[;\n]", lines.strip())]
@@ -82,7 +82,7 @@ def spoken(sentences: Mapping[str, str], language: str, noise: float | None) -> 
 
 
 def wrong(text: str, found: str) -> int:
-    """How many words have to be changed, put in or left out to get from one to the other."""
+    """Return the edit distance of two texts [words]."""
     there = found.split()
     row = list(range(len(there) + 1))
     for i, word in enumerate(text.split(), 1):
@@ -93,7 +93,7 @@ def wrong(text: str, found: str) -> int:
 
 
 def line(project: Project, told: str, said: Sequence[Spoken], talk: Sequence[Spoken]) -> str:
-    """How well they were understood by a recogniser that was told this, and what that took."""
+    """Return the row of results for a recogniser with these expectations."""
     heard = {one.state: heard_names(project, listening.around(project.machine, one.state)) for one in (*said, *talk)}
     by_state = {state: expected(project, names) for state, names in heard.items()} if told == ACTIVE else {}
     everything = expected(project, heard_names(project, None)) if told == ALL else []

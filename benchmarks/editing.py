@@ -1,4 +1,4 @@
-"""A project that is edited in every way that people and programs save, a third of the edits broken."""
+"""A project that is edited in every way in which people and programs save files; a third of the edits is broken."""
 
 import os
 import random
@@ -38,7 +38,7 @@ BREAKS: tuple[tuple[str, str, str], ...] = (
 
 
 class Writer:
-    """Edits a project as people and programs do, several files `pause` [s] apart."""
+    """Edits a project as people and programs do, with several files `pause` [s] apart."""
 
     def __init__(self, root: Path, seed: int, pause: float) -> None:
         self.root, self.random, self.pause = root, random.Random(seed), pause
@@ -49,7 +49,7 @@ class Writer:
         ]  # fmt: skip
 
     def edit(self) -> tuple[str, bool, int]:
-        """Make the next edit; the hash of what the files are now, whether they are good, and how many were written."""
+        """Make the next edit; return the hash of the files, whether they are valid, and how many were written."""
         self.number += 1
         broken = self.number % 3 == 0
         way = self.ways[self.number % len(self.ways)]
@@ -66,7 +66,7 @@ class Writer:
         return fingerprint(read_files(self.root)), not broken, len(files)
 
     def marked(self, path: str) -> str:
-        """The file as it was at first, with the number of this edit in a text of it."""
+        """Return the original file with the number of this edit in one of its texts."""
         text = self.read_first(path)
         old = {MAIN: "name: Lumen at", TOUR: "en: Never mind."}.get(path, "title: ")
         assert old in text, path
@@ -82,7 +82,7 @@ class Writer:
                 file.truncate()
 
     def truncated(self, files: dict[str, str]) -> None:
-        """Emptied, and half of it written before the rest."""
+        """Write files in two halves after truncation."""
         for path, text in files.items():
             with (self.root / path).open("w", encoding="utf-8") as file:
                 file.flush()
@@ -93,7 +93,7 @@ class Writer:
                 file.write(text[len(text) // 2 :])
 
     def atomically(self, files: dict[str, str]) -> None:
-        """As vim does: the old file becomes a backup, and another takes its name."""
+        """Write files as vim does: the old file becomes a backup, and a new one gets its name."""
         for path, text in files.items():
             file = self.root / path
             (file.parent / "4913").touch()
@@ -112,7 +112,7 @@ class Writer:
                 time.sleep(self.pause)
 
     def checked_out(self, files: dict[str, str]) -> None:
-        """Two revisions of the project, and from one to the other."""
+        """Commit the files in another clone, and check the revision out."""
         for path, text in files.items():
             (self.root.parent / "work" / path).write_text(text, "utf-8")
         _git(self.root.parent / "work", "commit", "-qam", f"edit {self.number}")
@@ -121,7 +121,7 @@ class Writer:
 
 
 class Colleague:
-    """A writer in a process of its own, as people and their editors are; `good` are the hashes of all good states."""
+    """A writer in a process of its own, like people's editors; `good` has the hashes of all valid states."""
 
     def __init__(self, root: Path, seed: int, pause: float) -> None:
         self.good = {fingerprint(read_files(root))}
@@ -129,7 +129,7 @@ class Colleague:
         self._process = Guarded(words, stdin=PIPE, stdout=PIPE, text=True)
 
     def edit(self) -> tuple[str, bool, int]:
-        """Have the next edit made; the hash of what the files are now, whether they are good, how many were written."""
+        """Request the next edit; return the hash of the files, whether they are valid, and how many were written."""
         assert self._process.stdin
         assert self._process.stdout
         print("edit", file=self._process.stdin, flush=True)
@@ -146,7 +146,7 @@ class Colleague:
 
 @contextmanager
 def project() -> Iterator[Path]:
-    """A copy of the shipped tour that counts events, as a clone of a git repository."""
+    """Yield a copy of the shipped tour that counts events, as a clone of a git repository."""
     with tempfile.TemporaryDirectory(prefix="lumen-reload-") as name:
         folder = Path(name)
         first = folder / "first"
@@ -182,7 +182,7 @@ def _git(folder: Path, *words: str) -> None:
 
 
 def main() -> None:
-    """Make an edit for each line of the standard input, and say what it made of the files."""
+    """Make an edit for each line of the standard input, and print the state of the files."""
     root, seed, pause = sys.argv[1:]
     writer = Writer(Path(root), int(seed), float(pause))
     for _ in sys.stdin:

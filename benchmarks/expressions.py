@@ -1,9 +1,9 @@
-"""What an evaluation costs: guards, an assignment's value and a text, in µs of CPU time. Medians of several runs.
+"""Measure the cost of evaluations: guards, an assignment's value and a text; medians of several runs [µs of CPU time].
 
     python benchmarks/expressions.py
 
-Beside them the same written as a Python function over the same data, and, where Google's `cel-expr-python` is
-installed, its evaluation.
+For comparison, the same is measured as a Python function on the same data and, if Google's `cel-expr-python` is
+installed, by its evaluation.
 """
 
 import platform
@@ -41,7 +41,7 @@ TEXT = "Hello {{ context.visitor }}, you asked {{ context.asked }} times."
 
 
 def cost(function: Callable[[Scope], Any]) -> float:
-    """µs of one call."""
+    """Return the time of one call [µs]."""
 
     def work(count: int) -> int:
         for _ in range(count):
@@ -52,7 +52,7 @@ def cost(function: Callable[[Scope], Any]) -> float:
 
 
 def cel_costs() -> Callable[[str], str]:
-    """What gives the cost of an expression in CEL, as text; nothing where it is not installed or not known there."""
+    """Return a function from an expression to its cost in CEL as text; empty if CEL can't evaluate it or is missing."""
     try:
         from cel_expr_python import cel
     except ImportError:

@@ -45,13 +45,13 @@ ROOT = Path(__file__).parents[1]
 PARTS = ("broker", "brain", "robot", "motion")
 FAULTS = ("killed", "paused3", "paused15", "cut", "half-open", "delayed")
 FAULT_PERIOD, DELAY = 8.0, 0.5
-"""How long a wire is cut, dead or slow [s], and how much later what it carries arrives."""
+"""Duration of a cut, dead or slow wire [s], and the delay of a slow one [s]."""
 READY_TIMEOUT, MOMENT_TIMEOUT, RETURN_TIMEOUT = 90.0, 150.0, 45.0
 BRAIN_TIMEOUT = 5.0
 PROBATION = 11.0
-"""How long a brain has to live for its files to be approved [s]: who dies twice before that begins anew, on purpose."""
+"""Time that a brain must run until its files are approved [s]; one that dies twice before starts from scratch."""
 SETTLED = 6.0
-"""How long the tour has to be where it was [s]: who is gone is noticed after 4 s."""
+"""Time that the tour must stay in its state [s]: a lost part is noticed after 4 s."""
 
 SPOKEN = {
     "ask_name": "My name is Ada",
@@ -59,26 +59,26 @@ SPOKEN = {
     "offer": "Tell me about this stand",
     "any_question": "How tall are you?",
 }
-"""What the visitor says in a state, on the way to a moment."""
+"""The visitor's answer in each state on the way to a moment."""
 WISHES = {
     "explain": "Tell me about this stand", "dance": "dance", "sing": "sing", "photo": "photo", "goodbye": "no",
     "offer": "no", "idle": "no", "greet": "no", "ask_name": "no", "how_are_you": "no",
 }  # fmt: skip
-"""What they ask for at an offer or a question, to get to a moment; "no" for those of the next visit."""
+"""The visitor's request in an offer or a question, to reach a moment; "no" for moments of the next visit."""
 MOMENTS = ("idle", "greet", "ask_name", "how_are_you", "offer", "explain", "any_question", "answer", "dance", "goodbye")
 BACK = {
     "idle": ("idle", "greet"), "greet": ("greet", "ask_name"), "explain": ("explain", "any_question"),
     "answer": ("answer", "any_question"), "dance": ("dance", "offer"),
     "goodbye": ("goodbye", "idle", "greet", "ask_name"),
 }  # fmt: skip
-"""Where a moment is taken up, or leads to by itself meanwhile; else it is taken up as it was."""
+"""The states in which the tour may continue after a moment, because it moves on meanwhile; else the same state."""
 APOLOGIES = ("lost my thoughts", "not hear", "I fell", "on my feet", "cannot", "have stopped")
 
 LINE = re.compile(r"^ *\d+:\d\d\.\d  (\w+) +(.*)$")
 
 
 class Told(NamedTuple):
-    """A line of a transcript, and when it came [s]."""
+    """A line of a transcript, with its time of arrival [s]."""
 
     at: float
     who: str
@@ -86,7 +86,7 @@ class Told(NamedTuple):
 
 
 class Part:
-    """A process of the exhibition: begun, watched, and begun again."""
+    """A process of the exhibition, which can be started, watched and restarted."""
 
     def __init__(self, name: str, command: Sequence[str]) -> None:
         self.name, self.told = name, list[Told]()
@@ -96,7 +96,7 @@ class Part:
 
     @property
     def age(self) -> float:
-        """How long it has lived [s]."""
+        """Return the time since its start [s]."""
         return time.monotonic() - self.begun
 
     def begin(self) -> None:
@@ -106,7 +106,7 @@ class Part:
 
     def signal(self, number: int) -> None:
         assert self.process
-        with suppress(ProcessLookupError):  # it ended by itself: told by `until`, and by what comes of the fault
+        with suppress(ProcessLookupError):  # it ended by itself: `until` and the outcome of the fault report that
             os.killpg(self.process.pid, number)
 
     def end(self) -> None:
@@ -126,19 +126,26 @@ class Part:
 
 
 class Outcome(NamedTuple):
-    """What came of one fault; times in [s]."""
+    """The outcome of one fault; times in [s]."""
 
     part: str
     fault: str
     moment: str
     again: bool
+    """True for the second fault in a row."""
     silent: float
+    """Time from the fault on without speech of the robot."""
     on: float | None
+    """Time from the end of the fault until the tour has recovered; None if it has not."""
     at: str
+    """The state afterwards."""
     said: list[str]
+    """Apologies of the robot."""
     twice: list[str]
+    """Motions that were repeated without a request."""
     rested: bool
     should_rest: bool | None
+    """True if it had to rest, False if it must not; None if either is allowed."""
 
     @property
     def well(self) -> bool:
@@ -146,7 +153,7 @@ class Outcome(NamedTuple):
 
 
 class Exhibition:
-    """Broker, wires, processes, and a visitor."""
+    """A broker, wires, processes, and a visitor."""
 
     def __init__(self, robot: str, stack: ExitStack) -> None:
         self.folder = _copy(temporary_folder("lumen-faults-"))
@@ -164,7 +171,7 @@ class Exhibition:
 
     @property
     def state(self) -> str:
-        """The innermost state of the guide, as the brain told last since it began; empty where something else is on."""
+        """Return the guide's innermost state in the brain's last report since its start; empty in other states."""
         brain = self.parts["brain"]
         for told in reversed(brain.since(brain.begun)):
             names: list[str] = []
@@ -180,7 +187,7 @@ class Exhibition:
         return ""
 
     def until(self, condition: Callable[[], object], patience: float, what: str) -> float:
-        """When it was so [s]. Raises TimeoutError."""
+        """Wait until the condition is true; return the time [s]. Raises TimeoutError."""
         deadline = time.monotonic() + patience
         while not condition():
             if time.monotonic() > deadline:
@@ -190,7 +197,7 @@ class Exhibition:
         return time.monotonic()
 
     def settled(self, wanted: Collection[str], over: float) -> float | None:
-        """Since when it is in one of these states [s], once it has been there for a while; None where it never is."""
+        """Return since when the tour has been in these states [s], once it stays there; None if it never does."""
         since, deadline = over, over + RETURN_TIMEOUT
         while time.monotonic() < deadline:
             now = time.monotonic()
@@ -215,11 +222,11 @@ class Exhibition:
         self.publish("lumen.audio.speech.recognition", {"name": "Ada", "result": text, "date": "2026-01-01T10:00:00"})
 
     def reach(self, moment: str) -> None:
-        """Have the visit come to that moment, from wherever it is."""
+        """Bring the visit to a moment, from any state."""
         deadline, said = time.monotonic() + MOMENT_TIMEOUT, ""
         there = moment != "idle" or self.state != "idle"
         self.publish("avatar.NAO.hall", {"visitor": {"x": 1.2, "y": 0.0, "height": 1.65} if there else None})
-        if self.state == moment in SPOKEN:  # anew, for who has said nothing for 30 s is sent away
+        if self.state == moment in SPOKEN:  # start it again, because a visitor who is silent for 30 s is sent away
             self.say(SPOKEN[moment])
             self.until(lambda: self.state != moment, MOMENT_TIMEOUT, f"{moment} is left")
         while self.state != moment:
@@ -235,7 +242,7 @@ class Exhibition:
                 self.publish("avatar.NAO.hall", {"visitor": None})
 
     def fault(self, part: str, fault: str) -> float:
-        """Let it happen, and be over; when it was over [s]."""
+        """Cause a fault and wait for its end; return the time of the end [s]."""
         if fault == "killed":
             began = time.monotonic()
             self._kill(part)
@@ -282,12 +289,12 @@ class Exhibition:
 
 
 def endure(exhibition: Exhibition, part: str, fault: str, moment: str, *, again: bool) -> Outcome:
-    """One fault at one moment, and what came of it."""
+    """Cause one fault at one moment; return the outcome."""
     reached = time.monotonic()
     if not again:
         exhibition.until(lambda: exhibition.parts["brain"].age > PROBATION, READY_TIMEOUT, "its files are approved")
     exhibition.reach(moment)
-    time.sleep(1.0)  # in the middle of it
+    time.sleep(1.0)  # in the middle of the moment
     robot = exhibition.parts["robot"]
     began = time.monotonic()
     over = exhibition.fault(part, fault)
@@ -323,7 +330,7 @@ def exhibition_with(robot: str) -> Iterator[Exhibition]:
 
 
 def endured(exhibition: Exhibition, waiting: deque[tuple[str, str, str]]) -> Iterator[Outcome]:
-    """What comes of these combinations, each twice; they are taken from those that wait. Raises TimeoutError."""
+    """Yield the outcomes of the waiting combinations, each twice, and remove them. Raises TimeoutError."""
     while waiting:
         part, fault, moment = waiting.popleft()
         for again in (False, True):
@@ -331,7 +338,7 @@ def endured(exhibition: Exhibition, waiting: deque[tuple[str, str, str]]) -> Ite
 
 
 def table(outcomes: Sequence[Outcome]) -> str:
-    """Outcomes as they are printed."""
+    """Return the outcomes as a printed table."""
     rows = [f"{'part':7} {'fault':10} {'moment':13}{'silent':>7}{'on':>7}  {'goes on at':13} rest   said"]
     for o in outcomes:
         on = "never" if o.on is None else f"{o.on:.1f}"
@@ -370,7 +377,7 @@ def main() -> int:
                 for outcome in endured(exhibition, waiting):
                     outcomes.append(outcome)
                     print(table([outcome]).splitlines()[1], flush=True)
-            except TimeoutError as error:  # a new exhibition goes on with the next
+            except TimeoutError as error:  # a new exhibition continues with the next
                 unreached += 1
                 print(f"  no outcome: {error}", flush=True)
     print(table(outcomes).splitlines()[-1])

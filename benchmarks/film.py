@@ -32,7 +32,7 @@ QUALITIES = {
 
 
 def drawing(width: int, height: int, frames: int) -> dict[str, float]:
-    """The processor time of a frame [s] at each quality, the median of `frames`."""
+    """Return the processor time of a frame at each quality [s], the median of `frames`."""
     project = lumen.load()
     robot = SimulatedRobot(project.body, *model_files(project), stage=project.stage)
     state = RenderState.of(robot.world.model, robot.world.data)
@@ -52,7 +52,7 @@ def drawing(width: int, height: int, frames: int) -> dict[str, float]:
 
 
 def filming(width: int, height: int, seconds: float) -> tuple[int, float, float]:
-    """A film of the tour's first seconds: its frames, and what it took [s], on the wall and of all processors."""
+    """Film the first seconds of the tour; return the frames, the wall time, and the time of all processors [s]."""
     with tempfile.TemporaryDirectory() as folder:
         film = Path(folder, "film.mp4")
         wall, cpu = time.perf_counter(), os.times()

@@ -1,9 +1,9 @@
-"""How long it takes from `ask` to the first word: by a passage, and by a language model that answers at once.
+"""Measure the time from `ask` to the first word: by a passage, and by a language model that answers at once.
 
     python benchmarks/first_words.py
 
-The model is a server in this process that answers without thinking: what is measured is ours, and a model's time comes
-on top. CPU of this process, the server's included, and the wall beside it, which on a busy machine says little.
+The model is a server in this process that answers without computing, so that only Lumen's part is measured. The table
+has CPU time of this process, including the server, and wall time, which means little on a busy machine.
 """
 
 import statistics
@@ -29,7 +29,7 @@ KNOWN, UNKNOWN = "how tall are you", "would you like to live on the moon"
 
 
 def main() -> int:
-    """Prints the medians."""
+    """Print the medians."""
     project = lumen.load(str(Path(__file__).parents[1]))
     print(f"ask to the first word, the median of {TIMES}:")
     with fake_model(says("I do not ", "know. ", "Sorry.")) as model:
@@ -52,7 +52,7 @@ def main() -> int:
                     walls.append(1000 * (time.perf_counter() - wall))
                     assert found[0].data["text"], found
                     assert module.settle()
-                    questions.drain(0.0)  # what came after the first word
+                    questions.drain(0.0)  # the rest of the answer
                 print(f"  {what}: {statistics.median(costs):.1f} ms CPU, {statistics.median(walls):.1f} ms wall")
         finally:
             module.close()

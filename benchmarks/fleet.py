@@ -68,7 +68,7 @@ def main() -> None:
 
 
 class TickPart(Part):
-    """Calls a function at each tick with its time [s]."""
+    """Calls a function in each tick with the time of the tick [s]."""
 
     patient = True
 
@@ -80,7 +80,7 @@ class TickPart(Part):
 
 
 def measured(number: int, seconds: float, *, silent: bool = False) -> dict[str, float]:
-    """What so many robots take, in this process."""
+    """Return the resources that this number of robots uses in this process."""
     with tempfile.TemporaryDirectory() as folder:
         root = project(Path(folder) / "house", number, silent=silent)
         before = pss()
@@ -97,7 +97,7 @@ def measured(number: int, seconds: float, *, silent: bool = False) -> dict[str, 
             count["messages"] += 1
             count["bytes"] += len(json.dumps(message.body))
 
-        undo = bus.subscribe("#", hear)  # what that costs is not the robots'
+        undo = bus.subscribe("#", hear)  # counted separately: its cost is not that of the robots
         house.run(2.0)
         undo()
         rate = {name: value / 2.0 for name, value in count.items()}
@@ -119,7 +119,7 @@ def measured(number: int, seconds: float, *, silent: bool = False) -> dict[str, 
 
 
 def project(root: Path, number: int, *, silent: bool) -> Path:
-    """The small example with so many robots, and the senses of the shipped project where it is not to be silent."""
+    """Write the small example with that many robots, and with the shipped project's senses unless `silent`."""
     shutil.copytree(ROOT / "examples/minimal", root, ignore=shutil.ignore_patterns(".lumen"))
     robots = "".join(f"\n  r{i}: {{model: nao}}" for i in range(number))
     text = (root / "lumen.yaml").read_text("utf-8").replace("robot: {name: NAO, model: nao}", f"robots:{robots}")
@@ -133,7 +133,7 @@ def project(root: Path, number: int, *, silent: bool) -> Path:
 
 
 def pss() -> float:
-    """The memory of this process, what it shares counted in part [MB]."""
+    """Return the memory of this process, with shared memory divided among its users [MB]."""
     said = re.search(r"^Pss:\s+(\d+)", Path("/proc/self/smaps_rollup").read_text(), re.MULTILINE)
     return int(said[1]) / 1024 if said else 0.0
 

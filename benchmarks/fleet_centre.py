@@ -31,7 +31,7 @@ MEASURES = {name: FleetMeasure(name) for name in ("falls", "errors", "visits")}
 
 
 def measured(count: int, folder: Path) -> dict[str, float]:
-    """Figures of a fleet of so many robots, in a rollout to a tenth of them and then to all."""
+    """Return figures of a fleet of that many robots, in a rollout to a tenth of them and then to all."""
     houses = max(1, count // HOUSE)
     rows = {f"h{i}": FleetHouse("amqps://x/", tuple(f"nao{j}" for j in range(HOUSE))) for i in range(houses)}
     plan = RolloutPlan((StepTarget(share=0.1), StepTarget(share=1.0)), 20.0, "falls > 0 || errors > 1.5 * before")

@@ -1,9 +1,9 @@
-"""How fast the head controller is evaluated: ours, and the same by others, all in this run. CPU time, medians.
+"""Measure the evaluation of the head controller by Lumen and by others, all in this run: CPU time, medians.
 
     python benchmarks/fuzzy.py
 
-One evaluation gives both outputs. With 1,000 points each is within 1e-3 deg of the integral, which is measured too.
-There is no table behind ours: what is timed is the exact path.
+One evaluation computes both outputs. With 1,000 points each is within 1e-3 deg of the integral, which is measured too.
+Lumen uses no lookup table: the exact evaluation is timed.
 """
 
 import platform
@@ -35,7 +35,7 @@ ANGLE_Y: Table = ((7, 6), (0, 6), (-7, 6))
 
 
 class ByHand:
-    """One output of the head controller as a person would write it: consequents sampled once, then minimum, maximum."""
+    """One output of the head controller as written by hand: consequents are sampled once, then minimum and maximum."""
 
     def __init__(self, inputs: Table, outputs: Table, points: int = POINTS) -> None:
         end = outputs[0][0]
@@ -66,7 +66,7 @@ def by_hand(points: int = POINTS) -> One:
 
 
 def fuzzylite(head: Controller, points: int) -> One:
-    """pyfuzzylite, from our own export."""
+    """Return an evaluation by pyfuzzylite, from Lumen's export."""
     import fuzzylite as fl
 
     from lumen.features.formats_fuzzy.fll import write_fll
@@ -136,7 +136,7 @@ def simpful(head: Controller, points: int) -> One:
 
 
 def rate(work: Callable[[], object], count: int) -> float:
-    """Evaluations per second of CPU time: the median of several runs, after one to warm up."""
+    """Return the evaluations per second of CPU time: the median of several runs, after one to warm up."""
     work()
     times = []
     for _ in range(REPEATS):
@@ -147,7 +147,7 @@ def rate(work: Callable[[], object], count: int) -> float:
 
 
 def off(one: One, exact: One, rows: list[dict[str, float]]) -> float:
-    """The largest difference [deg] in either output."""
+    """Return the greatest difference in either output [deg]."""
     pairs = [(one(row), exact(row)) for row in rows]
     return max(abs(said[name] - true[name]) for said, true in pairs for name in ("AngleX", "AngleY"))
 
@@ -189,7 +189,7 @@ def batches(head: Controller) -> None:
 
 
 def processor() -> str:
-    """The processor's name, where the system tells it."""
+    """Return the processor's name, if the system provides it."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

@@ -35,7 +35,7 @@ LATENCIES, TICKS, OFF = (0.0, 0.1, 0.2), (0.033, 0.1), (15.0, 8.0)
 FACE: Vector3 = (1.5, 0.2, 0.5)
 DURATION = 4.0
 Loop = Callable[[float, float], tuple[Run, Run]]
-"""By latency and tick: the run to a face that stands, with poses relative to the goal, and the one past a walker."""
+"""A function of latency and tick; returns the run to a still face, relative to the goal, and that past a walker."""
 
 
 def kinematic(project: Project) -> Loop:
@@ -71,7 +71,7 @@ def row(still: Run, walk: Run) -> Iterator[str]:
 
 
 def anybody(project: Project, count: int) -> str:
-    """The worst of so many visitors of all sizes, at any place, latency and tick."""
+    """Return the worst results of visitors of all sizes, at any place, latency and tick."""
     runs = [
         physical_loop.run(project, lambda now, v=visitor: v, off, latency=latency, tick=tick, within=within_reach)
         for visitor, off, latency, tick in cases(11, count)
@@ -84,7 +84,7 @@ def anybody(project: Project, count: int) -> str:
 
 
 def sheet(found: dict[tuple[str, float, float], Run]) -> PlotSheet:
-    """A panel for each loop and axis: how far beside the face the head looks, by time, a line for each latency."""
+    """Return a panel for each loop and axis: the error of the head's direction by time, a line for each latency."""
     panels = []
     for (loop, tick), (axis, name) in product((("kinematic", 0.1), ("physics", 0.1)), enumerate(("yaw", "pitch"))):
         lines = []

@@ -28,9 +28,9 @@ from lumen.talk.hearing import hearing_of
 HERE = Path(__file__).parent / "hearing"
 LANGUAGES = ("en", "id", "de")
 HELD_BACK = 3
-"""One saying of so many is held back."""
+"""One of this many sayings is held back."""
 PLACES = {"fine", "not_fine", "dance", "sing", "photo", "goodbye", "answer", "explain"}
-"""The states of the tour that a saying may lead to."""
+"""The states of the tour to which a saying may lead."""
 
 
 class Tried(NamedTuple):
@@ -46,7 +46,7 @@ class Tried(NamedTuple):
 
 
 def words_tried(languages: Sequence[str], names: Sequence[str]) -> Iterator[Tried]:
-    """Each saying for a name of the words that come with Lumen; `near` sayings must not be taken for it."""
+    """Yield each saying for the names of Lumen's word lists; a `near` saying must not match the name."""
     for language in languages:
         for name, both in yaml.safe_load((HERE / f"{language}.yaml").read_text()).items():
             if names and name not in names:
@@ -63,7 +63,7 @@ def words_tried(languages: Sequence[str], names: Sequence[str]) -> Iterator[Trie
 
 
 def alone(name: str) -> dict[str, Any]:
-    """A behaviour that hears one name."""
+    """Return a behaviour that listens for one name."""
     row: dict[str, Any] = {"target": "hit"}
     if name == "my_name":
         row["actions"] = {"assign": {"caught": "heard.name"}}
@@ -72,13 +72,13 @@ def alone(name: str) -> dict[str, Any]:
 
 
 def heard(machine: Any, text: str) -> Any:
-    """Return False if a name was not heard, else what was caught, or True."""
+    """Return False if the name was not recognized, else the captured value, or True."""
     after = statechart.step(machine, statechart.initial(machine).snapshot, Event("heard", {"result": text})).snapshot
     return "hit" in after.configuration and (after.context["caught"] or True)
 
 
 def same(name: Any, wanted: Any) -> bool:
-    """Whether a name is the one that was said; a recogniser writes it without capitals."""
+    """Return True if two names are equal, ignoring case because a recogniser writes no capitals."""
     return str(name).casefold() == str(wanted).casefold()
 
 
@@ -105,7 +105,7 @@ class Tour:
         return statechart.step(self.machine, snapshot, Event("heard", {"result": text}, snapshot.at + 1))
 
     def settled(self, step: Any) -> Any:
-        """Return the snapshot after the robot has done all that was started, one command after another."""
+        """Return the snapshot after the robot has finished all started commands, one after another."""
         waiting = list(step.commands)
         while waiting:
             command = waiting.pop(0)
@@ -141,7 +141,7 @@ class Tour:
 
 
 def table(tried: list[Tried]) -> Iterator[str]:
-    """Shares by kind and language, known sayings and held-back ones."""
+    """Yield the shares by kind and language, for known sayings and for those held back."""
     groups: dict[tuple[str, str], list[Tried]] = defaultdict(list)
     for one in tried:
         groups[one.kind, one.language].append(one)
@@ -158,7 +158,7 @@ def share(tried: list[Tried], *, held: bool) -> str:
 
 
 def cost() -> str:
-    """Processor time to find the row of a text that was not heard before, on the tour's phrases [us]."""
+    """Return the processor time to find the row of a new text among the tour's phrases [us]."""
     machine = lumen.load(Path(__file__).parents[1]).machine
     hearing = hearing_of(machine)
     texts = [

@@ -1,14 +1,14 @@
-"""What the journal of inputs costs, and how fast it is replayed.
+"""Measure the cost of the input journal, and the speed of its replay.
 
     python benchmarks/journal.py
 
-CPU time of this process, its threads included. The visits are those of the shipped tour's story, one after another:
-faces many times a second, words, answers of the robot.
+Times are CPU times of this process, including its threads. The visits are those of the shipped tour's story, one after
+another: faces many times per second, words, answers of the robot.
 
-`a core at 200 events/s`: the CPU time of an event with the journal less that without it, times 200. `worst tick`: the
-longest of 1,000 ticks that hear an event each, 200 a second, without and with the journal. `30 days`: what a second of
-a visit takes on the disk, times the seconds of 30 days of nine opening hours in which there is always a visitor.
-`a day`: nine hours of visits, replayed with the same files and with others.
+`a core at 200 events/s`: the additional CPU time of an event with the journal, times 200. `worst tick`: the longest of
+1,000 ticks with an event each, 200 per second, without and with the journal. `30 days`: the disk space of a second of a
+visit, times the seconds of 30 days with nine opening hours and a permanent visitor. `a day`: nine hours of visits,
+replayed with the same files and with others.
 """
 
 import sys
@@ -42,7 +42,7 @@ TICKS = 1_000
 
 
 class Ticks(Observer):
-    """The events that a story brings, as `Runtime.tick` takes them."""
+    """Collects the events of a story, as `Runtime.tick` receives them."""
 
     def __init__(self) -> None:
         self.events: list[Event] = []
@@ -54,14 +54,14 @@ class Ticks(Observer):
 
 
 def visit(project: Project) -> list[Event]:
-    """What the behaviour hears in one visit."""
+    """Return the events that the behaviour receives in one visit."""
     ticks = Ticks()
     rehearse(project, project.stories[project.story], observers=[ticks])
     return ticks.events
 
 
 def worst_tick(project: Project, events: Sequence[Event], folder: Path | None) -> float:
-    """The longest of so many ticks [s], at the pace of `EVENTS_PER_SECOND`."""
+    """Return the longest tick [s], at a rate of `EVENTS_PER_SECOND`."""
     runtime = Runtime(project)
     writer = JournalWriter(JournalFolder(folder, 30.0, 1e9)) if folder else None
     if writer:
@@ -82,7 +82,7 @@ def worst_tick(project: Project, events: Sequence[Event], folder: Path | None) -
 
 
 def run(project: Project, events: Sequence[Event], times: int, folder: Path | None) -> tuple[float, float]:
-    """CPU time [s] and lived time [s] of so many visits; with a folder, they are journaled."""
+    """Return CPU time and simulated time of that many visits [s]; with a folder, they are journaled."""
     runtime = Runtime(project)
     writer = JournalWriter(JournalFolder(folder, 30.0, 1e9), rehearsed=True) if folder else None
     if writer:
@@ -103,7 +103,7 @@ def run(project: Project, events: Sequence[Event], times: int, folder: Path | No
 
 
 def renamed(event: Event, number: int, commands: int, awaited: int) -> Event:
-    """An answer of the first visit, for the command of this one."""
+    """Return an answer of the first visit with the id of the corresponding command of this visit."""
     kind, separator, id = event.name.partition(".command.")
     if not separator or number == 0:
         return event
@@ -115,7 +115,7 @@ def entries(folder: Path) -> list[RecordedEntry]:
 
 
 class Bundles:
-    """The one bundle of these runs."""
+    """A source of projects and machines that has only one bundle."""
 
     def __init__(self, bundle: Project) -> None:
         self._bundle = bundle

@@ -1,8 +1,8 @@
-"""How fast the NAO steps for those who learn with it: through the environment, bare, and by `mujoco.rollout`.
+"""Measure the simulation speed of the NAO for learning: through the environment, bare, and by `mujoco.rollout`.
 
     python benchmarks/learning.py
 
-A step is 2 ms of physics. Medians of five runs; processor time does not mind what else the machine does.
+A step is 2 ms of physics. Figures are medians of five runs; processor time is independent of other load.
 """
 
 import os
@@ -71,7 +71,7 @@ def main() -> None:
 
 
 def _timed(run: Callable[[], int]) -> tuple[float, float]:
-    """Steps a second, by the clock and of processor time."""
+    """Return the steps per second of wall time and of processor time."""
     began, used = time.perf_counter(), time.process_time()
     steps = run()
     return steps / (time.perf_counter() - began), steps / (time.process_time() - used)

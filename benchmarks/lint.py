@@ -1,11 +1,11 @@
-"""How long `lumen lint` takes: cold beside the imports of yaml and jsonschema, over more and more files, and warm.
+"""Measure `lumen lint`: cold compared with the imports of yaml and jsonschema, on growing projects, and warm.
 
-Cold is a process of its own, by CPU time, run in turn with `python -c "import yaml, jsonschema"` on the same machine;
-medians. It is run where nothing is kept, where what was found in the very same files is, and where that is kept and one
-of the files is another since, so that all are judged. Python has compiled everything before. Grown projects have so
-many behaviours and motions beside the shipped ones. Warm is what `--watch` and an editor pay: one value of the project
-has changed, in a file of each kind, and everything else is remembered. Last comes `lumen lint --watch` itself, from the
-file's replacement to the line that says it waits again.
+Cold is the CPU time of a process, run in turn with `python -c "import yaml, jsonschema"` on the same machine; medians.
+It is measured with an empty cache, with a cache for the same files, and with a cache from before a change of one file,
+which requires all checks again. Python's bytecode exists before. Grown projects have further behaviours and motions.
+Warm is the cost for `--watch` and editors: one value has changed, in a file of each kind, and everything else is
+cached. The last figure is that of `lumen lint --watch` itself, from the replacement of the file to the line that it
+waits again.
 
     python benchmarks/lint.py
 """
@@ -58,7 +58,7 @@ EDITS = (
     ("lumen.yaml", "patience: ", "5%ds"),
     ("schemas/messages/face.recognition.schema.json", "Whose face it is", "%d"),
 )
-"""A value in a file of each kind: what stands before it, and what it is the n-th time."""
+"""A value in a file of each kind: the text before it, and a format of its n-th value."""
 MOTION = """units: {angle: deg}
 start: Stand
 keyframes:
@@ -90,19 +90,19 @@ def main() -> int:
 
 
 def shown(took: list[float]) -> str:
-    """Median and worst."""
+    """Return the median and the maximum as text."""
     return f"{1e3 * statistics.median(took):4.0f} ms {1e3 * max(took):4.0f} ms"
 
 
 def cold() -> tuple[float, ...]:
-    """The medians of the imports and of lint [s of CPU]: nothing kept, the same files, one changed; they take turns."""
+    """Return medians of the imports and of lint [s of CPU], in turns: no cache, same files, one file changed."""
     took: list[tuple[float, ...]] = []
     with copied() as root, tempfile.TemporaryDirectory() as cache:
         lint = sys.executable, "-m", "lumen", "lint", str(root)
         for n in range(RUNS):
             shutil.rmtree(cache, ignore_errors=True)
             imports = process(cache, sys.executable, "-c", "import yaml, jsonschema")
-            time.sleep(SETTLED_NS / 1e9)  # what changed a moment ago is not kept
+            time.sleep(SETTLED_NS / 1e9)  # files that changed a moment ago are not cached
             kept = [process(cache, *lint) for _ in range(2)]
             file, before, value = EDITS[0]
             (root / file).write_bytes(edited((root / file).read_bytes(), before, value, n))
@@ -112,7 +112,7 @@ def cold() -> tuple[float, ...]:
 
 @contextmanager
 def copied() -> Iterator[Path]:
-    """A copy of the shipped project."""
+    """Yield a copy of the shipped project."""
     with tempfile.TemporaryDirectory() as name:
         root = Path(name)
         shutil.copy(ROOT / MAIN_FILE, root)
@@ -122,7 +122,7 @@ def copied() -> Iterator[Path]:
 
 
 def process(cache: str, *words: str) -> float:
-    """The CPU time of a process [s], which keeps in `cache` what it can make again."""
+    """Return the CPU time of a process [s], which has its cache in the folder `cache`."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine"), "XDG_CACHE_HOME": cache}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     run_guarded(words, check=True, stdout=DEVNULL, env=environment, cwd=tempfile.gettempdir())
@@ -131,7 +131,7 @@ def process(cache: str, *words: str) -> float:
 
 
 def grown(count: int) -> dict[str, bytes]:
-    """The shipped project with further behaviours and motions, `count` files in all; each behaviour plays one."""
+    """Return the shipped project with more behaviours and motions, `count` files in all."""
     files = dict(read_files(ROOT))
     for n in range((count - len(files)) // 2):
         files[f"behaviors/part{n}.yaml"] = BEHAVIOR.format(n=n).encode()
@@ -146,7 +146,7 @@ def timed(work: Callable[[], object]) -> float:
 
 
 def warm(file: str, before: str, value: str) -> list[float]:
-    """The times of checks in which a value is another one each time [s of CPU]; garbage is looked for in between."""
+    """Return the times of checks after a change of one value each [s of CPU]; garbage is collected between them."""
     files, took = read_files(ROOT), []
     check_files(ROOT, files)
     for n in range(TURNS):
@@ -159,7 +159,7 @@ def warm(file: str, before: str, value: str) -> list[float]:
 
 
 def watched() -> list[float]:
-    """How long `lumen lint --watch` takes to answer the same edits [s]."""
+    """Return the response times of `lumen lint --watch` to the same edits [s]."""
     with copied() as root:
         command = [sys.executable, "-m", "lumen", "lint", "--watch", "--format", "concise", str(root)]
         environment = {**os.environ, "PYTHONPATH": str(ROOT / "engine")}
@@ -167,16 +167,16 @@ def watched() -> list[float]:
             assert process.stdout
             try:
                 answered(process.stdout)
-                time.sleep(1)  # until the system tells it of changes; before that it finds them by looking
+                time.sleep(1)  # until the system reports changes; before that it polls
                 return [saved(root, *edit, n, process.stdout) for n in range(3) for edit in EDITS]
             finally:
                 process.terminate()
 
 
 def saved(root: Path, file: str, before: str, value: str, n: int, said: Iterable[str]) -> float:
-    """How long an edit takes from the file's replacement to its answer [s]."""
+    """Return the time from the replacement of a file to the answer [s]."""
     (root / ".new").write_bytes(edited((root / file).read_bytes(), before, value, n))
-    time.sleep(0.3)  # as people pause: what they saved before has been dealt with
+    time.sleep(0.3)  # as people pause: the edit before has been processed
     began = time.perf_counter()
     (root / ".new").replace(root / file)
     answered(said)
@@ -184,7 +184,7 @@ def saved(root: Path, file: str, before: str, value: str, n: int, said: Iterable
 
 
 def answered(said: Iterable[str]) -> None:
-    """Returns when it waits for the next change."""
+    """Return when the watcher waits for the next change."""
     for line in said:
         if "waiting for the next change" in line:
             return
@@ -192,7 +192,7 @@ def answered(said: Iterable[str]) -> None:
 
 
 def edited(content: bytes, before: str, value: str, n: int) -> bytes:
-    """The file with the n-th value behind the text `before`."""
+    """Return the file with the n-th value after the text `before`."""
     text, count = re.subn(f"({re.escape(before)})[\\w.]*", rf"\g<1>{value % n}", content.decode(), count=1)
     assert count, before
     assert text.encode() != content, f"{before} is that already"

@@ -43,26 +43,26 @@ NOISES: tuple[float | None, ...] = (None, 20.0, 10.0, 0.0)
 VISITOR = """offer: can you dance for me;offer: how tall are you;offer: please sing a song;ask_name: my name is peter
 offer: what happens at this booth;offer: tell me about yourself;how_are_you: i am fine thank you
 offer: can we take a photo"""
-"""What is said, and the state that it is said in."""
+"""The visitor's sentences, each with the state in which it is said."""
 ROBOT = """Good morning!;May I know your name?;How are you, Ani?;I am glad to hear that.
 What can I do for you? I can explain, dance, sing, or take a photo with you.;Do you have a question for me?
 I am 57 centimetres tall.;With pleasure! Please leave me some room.;Thank you for listening!
 I will sing Manuk Jajali for you.;My body was developed by Aldebaran Robotics.;I am sorry, I did not understand that."""
 STOP, STOPPABLE = "stop", "dance"
-"""What interrupts the robot, and a state in which it does."""
+"""A word that interrupts the robot, and a state in which it does."""
 TALK = """the weather is nice;where can i buy something to drink;the train leaves at seven;my brother works in a bank
 look at those people over there;the moon is very bright tonight;we parked the car behind the building
 what time does the museum open;i left my umbrella at home;these shoes are too small;the children are playing outside
 purple is her favourite colour"""
 NEAR: Mapping[str, object] = {"x": 160, "y": 120, "distance": 1.2}
 FAR: Mapping[str, object] = {"x": 40, "y": 120, "distance": 2.8}
-"""The eyes see who looks; of those who talk aside, now and then somebody farther off."""
+"""Face messages for a visitor who looks at the robot, and for people farther away who talk to each other."""
 NAMES = (
     ("en-us", "my name is", "peter maria susan budi ani rudi dewi putri robert yusuf"),
     ("id", "nama saya", "budi dewi siti rudi agus wahyu bambang sri"),
 )
 WALL_DELAY, WALL_LEVEL = 0.08, 0.3
-"""What a wall gives back of a voice: when [s], and how much."""
+"""The echo of a wall: its delay [s] and its level."""
 
 
 def texts(lines: str) -> list[str]:
@@ -70,12 +70,12 @@ def texts(lines: str) -> list[str]:
 
 
 def in_states(lines: str) -> list[tuple[str, str]]:
-    """Texts with the state before each."""
+    """Return the texts, each with its state."""
     return [(text, state) for state, text in (line.split(": ") for line in texts(lines))]
 
 
 def around(machine: MachineDefinition, name: str) -> list[str]:
-    """The names of the active states if this one is, as far as it says that: it, those around it, and the regions."""
+    """Return the names of the states that must be active with this one: itself, its ancestors, and the regions."""
     state = next(state for state in machine.states.values() if state.name == name)
     names = [machine.states[path].name for path in machine.root.children]
     while state.parent is not None and state.name not in names:
@@ -85,7 +85,7 @@ def around(machine: MachineDefinition, name: str) -> list[str]:
 
 
 def spoken(text: str, voice: str, pace: int) -> Samples:
-    """A text without the silences around it."""
+    """Return the sound of a text without silence around it."""
     said = resampled(espeak().speak(text, voice, pace), RATE)
     samples = np.frombuffer(said.samples, "<i2").astype(float)
     loud = np.flatnonzero(np.abs(samples) > 200)
@@ -101,7 +101,7 @@ def sound(samples: Samples) -> Sound:
 
 
 def noise(length: int, seed: int, *, dull: bool = False) -> Samples:
-    """White noise, or one whose high parts are missing as behind a wall; its loudness is 1."""
+    """Return white noise, or noise without high frequencies as behind a wall; its loudness is 1."""
     found = np.random.default_rng(seed).normal(0.0, 1.0, length)
     if dull:
         found = np.convolve(found, np.ones(40) / 40, "same")
@@ -109,7 +109,7 @@ def noise(length: int, seed: int, *, dull: bool = False) -> Samples:
 
 
 def rested(said: Samples, level: float | None, seed: int) -> Samples:
-    """What is said between two rests, with so much less noise than voice [dB]."""
+    """Return the speech between two pauses, with noise that is `level` [dB] below the voice."""
     whole = np.pad(said, RATE)
     if level is None:
         return whole
@@ -117,7 +117,7 @@ def rested(said: Samples, level: float | None, seed: int) -> Samples:
 
 
 def activity() -> None:
-    """What finds speech: what it missed, how late it begins and ends, and what it takes for speech."""
+    """Measure voice activity detection: misses, delays of beginning and end, and false alarms."""
     finder = VoiceActivity()
     for level in NOISES:
         begins, ends, missed = [], [], 0
@@ -148,7 +148,7 @@ def _noise(level: float | None) -> str:
 
 
 class Hall:
-    """Ears in a hall where the robot speaks; `knows` is whether they are told of that."""
+    """Ears in a hall in which the robot speaks; `knows` determines whether they are informed of its speech."""
 
     def __init__(self, project: Project, recogniser: Recogniser, *, knows: bool) -> None:
         self.now, self.knows, self.project = 0.0, knows, project
@@ -163,7 +163,7 @@ class Hall:
         self.bus.close()
 
     def listen(self, text: str, own: Samples, other: Samples, at: float) -> list[str]:
-        """What they hear in the robot's text and its echo, while somebody speaks from `at` [s] on."""
+        """Return the texts heard in the robot's speech and its echo, while a visitor speaks from `at` [s] on."""
         length = max(len(own) + round(WALL_DELAY * RATE), round(at * RATE) + len(other)) + RATE // 2
         hall, begin, before = np.zeros(length), self.now + 10.0, len(self.heard.bodies)
         for delay, level in ((0.0, 1.0), (WALL_DELAY, WALL_LEVEL)):
@@ -179,11 +179,11 @@ class Hall:
         return [body["result"] for body in self.heard.bodies[before:]]
 
     def enter(self, state: str) -> None:
-        """Tell them that the behaviour is in that state."""
+        """Report to the ears that the behaviour is in that state."""
         self._tell(self.now + 1.0, {"states": around(self.project.machine, state)})
 
     def overhear(self, said: Samples, faces: Mapping[str, object]) -> list[str]:
-        """What they hear of somebody whose face the eyes see so, ten times a second."""
+        """Return the texts heard from a person whose face messages are `faces`, ten times per second."""
         begin, before = self.now + 20.0, len(self.heard.bodies)
         for tenth in range(round(10 * len(said) / RATE)):
             self.now = begin + tenth / 10
@@ -200,7 +200,7 @@ class Hall:
 
 
 def half_duplex(project: Project) -> None:
-    """How often the robot hears itself, and what it still hears of others."""
+    """Measure how often the robot hears itself, and whether it still hears visitors."""
     recogniser, nothing = shared_sphinx(), np.zeros(0)
     said = [(text, spoken(text, "en-us+m3", 150)) for text in texts(ROBOT)]
     for name, knows in (("always listening", False), ("half duplex", True)):
@@ -224,7 +224,7 @@ def half_duplex(project: Project) -> None:
 
 
 def talk_beside(project: Project) -> None:
-    """What is heard of people beside the robot who do not mean it, and of a visitor who does."""
+    """Measure what is heard of people who talk beside the robot, and of a visitor who talks to it."""
     listens = {"face": {"within": 1.5, "after": 3}}
     settings = ModuleSettings(True, {"listens": listens})
     choosing = replace(project, modules={**project.modules, EARS: settings})
@@ -254,14 +254,14 @@ def talk_beside(project: Project) -> None:
 
 
 def meant_by(heard: Sequence[HeardName], text: str) -> frozenset[str]:
-    """Which phrases of these names are in a text, in any language; of tables of answers with the row."""
+    """Return the names of phrases that occur in a text, in any language; for answers, with the row."""
     rows = {f"{n} {i}": row.phrases for m, n in heard for i, row in enumerate(m.answers.get(n, ()))}
     phrases = {name: machine.phrases[name] for machine, name in heard if name in machine.phrases}
     return frozenset(name for name, table in (phrases | rows).items() if is_heard(text, table))
 
 
 def names(project: Project) -> None:
-    """How many names are understood, and how sure the ears are of what they make of them."""
+    """Measure how many names are understood, and the confidence of right and wrong ones."""
     recogniser = shared_sphinx()
     recogniser.expect(expected(project, heard_names(project, around(project.machine, "ask_name"))))
     right, wrong = [], []

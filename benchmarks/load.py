@@ -37,19 +37,24 @@ KINDS = ("quiet", "face", "command", "all")
 STOP, COMMAND, REPORT = "avatar.NAO.stop", "avatar.NAO.command", "avatar.NAO.event.command"
 SENSES = ("joint", "sonar", "tactile")
 PAUSE, PATIENCE = 0.05, 60.0
-"""Between two stops, and how long anything is waited for [s]."""
+"""Pause between two stops, and the timeout of all waits [s]."""
 BATCH = 0.005
-"""How often the flood sends what is due [s]."""
+"""Interval at which the flood sends its due messages [s]."""
 
 
 class Result(NamedTuple):
-    """What one kind of flood did: seconds until each stop was accepted, sense messages a second, and the rest."""
+    """The results for one kind of flood."""
 
     stops: list[float]
+    """Times until each stop was accepted [s]."""
     senses: dict[str, float]
+    """Messages per second of each sense."""
     spoken: float
+    """Time until the text was said [s]."""
     sent: float
+    """Messages per second that the flood has sent."""
     dropped: str
+    """The exhibition's line about dropped messages; empty without any."""
 
 
 def main() -> None:
@@ -79,7 +84,7 @@ def main() -> None:
 
 
 def show(kind: str, result: Result, usual: dict[str, float]) -> None:
-    """A row of the table, and beneath it what was dropped."""
+    """Print a row of the table, and below it the dropped messages."""
     late = sorted(1000 * seconds for seconds in result.stops)
     kept = " ".join(f"{name} {result.senses[name] / max(usual[name], 0.1):.2f}" for name in SENSES)
     p95 = late[int(0.95 * len(late))]
@@ -90,7 +95,7 @@ def show(kind: str, result: Result, usual: dict[str, float]) -> None:
 
 
 def measured(url: str, kind: str, options: argparse.Namespace) -> Result:
-    """One row, with an exhibition of its own."""
+    """Measure one row, with an exhibition of its own."""
     with ExitStack() as stack:
         house, told = stack.enter_context(exhibition(url, options.robot))
         asker = Asker(url)
@@ -112,7 +117,7 @@ def measured(url: str, kind: str, options: argparse.Namespace) -> Result:
 
 
 class Asker:
-    """Sends stops and a text, and counts what the senses send meanwhile; all on pika's own connection."""
+    """Sends stops and a text, and counts the messages of the senses meanwhile, with pika's own connection."""
 
     def __init__(self, url: str) -> None:
         self._connection = pika.BlockingConnection(pika.URLParameters(url))
@@ -125,20 +130,20 @@ class Asker:
         self._channel.basic_consume(queue, self._heard, auto_ack=True)
 
     def begin(self) -> None:
-        """Wait until the robot is there."""
+        """Wait until the robot is available."""
         if not self._ear.heard.wait(PATIENCE):
             raise SystemExit("the exhibition has not begun")
         self.stop()
 
     def stop(self) -> float:
-        """How long until one was accepted [s]."""
+        """Send a stop; return the time until it was accepted [s]."""
         sent = self._send(STOP, "stop", {"what": "walk"})
         late = self._wait(sent, "accepted")
         self._connection.sleep(PAUSE)
         return late
 
     def say(self, text: str) -> float:
-        """How long until a text was said [s]; it is sent again where it is refused."""
+        """Return the time until a text was said [s]; it is sent again after a refusal."""
         began = time.monotonic()
         while time.monotonic() - began < PATIENCE:
             sent = self._send(COMMAND, "say", {"text": text})
@@ -151,7 +156,7 @@ class Asker:
         raise SystemExit("the text was never said")
 
     def settle(self) -> None:
-        """Let the flood come to its height; count from then on."""
+        """Wait until the flood has reached its rate, then start to count."""
         self._connection.sleep(2.0)
         self._ear.begin()
 
@@ -186,7 +191,7 @@ class Asker:
 
 
 class Ear:
-    """Counts what the senses send, on a thread of its own."""
+    """Counts the messages of the senses, on a thread of its own."""
 
     def __init__(self, url: str) -> None:
         self._counts, self._began = Counter[str](), 0.0
@@ -219,14 +224,14 @@ class Ear:
             self._connection.process_data_events(0.2)
 
     def _heard(self, _: Any, method: Any, properties: Any, body: bytes) -> None:
-        if b'"lost"' not in body:  # what the flood of all keys sends there is not the robot's
+        if b'"lost"' not in body:  # messages of the flood to these keys are not the robot's
             self._counts[method.routing_key.rpartition(".")[2]] += 1
             self.heard.set()
 
 
 @contextmanager
 def exhibition(url: str, robot: str) -> Iterator[tuple[Guarded[bytes], Path]]:
-    """The whole exhibition in a process of its own, and the file with all that it says."""
+    """Yield the whole exhibition in a process of its own, and the file with its output."""
     told = temporary_folder("lumen-load-") / "told.txt"
     line = [sys.executable, "-m", "lumen", "run", ROOT, "--robot", robot, "--bus", url, "--reload", "off", "--fresh"]
     with told.open("wb") as file, Guarded(line, stdin=DEVNULL, stdout=file, stderr=STDOUT) as process:
@@ -238,7 +243,7 @@ def exhibition(url: str, robot: str) -> Iterator[tuple[Guarded[bytes], Path]]:
 
 @contextmanager
 def busy() -> Iterator[Guarded[bytes]]:
-    """Somebody who computes for nothing."""
+    """Yield a process that uses a core for nothing."""
     with Guarded([sys.executable, "-c", "while True: pass"]) as process:
         try:
             yield process
@@ -259,12 +264,12 @@ def flooding(url: str, kind: str, rate: int) -> Iterator[Guarded[str]]:
 
 
 def ended(process: Guarded[str]) -> float:
-    """End a flood; how many messages a second it really sent."""
+    """End a flood; return the messages per second that it has sent."""
     return float(process.communicate("\n")[0])
 
 
 def flood(kind: str, url: str, rate: int) -> None:
-    """Send until a line comes on standard input; then say how many a second that were."""
+    """Send until a line arrives on standard input; then print the rate [messages per second]."""
     connection = pika.BlockingConnection(pika.URLParameters(url))
     channel, messages = connection.channel(), cycle(messages_of(kind, lumen.load(ROOT)))
     ending = threading.Event()
@@ -283,7 +288,7 @@ def flood(kind: str, url: str, rate: int) -> None:
 
 
 def messages_of(kind: str, project: Project) -> list[tuple[str, bytes]]:
-    """What a flood sends: bodies that are right, which go farthest."""
+    """Return the messages of a flood: their bodies are valid, so that they are processed the farthest."""
     says = {"type": "texttospeech", "method": "say", "parameter": {"text": "This is a flood, and nobody wants it."}}
     faces = [(project.routes["face"].key, json.dumps({"x": x, "y": 120}).encode()) for x in range(100, 220)]
     if kind == "face":
@@ -294,7 +299,7 @@ def messages_of(kind: str, project: Project) -> list[tuple[str, bytes]]:
 
 
 def example(project: Project, schema: str) -> bytes:
-    """The example of a message's schema."""
+    """Return the example in a message's schema."""
     shown: Any = project.messages.get(schema, {}).get("examples", [{}])
     body = dict(shown[0]) if isinstance(shown[0], dict) else {"lost": True}
     return json.dumps({**body, "lost": True} if "session" not in body else body).encode()

@@ -37,7 +37,7 @@ AROUND = {
     "inlayHintProvider": "inlayHint",
     "documentLinkProvider": "documentLink",
 }
-"""What an editor asks after every key, by the capability."""
+"""The requests of an editor after every key, by capability."""
 
 
 def main() -> int:
@@ -86,14 +86,14 @@ def _copied(region: str, n: int) -> str:
 
 
 class Took(NamedTuple):
-    """How long an answer took, and how long the server worked for it [s]."""
+    """Wall time and CPU time of the server for an answer [s]."""
 
     wall: float
     cpu: float
 
 
 class Typist:
-    """Writes into one file as somebody at a keyboard does, and measures the answers."""
+    """Writes into one file as a person at a keyboard does, and measures the answers."""
 
     def __init__(self, client: Client, file: str) -> None:
         self.client, self.file, self.version = client, file, 1
@@ -106,7 +106,7 @@ class Typist:
         return bool(self.client.capabilities.get(capability))
 
     def findings(self, near: str, word: str, said: str) -> Took:
-        """From the last key of a word that is wrong to its finding, which says that; then all is as it was."""
+        """Return the time from the last key of a wrong word to a finding with the text `said`; then undo the edit."""
         line, start = self.spot(near)
         began = self.replace(line, start, len(near), word)
         self.around()
@@ -117,7 +117,7 @@ class Typist:
         return took
 
     def closed(self) -> Took:
-        """From the key that closes a quote to the findings of a sound file."""
+        """Return the time from the key that closes a quote to the findings of a valid file."""
         line, start = self.spot("en: Never mind.")
         self.replace(line, start + 4, 0, '"', at_once=True)
         self.until(bool)
@@ -129,7 +129,7 @@ class Typist:
         return took
 
     def completion(self, near: str, word: str) -> tuple[Took, int]:
-        """From the last key of a word that is begun to the proposals behind it, and how many they are."""
+        """Return the time from the last key of an incomplete word to its proposals, and their number."""
         line, start = self.spot(near)
         self.replace(line, start, len(near), word[:-1])
         began = self.replace(line, start + len(word) - 1, 0, word[-1])
@@ -145,7 +145,7 @@ class Typist:
         return line, self.lines[line].index(near)
 
     def replace(self, line: int, start: int, wide: int, word: str, *, at_once: bool = False) -> Took:
-        """Write a word in place of so many characters, key by key; the clocks when the last key was pressed."""
+        """Write a word in place of `wide` characters, key by key; return the clocks at the last key."""
         for i, key in enumerate([word] if at_once else word):
             if i:
                 time.sleep(KEY_EVERY)
@@ -168,7 +168,7 @@ class Typist:
         self.client.notify("textDocument/didChange", textDocument=document, contentChanges=[change])
 
     def around(self) -> None:
-        """Ask what an editor asks beside."""
+        """Send the other requests of an editor."""
         document = {"uri": self.client.uri(self.file)}
         window = {"start": {"line": 0, "character": 0}, "end": {"line": 100, "character": 0}}
         for capability, method in AROUND.items():
@@ -177,20 +177,20 @@ class Typist:
                 self.client.ask_later(f"textDocument/{method}", textDocument=document, **more)
 
     def until(self, wanted: Callable[[list[dict[str, Any]]], bool]) -> None:
-        """Wait until findings are as they should be."""
+        """Wait until the findings satisfy a condition."""
         while not wanted(self.client.diagnostics(self.file)):
             pass
 
 
 def cpu(pid: int) -> float:
-    """The CPU time of all threads of a process, and of those that it has begun [s]."""
+    """Return the CPU time of all threads of a process and of its descendants [s]."""
     tasks = [*Path(f"/proc/{pid}/task").iterdir()]
     own = sum(int((task / "schedstat").read_text().split()[0]) for task in tasks) / 1e9
     return own + sum(cpu(int(child)) for task in tasks for child in (task / "children").read_text().split())
 
 
 def shown(took: list[Took]) -> str:
-    """Median and 95th percentile of the wall time, the median of the CPU time."""
+    """Return median and 95th percentile of the wall time, and the median of the CPU time, as text."""
     wall = sorted(each.wall for each in took)
     p95, cpu = statistics.quantiles(wall, n=20)[-1], statistics.median(each.cpu for each in took)
     return f"{1e3 * statistics.median(wall):5.0f} ms {1e3 * p95:5.0f} ms   {1e3 * cpu:4.0f} ms"

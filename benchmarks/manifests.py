@@ -1,6 +1,6 @@
-"""Print the processor time of reading all manifests of features: `python benchmarks/manifests.py`.
+"""Measure the processor time to read all manifests of features: `python benchmarks/manifests.py`.
 
-Each pass is a process of its own. Beside imports means without `lumen.feature` and the modules of Python that it uses.
+Each pass is a process of its own. Imports of `lumen.feature` and of the Python modules that it uses are not included.
 """
 
 import sys
@@ -13,7 +13,7 @@ from tests.guarded import run_guarded
 
 PASSES = 9
 LIMIT = 15.0
-"""The greatest time of reading the manifests that come with Lumen [ms]."""
+"""The limit for reading the manifests of Lumen [ms]."""
 CODE = """
 import time
 import lumen.feature as feature
@@ -28,7 +28,7 @@ print((read - begun) * 1e3, (time.process_time() - read) * 1e3, len(found))
 
 
 def main() -> int:
-    """Return 0 if reading takes less than the limit."""
+    """Print the times; return 0 if reading takes less than the limit."""
     passes = [
         run_guarded([sys.executable, "-c", CODE], capture_output=True, text=True, check=True) for _ in range(PASSES)
     ]

@@ -1,10 +1,10 @@
-"""What one `{"ask": "now"}` costs: CPU time, medians. A console asks about 4 times a second.
+"""Measure the cost of one `{"ask": "now"}`: CPU time, medians. A console sends about 4 per second.
 
     python benchmarks/now.py
 
-`taken` is what the tick itself does for it, `told` what another thread does after that. The tour is the shipped one
-while it talks to somebody; the large chart has 1,500 states, of which each leads on under a guard, and the wide one as
-many regions of which all are active at once.
+`taken` is the time in the tick itself, `told` the time that another thread needs afterwards. The tour is the shipped
+one during a conversation. The large chart has 1,500 states, each with a guarded transition to the next; the wide one
+has as many regions, which are all active at once.
 """
 
 import json
@@ -43,7 +43,7 @@ def tour() -> Exhibition:
 
 
 def milliseconds(work: Any) -> float:
-    """The median over some runs, after one to warm up."""
+    """Return the median of several runs [ms], after one to warm up."""
     work()
     spent = []
     for _ in range(RUNS):

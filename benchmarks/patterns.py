@@ -46,7 +46,7 @@ PATTERNS: list[tuple[str, str]] = [
 """Patterns, each with a text that is hard for it."""
 
 MAX_SECONDS = 1.0
-"""What a search may take [s of CPU] to be measured."""
+"""The greatest duration of a search that is still measured [s of CPU]."""
 
 
 def by_lumen(pattern: str) -> Search:
@@ -78,7 +78,7 @@ ENGINES: dict[str, tuple[Callable[[str], Search], str]] = {
     "google-re2": (by_re2, "import re2"),
     "re": (by_re, "import re"),
 }
-"""What reads a pattern, and what has to be imported for it."""
+"""The function that compiles a pattern, and the import that it needs."""
 
 
 def main() -> int:
@@ -107,7 +107,7 @@ def main() -> int:
 
 
 def steps(engines: Engines, pattern: str, hard: str) -> list[dict[str, Callable[[], object]]]:
-    """Reading a pattern, looking through the sentence, and through the hard text, by each engine that can."""
+    """Return the steps of each engine that can do them: compiling, searching the sentence, searching the hard text."""
     able = {name: make(pattern) for name, make in engines.items()}
     return [
         {name: partial(make, pattern) for name, make in engines.items()},
@@ -121,7 +121,7 @@ def cell(taken: dict[str, float], name: str) -> str:
 
 
 def measured(work: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, float]:
-    """The median time of a call [s of CPU]; they take turns, each called for some 5 ms at a time."""
+    """Return the median time of a call [s of CPU]; the calls take turns, about 5 ms at a time."""
     counts = {name: max(1, int(0.005 / max(timed(todo, 1), 1e-7))) for name, todo in work.items()}
     taken: dict[str, list[float]] = {name: [] for name in work}
     for _ in range(rounds):
@@ -138,7 +138,7 @@ def timed(todo: Callable[[], object], count: int) -> float:
 
 
 def hopeless(pattern: str, text: str) -> bool:
-    """Whether `re` takes longer than a second; it is tried in a process that can be ended."""
+    """Return True if `re` needs longer than a second; it runs in a process that can be ended."""
     code = f"import re; re.search({pattern!r}, {text!r})"
     try:
         run_guarded([sys.executable, "-c", code], timeout=MAX_SECONDS + 1, check=True)
@@ -152,7 +152,7 @@ def importable(statement: str) -> bool:
 
 
 def imports(statements: dict[str, str], rounds: int) -> str:
-    """What each of these statements takes beyond Python itself [ms of CPU], as text."""
+    """Return the time of each import beyond Python itself [ms of CPU], as text."""
     report = "; import resource; used = resource.getrusage(resource.RUSAGE_SELF); print(used.ru_utime + used.ru_stime)"
     taken: dict[str, list[float]] = {name: [] for name in ["", *statements]}
     for _ in range(rounds):

@@ -1,6 +1,7 @@
-"""The same two machines in other statechart libraries, as their documentation writes them.
+"""The same two machines in other statechart libraries, in the style of their documentation.
 
-Each `work(count)` starts anew, sends that many events and returns the context value that every event assigns.
+Each `work(count)` restarts the machine, sends that many events and returns the context value that every event
+increments.
 """
 
 import json
@@ -21,7 +22,7 @@ MOST = 1_000_000_000
 
 
 class Model:
-    """What `transitions` moves: a guard and an assignment as methods."""
+    """The model of `transitions`, with a guard and an assignment as methods."""
 
     n = 0
 
@@ -173,11 +174,11 @@ PEERS: list[tuple[str, str, Callable[[int], Work], Callable[[], Work]]] = [
     ("sismic", "sismic", sismic_ring, sismic_regions),
     ("xstate-statemachine", "xstate-statemachine", port_ring, port_regions),
 ]
-"""Name, package, and the makers of the two machines."""
+"""Name, package, and the functions that make the two machines."""
 
 
 def xstate(sizes: Sequence[int]) -> list[tuple[str, dict[str, float] | str]]:
-    """XState's rates on Node, by the way that is taken: its pure transition function, its inside, an actor."""
+    """Return XState's rates on Node: of its pure transition function, of its internals, and of an actor."""
     ways = {"pure": "XState, pure", "scoped": "XState, one scope", "actor": "XState, actor"}
     if not (shutil.which("node") and shutil.which("npm")):
         return [(name, "not measured: there is no Node here") for name in ways.values()]

@@ -2,8 +2,9 @@
 
     python benchmarks/pushes.py [--robots N]
 
-Each robot differs from the model: every link up to 10 % lighter or heavier, friction 0.5 to 1.0, and noisy sensors. A
-push is a force on its torso for 0.1 s. A robot that has not fallen 3 s later counts. 4 are a look, 20 the figures.
+Each robot differs from the model: every link is up to 10 % lighter or heavier, friction is 0.5 to 1.0, and sensors are
+noisy. A push is a force on the torso for 0.1 s; the robot must not fall within 3 s. 4 robots give an impression, 20 the
+published figures.
 """
 
 import argparse

@@ -45,7 +45,7 @@ with ReachyMini(host="127.0.0.1", port=port, **given) as mini:
 
 
 def streaming(robot: Driven, seconds: float) -> tuple[float, float]:
-    """The processor time of a robot that only lives [% of a core], and its ticks a second."""
+    """Return the processor time of a robot with idle life only [% of a core], and its ticks per second."""
     begin, spent, ticks = time.monotonic(), time.process_time(), 0
     while time.monotonic() < begin + seconds:
         robot.robot.poll()
@@ -55,7 +55,7 @@ def streaming(robot: Driven, seconds: float) -> tuple[float, float]:
 
 
 def looks(url: str) -> tuple[list[float], list[float]]:
-    """From a face message to the first new target for the head, and to its first measured movement [s]."""
+    """Return the times from a face message to the head's first new target, and to its first measured motion [s]."""
     clock = RealClock()
     choose("reachy_mini")
     project = lumen.load(ROOT / "examples/reachy")

@@ -29,12 +29,12 @@ from lumen.run.setup import set_up
 
 ROOT = Path(__file__).parents[1]
 SETTLED = 3.0
-"""After which the files and the robot's looks are written [s]."""
+"""Time after which the files and the robot's appearance have been written [s]."""
 KINDS = {"no recording": None, "without the camera": False, "with the camera": True}
 
 
 class Round(NamedTuple):
-    """CPU time of a second [s], bytes and messages of a second, the latest tick [s]."""
+    """CPU time per second [s], bytes and messages per second, and the greatest delay of a tick [s]."""
 
     cpu: float
     bytes: float
@@ -43,7 +43,7 @@ class Round(NamedTuple):
 
 
 def live(robot: str, camera: bool | None, seconds: float) -> Round:
-    """One run of the tour."""
+    """Run the tour once."""
     folder = Path(tempfile.mkdtemp())
     try:
         project = lumen.load(ROOT)
@@ -67,7 +67,7 @@ def live(robot: str, camera: bool | None, seconds: float) -> Round:
                 now = time.monotonic()
                 late, before = max(late, now - before - TICK_PERIOD), now
                 if not first and now - began > SETTLED and path.exists():
-                    first = path.stat().st_size  # what is written once is not counted
+                    first = path.stat().st_size  # data written once is not counted
             took, cpu = time.monotonic() - began, time.process_time() - cpu
             size = path.stat().st_size - first if path.exists() else 0
         directory.close(forget=True)

@@ -53,7 +53,7 @@ WARM = 0.4
 
 @dataclass
 class Outcome:
-    """What was seen; times in [s]."""
+    """The observations of a soak; times in [s]."""
 
     edits: int
     broken: int = 0
@@ -82,13 +82,13 @@ class Outcome:
 
     @property
     def growth(self) -> float:
-        """Of the resident memory, in percent."""
+        """Return the growth of the resident memory [%]."""
         before, after = self.memory
         return 100.0 * (after - before) / before if before else 0.0
 
 
 class Told(NamedTuple):
-    """A verdict: when it came, on which files, and how long our own work and the swap took; times in [s]."""
+    """A verdict: its time, its files, and the durations of validation and swap; times in [s]."""
 
     at: float
     verdict: str
@@ -118,7 +118,7 @@ print(missed)
 
 @contextmanager
 def metronome() -> Iterator[list[int]]:
-    """Another process that does nothing but tick: how many ticks the machine itself lets miss, once it is over."""
+    """Run a process that only ticks; its number of missed ticks is known at the end."""
     missed: list[int] = []
     with Guarded([sys.executable, "-c", METRONOME], stdin=PIPE, stdout=PIPE) as process:
         yield missed
@@ -127,7 +127,7 @@ def metronome() -> Iterator[list[int]]:
 
 
 class Load(threading.Thread):
-    """Sends events on a bus of its own, numbered by their count, at `RATE` a second."""
+    """Sends numbered events on a bus of its own, `RATE` per second."""
 
     def __init__(self, show: Exhibition, url: str) -> None:
         super().__init__(daemon=True)
@@ -146,7 +146,7 @@ class Load(threading.Thread):
 
 
 class LookPart(Part):
-    """Looks once everything else has had its tick: what is told in a tick is seen in it."""
+    """Calls a function after all other parts of a tick, so that it sees the results of the tick."""
 
     def __init__(self, look: Callable[[], None]) -> None:
         self._look = look
@@ -156,7 +156,7 @@ class LookPart(Part):
 
 
 class Soak:
-    """A show in real time with a writer beside it."""
+    """A show in real time with a writer that edits its files."""
 
     def __init__(self, root: Path, url: str, quiet: float, seed: int, edits: int) -> None:
         bundle = lumen.load(root)
@@ -185,7 +185,7 @@ class Soak:
         self._done, self._pause = threading.Event(), threading.Event()
 
     def look(self) -> None:
-        """On the running thread: every tick, every verdict, every bundle."""
+        """Observe each tick, verdict and bundle, on the running thread."""
         now, outcome = time.monotonic(), self.outcome
         gap, self._before = now - self._before, now
         if not self._done.is_set():
@@ -225,7 +225,7 @@ class Soak:
             self.count(0)
 
     def wait(self, hash: str, saved: float, seen: int, verdicts: list[float]) -> None:
-        """Until there is a verdict on these files, and what was good is active; how long that took joins `verdicts`."""
+        """Wait for a verdict on these files, and for good ones to become active; append the time to `verdicts`."""
         outcome, deadline = self.outcome, saved + PATIENCE
         first = True
         while time.monotonic() < deadline:
@@ -247,7 +247,7 @@ class Soak:
         outcome.unanswered += 1
 
     def check(self, told: Told) -> None:
-        """Whether that verdict is right."""
+        """Record whether a verdict is right."""
         outcome = self.outcome
         if told.verdict == "applied":
             outcome.applied += 1
@@ -260,13 +260,13 @@ class Soak:
                 outcome.wrong.append(f"refused good files: {told.reason}")
 
     def count(self, place: int) -> None:
-        """Memory [bytes], threads and files of this process."""
+        """Record memory [bytes], threads and open files of this process."""
         import gc
 
         gc.collect()
         memory = int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
         handles = min(len(os.listdir("/proc/self/fd")) for _ in range(5) if not self._pause.wait(0.05))
-        found = memory, threading.active_count(), handles  # a file that is read just now is none that stays open
+        found = memory, threading.active_count(), handles  # the minimum excludes files that are only being read
         for name, value in zip(("memory", "threads", "handles"), found, strict=True):
             both = list(getattr(self.outcome, name))
             both[place] = value
@@ -309,7 +309,7 @@ class Soak:
 
 
 def soak(edits: int, url: str = "memory://", quiet: float = 0.3, seed: int = 1) -> Outcome:
-    """So many edits, and what came of them."""
+    """Make that many edits; return the observations."""
     with project() as root:
         return Soak(root, url, quiet, seed, edits).run()
 

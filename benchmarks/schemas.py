@@ -66,7 +66,7 @@ def by_fastjsonschema(schema: Any) -> Fits:
 
 def by_lumen(schema: Any) -> Fits:
     fits = JsonSchema(schema).fits
-    fits(None)  # it is compiled when it is first asked
+    fits(None)  # the first call compiles it
     return fits
 
 
@@ -76,7 +76,7 @@ VALIDATORS: dict[str, tuple[Callable[[Any], Fits], str]] = {
     "jsonschema": (by_jsonschema, "import jsonschema"),
     "fastjsonschema": (by_fastjsonschema, "import fastjsonschema"),
 }
-"""What makes a check of a schema, and what has to be imported for it."""
+"""The function that compiles a schema, and the import that it needs."""
 
 
 def main() -> int:
@@ -99,7 +99,7 @@ def main() -> int:
 
 
 def files(makers: Makers, rounds: int) -> tuple[dict[str, list[float]], dict[str, list[float]]]:
-    """The ratios to Lumen of compiling the schemas of files, and of looking at all the shipped files of a kind."""
+    """Return the times relative to Lumen of compiling schemas of files, and of checking all shipped files of a kind."""
     documents: dict[str, list[Any]] = {kind: [] for kind in FILE_KINDS}
     for file, content in read_files(ROOT).items():
         kind = kind_of(file)
@@ -128,7 +128,7 @@ def each(fits: Fits, data: list[Any]) -> None:
 
 
 def messages(makers: Makers, rounds: int) -> dict[str, list[float]]:
-    """The ratios to Lumen of looking at bodies."""
+    """Return the times relative to Lumen of checking bodies."""
     ratios: dict[str, list[float]] = {name: [] for name in makers}
     print(f"\n{'µs: a body that fits':32}" + "".join(f"{name:>20}" for name in makers))
     for message, body in BODIES:
@@ -142,7 +142,7 @@ def messages(makers: Makers, rounds: int) -> dict[str, list[float]]:
 
 
 def explaining(rounds: int) -> None:
-    """What a body costs that does not fit, and of which Lumen says what is wrong."""
+    """Measure the explanation of an invalid body."""
     from jsonschema import Draft202012Validator
 
     schema = message_schema("face.detection")

@@ -32,13 +32,13 @@ from lumen.ports import Sense
 
 ROOT = Path(__file__).parents[1]
 OURS = f" of {os.getpid()}"
-"""What our commands' ids end with: the robot performs none twice, not even after a restart."""
+"""The end of this process's command ids: the robot performs no id twice, not even after a restart."""
 LIMIT = 1.5
-"""The worst gap that is well, in periods."""
+"""The greatest accepted gap [periods]."""
 
 
 class Ear:
-    """Hears the senses and the reports, each with when it came [s]."""
+    """Records the messages of the senses and the reports, each with its time of arrival [s]."""
 
     def __init__(self, bus: Bus) -> None:
         self.senses: dict[str, list[tuple[float, float]]] = defaultdict(list)
@@ -58,13 +58,13 @@ class Ear:
             self.changed.notify_all()
 
     def listen(self, joints: int, patience: float = 60.0) -> None:
-        """Until so many angles have come: by then the first image is drawn, which takes longest."""
+        """Wait for that many joint messages: by then the first image is rendered, which takes longest."""
         with self.changed:
             if not self.changed.wait_for(lambda: len(self.senses[Sense.JOINT]) >= joints, patience):
                 raise SystemExit(f"no angles came within {patience:.0f} s")
 
     def wait(self, id: str, state: str, patience: float = 60.0) -> float:
-        """When that command came to that state [s]."""
+        """Wait until a command reaches a state; return the time [s]."""
         with self.changed:
             if not self.changed.wait_for(lambda: (id, state) in self.reports, patience):
                 raise SystemExit(f"the robot did not say within {patience:g} s that `{id}` is {state}")
@@ -91,7 +91,7 @@ def main() -> int:
 
 
 def dance(bus: Bus, ear: Ear) -> tuple[float, float, list[float]]:
-    """Let it dance; when that began and ended [s], and how long each other command waited for its answer [s]."""
+    """Let the robot dance; return its begin and end, and the response time of each other command [s]."""
     order(bus, "wake", "wakeUp")
     ear.wait("wake", "finished")
     ear.listen(30)
@@ -108,14 +108,14 @@ def dance(bus: Bus, ear: Ear) -> tuple[float, float, list[float]]:
 
 
 def order(bus: Bus, id: str, method: str, **parameter: object) -> float:
-    """Send a command; when [s]."""
+    """Send a command; return the time [s]."""
     sent = time.monotonic()
     bus.publish("avatar.NAO.command", {"id": f"{id}{OURS}", "type": "motion", "method": method, "parameter": parameter})
     return sent
 
 
 def table(project: Project, ear: Ear, began: float, ended: float) -> bool:
-    """Print what came of each sense between those times; whether every gap was well."""
+    """Print the rates and gaps of each sense between those times; return True if every gap is accepted."""
     print(f"{'sense':10}{'period':>9}{'messages':>10}{'rate':>10}{'worst gap':>12}{'… on arrival':>14}")
     well = True
     for sense in Sense:
@@ -143,7 +143,7 @@ def worst(times: list[float]) -> float:
 
 @contextmanager
 def robot(url: str, kind: str) -> Iterator[None]:
-    """The robot in a process of its own, once it is there."""
+    """Run the robot in a process of its own, once it is available."""
     line = [sys.executable, "-m", "lumen", "run", str(ROOT), "--only", "robot", "--robot", kind, "--bus", url]
     with Guarded(line, stdout=PIPE, stdin=DEVNULL, text=True) as process:
         assert process.stdout
@@ -156,7 +156,7 @@ def robot(url: str, kind: str) -> Iterator[None]:
 
 @contextmanager
 def broker(url: str | None) -> Iterator[str]:
-    """The address of the broker that is named, else of a private one."""
+    """Yield the address of the given broker, else of a private one."""
     if url:
         yield url
         return

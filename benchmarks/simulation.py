@@ -1,9 +1,9 @@
-"""How fast the simulated NAO lives: with all that drives it, against bare `mj_step` of the same moments.
+"""Measure the speed of the simulated NAO: with its whole software, compared with bare `mj_step` of the same moments.
 
     python benchmarks/simulation.py
 
-CPU time of the whole process, simulated seconds for each of them. What the servos were told is kept while the robot
-lives, and then told again to a bare `mj_step` from the same beginning, which ends in the same state, bit by bit.
+Figures are simulated seconds per second of CPU time of the whole process. The servos' targets are recorded, and then
+replayed to a bare `mj_step` from the same initial state, which reaches exactly the same final state.
 """
 
 import platform
@@ -36,24 +36,24 @@ SECONDS = 20.0
 BEGINNING = mujoco.mjtState.mjSTATE_INTEGRATION
 
 Told = list[tuple[NDArray[np.float64], NDArray[np.float64]]]
-"""For each control period where the servos were to go, and what they could give."""
+"""For each control period, the targets of the servos and their force limits."""
 
 
 class Pace(NamedTuple):
-    """How many seconds a robot lives in one of CPU time, and how many bare steps of the same moments last."""
+    """Simulated seconds per second of CPU time: of the robot, and of bare steps of the same moments."""
 
     lived: float
     bare: float
 
 
 def against_bare(name: str, robot: SimulatedRobot, live: Callable[[], object]) -> None:
-    """Print how fast the robot lives through `live`, and how fast bare steps go through the same."""
+    """Print the speed of the robot in `live`, and that of bare steps of the same moments."""
     lived, bare = paced(robot, live)
     print(f"{name:<18} {lived:6.1f} x real time   bare {bare:6.1f} x   {lived / bare:.2f} of bare", flush=True)
 
 
 def paced(robot: SimulatedRobot, live: Callable[[], object]) -> Pace:
-    """How fast the robot lives through `live`."""
+    """Return the speed of the robot in `live`, and that of bare steps."""
     world = robot.world
     told: Told = []
     beginning = np.zeros(mujoco.mj_stateSize(world.model, BEGINNING))
@@ -68,7 +68,7 @@ def paced(robot: SimulatedRobot, live: Callable[[], object]) -> Pace:
 
 
 def _listen(world: World, told: Told) -> None:
-    """Keep what the servos are told from now on."""
+    """Record the targets of the servos from now on."""
     step, data, most = world.step, world.data, world.model.actuator_forcerange
 
     def listening() -> None:
@@ -79,7 +79,7 @@ def _listen(world: World, told: Told) -> None:
 
 
 def _bare(world: World, beginning: NDArray[np.float64], told: Told) -> float:
-    """The CPU time [s] of bare steps through what the servos were told."""
+    """Return the CPU time of bare steps with the recorded targets [s]."""
     model, data, steps = world.model, mujoco.MjData(world.model), round(CONTROL_PERIOD / world.model.opt.timestep)
     mujoco.mj_setState(model, data, beginning, BEGINNING)
     mujoco.mj_forward(model, data)
@@ -93,7 +93,7 @@ def _bare(world: World, beginning: NDArray[np.float64], told: Told) -> float:
 
 
 def sensing(robot: SimulatedRobot) -> None:
-    """`SECONDS` with every sense but the camera read at the original's rates."""
+    """Simulate `SECONDS` with every sense except the camera read at the original's rates."""
     for tick in range(round(SECONDS / 0.02)):
         robot.advance(0.02)
         if tick % 3 == 0:
@@ -105,7 +105,7 @@ def sensing(robot: SimulatedRobot) -> None:
 
 
 def performing(robot: SimulatedRobot, command: RobotCommand) -> None:
-    """Live through a command, to its good end."""
+    """Simulate a command to its successful end."""
     robot.start("it", command)
     while not (answers := [event.name for event in robot.poll() if event.name.endswith(".command.it")]):
         robot.advance(0.02)
@@ -113,7 +113,7 @@ def performing(robot: SimulatedRobot, command: RobotCommand) -> None:
 
 
 def touring(project: Project, robot: SimulatedRobot) -> None:
-    """The story of a whole visit, with everything on the bus but images."""
+    """Simulate the story of a whole visit, with everything on the bus except images."""
     blind = replace(project, routes={name: route for name, route in project.routes.items() if name != Sense.IMAGE})
     clock = SimulatedClock(robot.advance)
     rehearsal = rehearse(blind, project.stories[project.story], Setup(robot, clock, robot))
@@ -121,7 +121,7 @@ def touring(project: Project, robot: SimulatedRobot) -> None:
 
 
 class Pictured(NamedTuple):
-    """How many seconds with the camera are lived in one of CPU time, and what became of its images."""
+    """Simulated seconds with the camera per second of CPU time, and the numbers of its images."""
 
     lived: float
     published: int
@@ -129,7 +129,7 @@ class Pictured(NamedTuple):
 
 
 def pictured(project: Project, robot: SimulatedRobot, pace: float) -> Pictured:
-    """`SECONDS` of the story with all senses heard, at so many times real time."""
+    """Simulate `SECONDS` of the story with all senses, at `pace` times real time."""
     setup = Setup(robot, SimulatedClock(robot.advance, pace), robot)
     exhibition = Exhibition(Plan(project, setup, story=project.stories[project.story]))
     exhibition.node.bus.subscribe(project.key_of(Sense.IMAGE), lambda _: None)
@@ -143,7 +143,7 @@ def pictured(project: Project, robot: SimulatedRobot, pace: float) -> Pictured:
 
 
 def frame(robot: SimulatedRobot, size: Size) -> float:
-    """Time to draw a camera image of that size [s]."""
+    """Return the time to render a camera image of that size [s]."""
     image = robot.read(Sense.IMAGE)
     assert isinstance(image, Image)
     image.pixels(size)

@@ -2,8 +2,8 @@
 
     python benchmarks/skills.py [--calls N]
 
-Each figure is printed with its limit. Times of a tick are processor time of the thread that ticks the robot, the others
-wall time.
+Each figure is printed with its limit. Times of a tick are processor times of the thread that ticks the robot, the
+others wall times.
 """
 
 import argparse
@@ -27,7 +27,7 @@ from lumen.project.memoization import _last as memoized
 
 TEN = 10
 PATIENCE = 30.0
-"""The time after which a measurement is given up [s]."""
+"""The timeout of a measurement [s]."""
 HEAD = "import os, subprocess, sys, time\nfrom lumen.skills import skill\n\n@skill\ndef {name}(call):\n"
 MISBEHAVIOURS = (
     "while True: pass",
@@ -64,7 +64,7 @@ def main() -> None:
 
 @contextmanager
 def _acting(bodies: dict[str, str]) -> Iterator[Stage]:
-    """A project with a skill for each of these bodies."""
+    """Yield a project with a skill for each of these bodies."""
     changes = {f"skills/{name}.yaml": ("", f"performed-by: {{python: skills/{name}.py}}\n") for name in bodies}
     changes |= {f"skills/{name}.py": ("", HEAD.format(name=name) + f"    {body}\n") for name, body in bodies.items()}
     with tempfile.TemporaryDirectory() as folder, stage(project_in(Path(folder) / "hall", changes)) as made:
@@ -72,17 +72,17 @@ def _acting(bodies: dict[str, str]) -> Iterator[Stage]:
 
 
 def _first_lines(made: Stage, calls: int) -> list[float]:
-    """The time from a command to the first line that its code prints [s]."""
+    """Return the times from a command to the first line that its code prints [s]."""
     made.perform("act")
     found = []
     for _ in range(calls):
-        time.sleep(0.03)  # of lines that come faster only the first forty in a second are shown
+        time.sleep(0.03)  # only the first forty lines per second are shown
         found.append(_first_line(made))
     return found
 
 
 def _cold(made: Stage, calls: int) -> list[float]:
-    """As `_first_lines`, but each call starts a program."""
+    """Return the times of `_first_lines` if each call starts a program [s]."""
     found = []
     for _ in range(calls):
         for process in made.workshop.processes("act"):
@@ -103,7 +103,7 @@ def _first_line(made: Stage) -> float:
 
 
 def _idle(made: Stage) -> float:
-    """The processor time of the program of an idle skill in 5 s [s]."""
+    """Return the processor time of an idle skill's program in 5 s [s]."""
     (process,) = made.workshop.processes("act")
     stat = Path(f"/proc/{process.pid}/stat")
 
@@ -117,7 +117,7 @@ def _idle(made: Stage) -> float:
 
 
 def _misbehaving(made: Stage) -> tuple[float, float, float]:
-    """The processor time of the ticks that start ten skills and stop them, and how long the stop took [s]."""
+    """Return the processor time of the ticks that start and stop ten skills, and the duration of the stop [s]."""
     ids = [f"d{i}" for i in range(TEN)]
     for i in range(TEN):
         made.executor.start(ids[i], made.command(f"bad{i}"))
@@ -135,7 +135,7 @@ def _misbehaving(made: Stage) -> tuple[float, float, float]:
 
 
 def _reaped(made: Stage) -> float:
-    """The processor time of the most expensive tick while the programs are killed and reaped [s]."""
+    """Return the processor time of the most expensive tick while the programs are killed and reaped [s]."""
     worst, deadline = 0.0, time.monotonic() + 2.0
     while time.monotonic() < deadline:
         worst = max(worst, _tick(made))
@@ -150,7 +150,7 @@ def _tick(made: Stage) -> float:
 
 
 def _lint(skills: int) -> float:
-    """Return by how much each skill of a project prolongs lint [s]."""
+    """Return the additional time of lint for each skill of a project [s]."""
     with tempfile.TemporaryDirectory() as folder:
         root = project_in(Path(folder) / "hall")
         few = _linted(root)

@@ -1,17 +1,17 @@
-"""How many events per second statecharts take: ours, XState's and Python's others, and a plain dict. CPU time, medians.
+"""Measure the events per second of statecharts: Lumen's, XState's, other Python libraries' and a dict's; CPU time.
 
     pip install transitions python-statemachine sismic xstate-statemachine
     python benchmarks/statechart.py
 
-None of the peers is needed by Lumen; one that is missing is reported as not measured. XState runs on Node; npm fetches
-its package into a temporary folder. Machine (a) is a ring of 15, 150 or 1,500 states, of which each event enters the
-next; (b), "regions", is three levels deep, and each event moves both regions of its parallel state. Each event checks a
-guard and assigns one context value: in Lumen the guard is an expression of the YAML, and every event gives a Step, with
-the snapshot before it unchanged, as XState's pure transition function does. "A visit" is the shipped tour of 15 states
-with its `do`, timers, texts and guards, under the events of visit.py.
+Lumen needs none of the other libraries; a missing one is reported as not measured. XState runs on Node; npm installs
+its package in a temporary folder. Machine (a) is a ring of 15, 150 or 1,500 states, in which each event enters the next
+one. Machine (b), "regions", has three levels, and each event moves both regions of its parallel state. Each event
+checks a guard and assigns one context value. In Lumen the guard is an expression of the YAML, and every event gives a
+Step while the snapshot before it is unchanged, as with XState's pure transition function. "A visit" is the shipped tour
+of 15 states with its `do`, timers, texts and guards, with the events of visit.py.
 
-`grows` is by how much one event is dearer at 1,500 states than at 15 [ns]. The control looks one entry of a table up
-and keeps what stands there: what it grows by is the price of memory that no longer fits the processor's first cache.
+`grows` is the additional time of one event at 1,500 states compared with 15 [ns]. The control reads one entry of a
+table and keeps its content: its growth is the cost of memory that exceeds the processor's first cache.
 """
 
 import platform
@@ -32,7 +32,7 @@ Rates = dict[str, float]
 
 
 def sending(machine: Machine) -> Work:
-    """Ours as users have it: an interpreter with its clock, beside XState's actor."""
+    """Return Lumen as users have it: an interpreter with its clock, comparable with XState's actor."""
     interpreter = Interpreter(machine)
     interpreter.start()
 
@@ -46,7 +46,7 @@ def sending(machine: Machine) -> Work:
 
 
 def stepping(machine: Machine) -> Work:
-    """Ours through the pure `step`."""
+    """Return Lumen's pure `step`."""
     go = Event("go")
 
     def work(count: int) -> int:
@@ -76,7 +76,7 @@ def _row(target: str) -> dict[str, Any]:
 
 
 def dict_ring(size: int) -> Work:
-    """The limit: a table from state and event to a guard, an assignment and the next state."""
+    """Return the upper limit: a table from state and event to a guard, an assignment and the next state."""
     table = {(f"s{i}", "go"): (_below, _plus, f"s{(i + 1) % size}") for i in range(size)}
 
     def work(count: int) -> int:
@@ -91,7 +91,7 @@ def dict_ring(size: int) -> Work:
 
 
 def touched_ring(size: int) -> Work:
-    """The control: as many objects for each state as Lumen keeps, visited in the same order, and nothing done."""
+    """Return the control: as many objects for each state as in Lumen, visited in the same order without any work."""
     names = [frozenset((f"s{i}",)) for i in range(size)]
     sides = [(f"s{i}",) for i in range(size)]
     shared = (("n", _plus, None),)
@@ -131,7 +131,7 @@ def ours(way: Callable[[Machine], Work]) -> Rates:
 
 
 def main() -> None:
-    """Print the table; a peer that can't be measured says why."""
+    """Print the table, with the reason for a library that can't be measured."""
     rows: list[tuple[str, Rates | str]] = [("Lumen, Interpreter.send", ours(sending)), ("Lumen, step", ours(stepping))]
     rows += xstate(SIZES)
     for name, package, their_ring, their_regions in PEERS:
@@ -147,7 +147,7 @@ def main() -> None:
 
 
 def show(rows: list[tuple[str, Rates | str]]) -> None:
-    """Print the rates, then each of them over those of XState."""
+    """Print the rates, then each of them relative to XState's."""
     columns = [*(f"{size:,} states" for size in SIZES), "regions"]
     print(f"{'':36}" + "".join(f"{column:>13}" for column in columns) + f"{'grows [ns]':>12}")
     for name, rates in rows:

@@ -1,4 +1,4 @@
-"""Events per second of CPU time."""
+"""Measures events per second of CPU time."""
 
 import gc
 from collections.abc import Callable
@@ -9,9 +9,9 @@ RUNS, SECONDS = 7, 0.25
 
 
 def rate(work: Callable[[int], int]) -> float:
-    """Events per second: the median of several runs of about 0.25 s each, after one to warm up.
+    """Return the events per second: the median of several runs of about 0.25 s each, after one to warm up.
 
-    `work` lets so many events happen and returns how many assignments it made, which has to be the same number.
+    `work` processes that many events and returns the number of its assignments, which must be the same.
     """
     count = 100
     while (spent := _time(work, count)) < SECONDS / 5:

@@ -1,6 +1,6 @@
-"""A visit to the shipped tour as a stream of events: faces five times a second, what is said, and the robot's answers.
+"""A visit to the shipped tour as a stream of events: faces five times per second, sentences, and the robot's answers.
 
-The robot is done with everything at once; timers end when they are due. Every step is the pure `step`.
+The robot finishes everything at once; timers end when they are due. Every step uses the pure `step`.
 """
 
 from collections import deque
@@ -22,7 +22,7 @@ FACES, PERIOD = 10, 0.2
 
 
 def happenings() -> Iterator[Event]:
-    """One visitor after another, without end."""
+    """Yield the events of one visitor after another, without end."""
     number = 0
     while True:
         for text in SAID:
@@ -30,11 +30,11 @@ def happenings() -> Iterator[Event]:
                 number += 1
                 yield Event("face", {"x": 80.0 + number % 40, "y": 120.0}, number * PERIOD)
             yield Event("heard", {"result": text}, number * PERIOD)
-        number += round(60 / PERIOD)  # nobody is there
+        number += round(60 / PERIOD)  # a pause without visitors
 
 
 def tour() -> Work:
-    """Events per second of the tour; each step counts, those of timers and of the robot's answers too."""
+    """Return the tour as work; each step counts, including those of timers and of the robot's answers."""
     machine = Machine.load(TOUR)
 
     def work(count: int) -> int:

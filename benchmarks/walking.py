@@ -2,10 +2,10 @@
 
     python benchmarks/walking.py [--robots N] [--model NAME]
 
-Each robot differs from the model: every link up to 10 % lighter or heavier, friction 0.5 to 1.0, and noisy sensors.
-Speeds are asked for by `move`, for 3 s to get there and 8 s more. `off` is how far from its goal a robot ends,
-`odometry` how far from where it believes to be, each the worst of those still upright; one that is `rested` has stood
-for 12 s before. 2 robots for a look, 20 for the figures.
+Each robot differs from the model: every link is up to 10 % lighter or heavier, friction is 0.5 to 1.0, and sensors are
+noisy. Speeds are requested by `move`, for 3 s of acceleration and 8 s of measurement. `off` is the distance of a
+robot's end from its goal, `odometry` the distance from its estimate, each the worst of those still upright; a `rested`
+robot has stood for 12 s before. 2 robots give an impression, 20 the published figures.
 """
 
 import argparse
@@ -31,7 +31,7 @@ Start = Callable[[int], SimulatedRobot]
 
 
 def fast(name: str, start: Start, robots: int, command: Move, speed: Callable[[Pose], float]) -> None:
-    """Print how fast robots go that are asked for a speed."""
+    """Print the speeds that robots reach for a requested speed."""
     reached = []
     for seed in range(robots):
         robot = start(seed)
@@ -49,7 +49,7 @@ def fast(name: str, start: Start, robots: int, command: Move, speed: Callable[[P
 
 
 def far(name: str, start: Start, robots: int, command: Walk, rest: float = 0.0) -> None:
-    """Print how true robots end that are sent to a place after a `rest` [s], and how true they believe to be."""
+    """Print the errors of robots sent to a place after a `rest` [s], and the errors of their estimates."""
     upright, off, aside, wrong = 0, [0.0], [0.0], [0.0]
     for seed in range(robots):
         robot = start(seed)

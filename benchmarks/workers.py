@@ -2,10 +2,10 @@
 
     python benchmarks/workers.py [--robots 24] [--motion goodbye]
 
-Prints robots a second and the ratio to one process, with all starts: of processes, of the simulation, of models that
-are compiled. Dask's scheduler and workers run here as well, so that more of them than cores bring nothing: what their
-rows show is what the way there costs. That is wall time, since somebody waits: the machine has to be quiet. Processor
-time holds on a crowded one, too: of all processes, those that start included.
+It prints robots per second and the ratio to one process, including all starts: of processes, of the simulation, and of
+compiled models. Dask's scheduler and workers run on this machine too, so more workers than cores have no benefit: their
+rows show the overhead of the cluster. That is wall time, so the machine must be quiet. Processor time is valid on a
+busy machine as well; it is that of all processes, including their starts.
 """
 
 import argparse
@@ -32,7 +32,7 @@ ROOT = Path(__file__).parents[1]
 
 
 def played(workers: Workers, motion: str, robots: int) -> tuple[float, list[object]]:
-    """How long the workers took [s], and what came of each robot, in order."""
+    """Return the duration [s], and the outcome of each robot, in order."""
     project = lumen.load(ROOT)
     found = cases(project)
     case = next(number for number, case in enumerate(found) if case.motion.name == motion)
@@ -44,7 +44,7 @@ def played(workers: Workers, motion: str, robots: int) -> tuple[float, list[obje
 
 
 def main() -> int:
-    """1 where what came of it is not the same everywhere."""
+    """Print the table; return 1 if the outcomes differ."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--robots", type=int, default=24)
     parser.add_argument("--motion", default="goodbye")
