@@ -1,4 +1,4 @@
-"""Which expressions of a package are callables, as far as its annotations, constructors and definitions show it."""
+"""Find the expressions of a package that are callables, by its annotations, constructors and definitions."""
 
 import ast
 from collections import defaultdict
@@ -8,7 +8,7 @@ from functools import cached_property
 from scopes import OWN, Function, Package, Scoped, assigned, is_property, last_word, parameters
 
 MAX_STEPS = 8
-"""A name leads to the value that it was assigned, and that to the next; after so many steps its class is not known."""
+"""Steps from a name to the value assigned to it, and so on, after which its class counts as unknown."""
 
 
 class Held(Enum):
@@ -22,8 +22,8 @@ class Held(Enum):
 class Callables:
     """The callables of a package.
 
-    The class of an expression is looked for in annotations and in the calls that make it. If it is not found, an
-    attribute counts as a callable if it is one in all classes that have an attribute or a method of that name.
+    The class of an expression is derived from annotations and constructor calls. If it is unknown, an attribute counts
+    as a callable if it is one in all classes that have an attribute or a method of that name.
     """
 
     def __init__(self, package: Package) -> None:
@@ -54,7 +54,7 @@ class Callables:
         return collection or self.is_callable(value, at)
 
     def held(self, attribute: ast.Attribute, at: Scoped) -> Held | None:
-        """The kind of value of an attribute, as its class declares it; None if not known. A method is a callable."""
+        """Return the kind of an attribute's value, as its class declares it, else None; a method is a callable."""
         if owner := self._class_of(attribute.value, at):
             for name in self._package.ancestors(owner):
                 if attribute.attr in self._methods[name]:
@@ -69,7 +69,7 @@ class Callables:
         return name in self._everywhere
 
     def kind(self, annotation: ast.expr | None) -> Held:
-        """The kind of values that an annotation allows: a callable, or None, is a callable."""
+        """Return the kind of values that an annotation allows; an optional callable is a callable."""
         match annotation:
             case ast.Constant(value=str(text)):
                 return self.kind(ast.parse(text, mode="eval").body)
@@ -84,7 +84,7 @@ class Callables:
 
     @cached_property
     def _types(self) -> set[str]:
-        """`Callable`, its aliases, and the protocols whose objects are called."""
+        """Return `Callable`, its aliases, and the protocols with a `__call__` method."""
         found = {"Callable"}
         for scoped in self._package.of(ast.Assign):
             value = scoped.node.value
@@ -98,14 +98,14 @@ class Callables:
 
     @cached_property
     def _returning(self) -> set[str]:
-        """The names of the functions that return a callable, or None."""
+        """Return the names of the functions that return a callable, or None."""
         functions = [scoped.node for scoped in self._package.of(ast.FunctionDef, ast.AsyncFunctionDef)]
         other = {each.name for each in functions if self.kind(each.returns) is not Held.CALLABLE}
         return {each.name for each in functions} - other
 
     @cached_property
     def _methods(self) -> dict[str, set[str]]:
-        """The names of the methods of each class, without properties."""
+        """Return the names of the methods of each class, without properties."""
         found: dict[str, set[str]] = defaultdict(set)
         for scoped in self._package.of(ast.FunctionDef, ast.AsyncFunctionDef):
             if scoped.owner and not scoped.functions and not is_property(scoped.node):
@@ -122,7 +122,7 @@ class Callables:
 
     @cached_property
     def _attributes(self) -> dict[str, dict[str, set[Held]]]:
-        """The attributes of each class, with the kinds of values that it gives them."""
+        """Return the attributes of each class, with the kinds of the values that it assigns to them."""
         found: dict[str, dict[str, set[Held]]] = defaultdict(lambda: defaultdict(set))
         for scoped in self._package.of(ast.AnnAssign, ast.Assign, ast.FunctionDef):
             if scoped.owner is None:
@@ -141,7 +141,7 @@ class Callables:
         return found
 
     def _given(self, value: ast.expr | None, at: Scoped) -> Held:
-        """The kind of a value that a class gives to its attribute: a parameter has the kind of its annotation."""
+        """Return the kind of a value that a class assigns to its attribute; a parameter has that of its annotation."""
         if isinstance(value, ast.Name):
             for parameter in (each for function in at.functions for each in parameters(function)):
                 if parameter.arg == value.id:
@@ -150,7 +150,7 @@ class Callables:
 
     @cached_property
     def _everywhere(self) -> dict[str, set[Held]]:
-        """The kinds of values of all attributes of a name, whatever their class."""
+        """Return the kinds of values of all attributes of each name, whatever their class."""
         found: dict[str, set[Held]] = defaultdict(set)
         for own in self._attributes.values():
             for name, kinds in own.items():
@@ -166,7 +166,7 @@ class Callables:
 
     @cached_property
     def _functions(self) -> dict[str, set[str]]:
-        """The names of functions that each file defines, at any depth, or imports from the package."""
+        """Return the names of functions that each file defines, at any depth, or imports from the package."""
         found: dict[str, set[str]] = defaultdict(set)
         for scoped in self._package.of(ast.FunctionDef, ast.AsyncFunctionDef):
             if scoped.owner is None or scoped.functions:
@@ -179,7 +179,7 @@ class Callables:
         return found
 
     def _class_of(self, expression: ast.expr | None, at: Scoped, steps: int = MAX_STEPS) -> str:
-        """The name of the class of an expression; empty if that is not known, or no class of the package."""
+        """Return the name of the class of an expression; empty if it is unknown, or not a class of the package."""
         if steps == 0:
             return ""
         match expression:
@@ -213,7 +213,7 @@ class Callables:
         return self._annotated(annotation) or self._class_of(value, at, steps)
 
     def _annotated(self, annotation: ast.expr | None) -> str:
-        """The class of the package that an annotation names, alone or beside None."""
+        """Return the class of the package that an annotation names, alone or in a union."""
         if isinstance(annotation, ast.BinOp):
             return self._annotated(annotation.left) or self._annotated(annotation.right)
         if isinstance(annotation, ast.Constant) and isinstance(annotation.value, str):
@@ -223,7 +223,7 @@ class Callables:
 
     @cached_property
     def _local(self) -> dict[tuple[int, str], tuple[ast.expr | None, ast.expr | None, Scoped]]:
-        """The names that each function assigns first, with their annotation and value."""
+        """Return the first assignment to each name in a function: its annotation and value."""
         found: dict[tuple[int, str], tuple[ast.expr | None, ast.expr | None, Scoped]] = {}
         for scoped in self._package.of(ast.AnnAssign, ast.Assign):
             for target, value in assigned(scoped.node) if scoped.functions else ():
@@ -234,7 +234,7 @@ class Callables:
 
     @cached_property
     def _made(self) -> dict[tuple[str, str], tuple[ast.expr | None, ast.expr | None, Scoped]]:
-        """The attributes of each class, with their annotation and the value that the class gives them first."""
+        """Return the first assignment to each attribute of a class: its annotation and value."""
         found: dict[tuple[str, str], tuple[ast.expr | None, ast.expr | None, Scoped]] = {}
         for scoped in self._package.of(ast.AnnAssign, ast.Assign):
             for target, value in assigned(scoped.node) if scoped.owner else ():
@@ -252,7 +252,7 @@ def _names(expression: ast.expr) -> list[ast.expr]:
 
 
 def _own_attribute(target: ast.expr, at: Scoped) -> str:
-    """The name of the attribute that a class declares by this target, in its body or on `self`; else empty."""
+    """Return the attribute that a class declares by this target, in its body or on `self`; else empty."""
     if isinstance(target, ast.Name):
         return "" if at.functions else target.id
     own = isinstance(target, ast.Attribute) and isinstance(target.value, ast.Name) and target.value.id in OWN

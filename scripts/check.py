@@ -1,7 +1,7 @@
 """Checks the repository's own order: `python scripts/check.py` lists whatever is out of order; `make check` runs it.
 
-Each check is a loop over files or rows. It yields the name of each and what is wrong with it, empty if nothing is. A
-loop that finds too few things to look at has failed: its pattern no longer matches.
+Each check is a loop over files or rows. It yields the name of each item and its problem, which is empty if there is no
+problem. A loop with too few items has failed: its pattern no longer matches.
 """
 
 import ast
@@ -31,7 +31,7 @@ SIMULATION = {"mujoco", "dm-control", "scipy", "pillow", "imageio-ffmpeg", "matp
 """Packages that the core must not require."""
 PACKAGE_FILES = "https://files.pythonhosted.org/packages/"
 BLOCK_WORDS = {"in", "file", "append", "ends", "physics", "broker", "robot", "network", "by", "not"}
-"""The words to the runner that the fence of a block may carry."""
+"""The words for the runner that are allowed at the fence of a block."""
 
 BLOCK = re.compile(r"(?m)^(?:```|````)[\s\S]*?^(?:```|````)$")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
@@ -40,7 +40,7 @@ RECORD = r"\[\d+\]\([^)]+\)"
 STATUS = re.compile(rf"accepted|(?:accepted, changed by|superseded by) {RECORD}(?: and {RECORD})*")
 
 Looked = tuple[str, str]
-"""The name of a thing and the problem with it, empty if there is none."""
+"""The name of an item and its problem, empty if there is no problem."""
 Check = Callable[[], Iterable[Looked]]
 
 
@@ -188,7 +188,7 @@ def blocks_of_pages_say_what_the_runner_knows() -> Iterator[Looked]:
 
 
 def blocks_of_text_are_compared_or_say_why_not() -> Iterator[Looked]:
-    """Output of a command belongs in a console block, which scripts/documented.py runs."""
+    """Check blocks of text: output of a command belongs in a console block, which scripts/documented.py runs."""
     for page in all_pages():
         for block in blocks(page):
             if block.language == "text":
@@ -203,18 +203,18 @@ def blocks_of_text_are_compared_or_say_why_not() -> Iterator[Looked]:
 
 
 def places_in_files_are_compared() -> Iterator[Looked]:
-    """The lines of a file move: outside of the blocks that are run, no page names one."""
+    """Check that no page names a line of a file outside of the blocks that are run, because lines move."""
     for page in all_pages():
         prose = BLOCK.sub("", page.read_text(encoding="utf-8"))
         yield _name(page), _listed("remove the line number", re.findall(r"[\w*-]+\.(?:yaml|py|md|xml):\d+", prose))
 
 
 def every_key_of_the_files_is_on_a_page() -> Iterator[Looked]:
-    """The page yaml.md, with the pages that it links to, lists all keys of the YAML files."""
+    """Check that yaml.md, with the pages that it links to, lists all keys of the YAML files."""
     pages = "\n".join(page.read_text(encoding="utf-8") for page in sorted(DOCS.glob("*.md")))
     shown = set(re.findall(r"[\w-]+", "\n".join(re.findall(r"`[^`\n]+`|^```[\s\S]*?^```", pages, re.MULTILINE))))
     for file in sorted((ROOT / "schemas").glob("*.schema.json")):
-        if file.name != "message.schema.json":  # whose keys are those of JSON Schema itself
+        if file.name != "message.schema.json":  # its keys are those of JSON Schema itself
             for key in sorted(_keys(json.loads(file.read_text(encoding="utf-8"))) - {"propertyNames"}):
                 yield f"{file.name}: {key}", "" if key in shown else "is on no page of docs/"
 
@@ -228,7 +228,7 @@ def the_page_about_expressions_lists_every_function() -> Iterator[Looked]:
 
 
 def quoted_messages_are_printed() -> Iterator[Looked]:
-    """Messages in the first column of docs/troubleshooting.md are texts of the engine; `…` is an inserted value."""
+    """Check that messages in the first column of docs/troubleshooting.md are texts of the engine; `…` is a value."""
     sources = (ast.parse(file.read_text(encoding="utf-8")) for file in sorted((ROOT / "engine/lumen").rglob("*.py")))
     texts = "\n".join(_message(node) for tree in sources for node in _literals(tree))
     for table in re.findall(
@@ -240,7 +240,7 @@ def quoted_messages_are_printed() -> Iterator[Looked]:
 
 
 def pyyaml_reads_the_shipped_files() -> Iterator[Looked]:
-    """PyYAML has YAML 1.1; tests/house/test_other_readers.py has the npm package, which knows 1.2 as well."""
+    """Check that PyYAML, which implements YAML 1.1, reads the files; tests/house/test_other_readers.py has YAML 1.2."""
     for path in [ROOT / "lumen.yaml", *(f for name in PROJECT_FOLDERS for f in sorted((ROOT / name).rglob("*.yaml")))]:
         try:
             wrong = "" if yaml.safe_load(path.read_text("utf-8")) else "is empty to PyYAML"
@@ -273,7 +273,7 @@ CHECKS: dict[Check, int] = {
     the_page_about_expressions_lists_every_function: 20,
     pyyaml_reads_the_shipped_files: 120,
 }
-"""Each check, and how many things it looks at, at least."""
+"""Each check, and the least number of its items."""
 
 
 def wrong(check: Check, at_least: int) -> list[str]:
@@ -285,7 +285,7 @@ def wrong(check: Check, at_least: int) -> list[str]:
 
 
 def requirements(file: str) -> Iterator[tuple[str, str, int]]:
-    """Name, version and number of hashes of each requirement in a file; a row that is no pin has an empty version."""
+    """Yield name, version and number of hashes of each requirement in a file; an unpinned row has an empty version."""
     text = re.sub(r"(?m)^(#|-r ).*\n", "", (ROOT / file).read_text(encoding="utf-8"))
     for row in text.replace("\\\n", " ").splitlines():
         found = re.match(r"([A-Za-z0-9._-]+)==([^ ;]+)", row)
@@ -298,28 +298,28 @@ def decisions() -> list[Path]:
 
 
 def title_and_status(record: Path) -> tuple[str, str, str]:
-    """The number and title of a decision, and the status below them; what is missing is empty."""
+    """Return the number and title of a decision, and the status below them; missing parts are empty."""
     found = re.match(r"# (\d+) (.+)\n(?:\nStatus: (.+)\n\n)?", record.read_text(encoding="utf-8"))
     number, title, status = found.groups(default="") if found else ("", "", "")
     return number, title, status
 
 
 def anchors(page: Path) -> set[str]:
-    """The anchors of a page's headings, as GitHub and the site make them."""
+    """Return the anchors of a page's headings, as GitHub and the site make them."""
     text = BLOCK.sub("", page.read_text(encoding="utf-8"))
     plain = (re.sub(r"[`*]|\[([^\]]*)\]\([^)]*\)", r"\1", heading) for heading in HEADING.findall(text))
     return {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in plain}
 
 
 def _literals(tree: ast.AST) -> Iterator[ast.AST]:
-    """The nodes of a module except docstrings."""
+    """Yield the nodes of a module except docstrings."""
     nodes = list(ast.walk(tree))
     docstrings = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
     yield from (node for node in nodes if id(node) not in docstrings)
 
 
 def _message(node: ast.AST) -> str:
-    """The text of a literal, without backticks and with `…` for the values in it; empty for other nodes."""
+    """Return the text of a literal, without backticks and with `…` for its values; empty for other nodes."""
     match node:
         case ast.Constant(value=str(text)):
             shown = text
@@ -340,7 +340,7 @@ def _part(part: ast.expr) -> str:
 
 
 def _keys(schema: object) -> set[str]:
-    """The keys that a schema lists, at every depth."""
+    """Return the keys that a schema lists, at every depth."""
     match schema:
         case dict():
             own = schema.get("properties")
@@ -351,7 +351,7 @@ def _keys(schema: object) -> set[str]:
 
 
 def _fences(page: Path) -> list[tuple[str, str]]:
-    """The indent and the language of each block that begins in a page."""
+    """Return the indent and the language of each block that begins in a page."""
     return re.findall(r"(?m)^( *)```(.*)$", page.read_text(encoding="utf-8"))[::2]
 
 

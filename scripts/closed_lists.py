@@ -1,13 +1,13 @@
-"""The lists of a package that every addition edits: they name, one by one, things that are defined elsewhere.
+"""Find the lists of a package that every addition must edit: they name, one by one, things defined elsewhere.
 
 - A *table* at the top level of a file: at least three rows that name functions, classes or modules of other files. A
   thing that all rows name makes the rows and does not count. Bare classes of one module are a union, not a table.
 - *Names* at the top level of a file: at least three texts, of which four fifths name the modules of one folder.
 - A *chain* in a function: branches that compare one value with constants, of which at least two return something and
   make objects of classes from different files.
-- An *enumeration* of which at least three other files tell three or more members apart in one function or statement.
+- An *enumeration* of which at least three other files distinguish three or more members in one function or statement.
 
-Lists to which no package could want to add anything are closed on purpose (`ON_PURPOSE`), and counted apart.
+Lists to which no package could want to add anything are closed on purpose (`ON_PURPOSE`), and counted separately.
 """
 
 import ast
@@ -22,14 +22,14 @@ from source_files import SourceFile, top_level
 ROWS = 3
 """A list of fewer rows is not counted."""
 SHARE = 0.8
-"""The part of a list's texts that have to be modules of one folder."""
+"""The part of a list's texts that must be modules of one folder."""
 FILES = 3
-"""An enumeration is closed if so many other files tell its members apart."""
+"""An enumeration is closed if at least this many other files distinguish its members."""
 CONSTANT = re.compile(r"_?[A-Z][A-Z0-9_]*")
 CLASS = re.compile(r"_?[A-Z]\w*[a-z]\w*")
 
 Things = Mapping[str, str]
-"""The functions, classes and modules that a file imports from the package: its name here, and the module of it."""
+"""The functions, classes and modules that a file imports from the package: the local name, and the module."""
 
 
 ON_PURPOSE: Mapping[tuple[str, str], str] = {
@@ -48,27 +48,27 @@ ON_PURPOSE: Mapping[tuple[str, str], str] = {
     ): "the names in Lumen's own files; those in a package's rows come from its schemas",
     ("robot/command_table.py", "COMMANDS"): "a union that mypy checks (decision 119); packages have rows `verbs`",
 }
-"""Why a list stays closed, by its file and name."""
+"""The reason why a list stays closed, by its file and name."""
 
 
 def closed_lists(package: Package) -> list[Place]:
-    """The lists that must still be opened, in the order of the files."""
+    """Return the lists that must still be opened, in the order of the files."""
     return [place for place in _found(package) if _key(place) not in ON_PURPOSE]
 
 
 def closed_on_purpose(package: Package) -> list[Place]:
-    """The lists that stay closed, each with the reason."""
+    """Return the lists that stay closed, each with the reason."""
     found = [(place, ON_PURPOSE.get(_key(place))) for place in _found(package)]
     return [place._replace(why=f"{place.why.partition(':')[0]}: {reason}") for place, reason in found if reason]
 
 
 def _key(place: Place) -> tuple[str, str]:
-    """The file and the name of a list, as in `table VERBS: GoTo, Language`."""
+    """Return the file and the name of a list, as in `table VERBS: GoTo, Language`."""
     return place.path, place.why.partition(":")[0].rpartition(" ")[2]
 
 
 def _found(package: Package) -> list[Place]:
-    """All such lists, in the order of the files; one that is a table and names is one list."""
+    """Return all such lists, in the order of the files; one that is both a table and names counts once."""
     finders = (tables, names, chains, enumerations)
     found: dict[tuple[str, int], Place] = {}
     for place in (place for find in finders for place in find(package)):
@@ -167,7 +167,7 @@ def _literals(package: Package) -> Iterator[_Literal]:
 
 
 def _constants(file: SourceFile) -> Iterator[tuple[str, ast.expr]]:
-    """The names that a file gives values to at its top level; of `A, B = C = …` the last name."""
+    """Yield the names assigned at a file's top level, with their values; of `A, B = C = …` the last name."""
     for node in top_level(file.tree.body):
         if isinstance(node, ast.Assign | ast.AnnAssign) and node.value:
             pairs = [(target.id, value) for target, value in assigned(node) if isinstance(target, ast.Name) and value]
@@ -175,7 +175,7 @@ def _constants(file: SourceFile) -> Iterator[tuple[str, ast.expr]]:
 
 
 def _imported(package: Package) -> dict[str, dict[str, str]]:
-    """The things of the package that each file imports, by file."""
+    """Return the things of the package that each file imports, by file."""
     found: dict[str, dict[str, str]] = defaultdict(dict)
     modules = {file.module for file in package.files}
     for scoped in package.of(ast.ImportFrom):
@@ -189,7 +189,7 @@ def _imported(package: Package) -> dict[str, dict[str, str]]:
 
 
 def _things(row: ast.expr, things: Things, values: Mapping[str, ast.expr]) -> set[str]:
-    """The things that a row names, itself or by a constant of its file."""
+    """Return the things that a row names, directly or by a constant of its file."""
     found = set()
     for each in ast.walk(row):
         if isinstance(each, ast.Name) and each.id in things:
@@ -200,7 +200,7 @@ def _things(row: ast.expr, things: Things, values: Mapping[str, ast.expr]) -> se
 
 
 def _branches(node: ast.If | ast.Match) -> Iterator[tuple[str, list[ast.stmt]]]:
-    """The bodies of the branches that compare a value with constants, each with that value."""
+    """Yield the bodies of the branches that compare a value with constants, each with that value."""
     if isinstance(node, ast.If):
         values = {_compared(test) for test in ast.walk(node.test)} - {""}
         yield from ((value, node.body) for value in values)
@@ -210,7 +210,7 @@ def _branches(node: ast.If | ast.Match) -> Iterator[tuple[str, list[ast.stmt]]]:
 
 
 def _compared(test: ast.AST) -> str:
-    """The value that a test compares with a constant, or looks for among constants."""
+    """Return the value that a test compares with a constant, or searches among constants."""
     match test:
         case ast.Compare(left=left, ops=[ast.Eq() | ast.In()], comparators=[right]) if _is_constant(right):
             return ast.unparse(left)
@@ -224,7 +224,7 @@ def _is_constant(value: ast.expr) -> bool:
 
 
 def _made(body: Iterable[ast.stmt], things: Things) -> set[str]:
-    """The imported classes, but for exceptions, that a branch makes objects of; none if it returns nothing."""
+    """Return the imported classes, except exceptions, of which a branch makes objects; empty if it returns nothing."""
     nodes = [each for node in body for each in ast.walk(node)]
     if not any(isinstance(each, ast.Return) and each.value for each in nodes):
         return set()
@@ -234,7 +234,7 @@ def _made(body: Iterable[ast.stmt], things: Things) -> set[str]:
 
 
 def _separate(tree: ast.Module) -> Iterator[ast.AST]:
-    """The functions of a file, and its other statements."""
+    """Yield the functions of a file, and its other statements."""
     for node in ast.walk(tree):
         if isinstance(node, Function):
             yield node

@@ -1,6 +1,6 @@
-"""Say which tests are silently not collected: `python scripts/collected.py`, a part of `make check`.
+"""List tests that are silently not collected: `python scripts/collected.py`, a part of `make check`.
 
-It compares the tests that pytest collects with those that are written, and with the floors (`scripts/golden.py tests`).
+It compares the tests that pytest collects with those in the files, and with the floors (`scripts/golden.py tests`).
 """
 
 import sys
@@ -12,7 +12,7 @@ from tests.golden.collected import collected, faults, floors
 
 
 def main() -> int:
-    """Print a sentence for each fault; 1 if there is one."""
+    """Print a sentence for each fault; return 1 if there is any."""
     found = list(faults(collected(), floors()))
     print(*found, sep="\n", end="\n" if found else "", file=sys.stderr)
     return int(bool(found))

@@ -22,7 +22,7 @@ INTRODUCTION = Path(__file__).with_suffix(".md")
 
 
 def written() -> dict[str, str]:
-    """The pages of the docs, by file name."""
+    """Return the pages of the docs, by file name."""
     parser = command_line(subcommands())
     index = "".join(f"- [`lumen {verb}`]({verb}.md): {row.summary}\n" for verb, row in subcommands().items())
     pages = {f"{verb}.md": _page(verb, parser.verbs[verb]) for verb in subcommands()}
@@ -46,7 +46,7 @@ def _page(verb: str, parser: Suggesting) -> str:
 
 
 def _usage(parser: argparse.ArgumentParser) -> str:
-    """As `--help` begins, in lines of a width that does not depend on the terminal or on the Python."""
+    """Return the usage as `--help` prints it, in lines whose width is independent of the terminal and of Python."""
     words, lines = [f"lumen {parser.prog.split()[-1]}"], []
     words += [_in_usage(action) for action in parser._actions if action.help is not argparse.SUPPRESS]
     line = words[0]
@@ -74,7 +74,7 @@ def _table(title: str, actions: list[argparse.Action]) -> Iterator[str]:
 
 
 def _written(action: argparse.Action) -> list[str]:
-    """How it is written: each option with what it takes."""
+    """Return the notations of an option or word, each with its value."""
     takes = "" if action.nargs == 0 else f" {_word(action)}"
     return [f"{name}{takes}" for name in action.option_strings] or [_word(action)]
 

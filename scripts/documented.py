@@ -1,8 +1,8 @@
 """Runs the commands that the documentation shows, and compares their output: `python scripts/documented.py [PAGE ...]`.
 
 A block of ```console has a `$` before each command and the output below it. The blocks of a page are run one after
-another, in a copy of the shipped project. A comment above a block has more, `<!-- run: WORDS -->`, and
-`<!-- $ COMMAND -->` is a step that the reader does by hand before it:
+another, in a copy of the shipped project. A comment above a block has more, `<!-- run: WORDS -->`, and `<!-- $ COMMAND
+-->` is a step that the reader does by hand before it:
 
     in=empty          from here on in an empty folder
     file=PATH         the block below is this file, and is written (with `append=PATH`: added to it)
@@ -40,18 +40,18 @@ from types import MappingProxyType
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))  # for tests/rabbitmq.py
 NOT_RUN = ("drawing", "measured", "recorded")
-"""Why a block of text is not compared."""
+"""Reasons why a block of text is not compared."""
 PROJECT = ("lumen.yaml", "behaviors", "functions", "knowledge", "fuzzy", "motions", "models", "schemas", "examples")
 BEFORE = r"(?:^<!-- \$ (?P<before>.+?) -->\n+)?(?:^<!-- run: (?P<words>.+?) -->\n+)?"
 BLOCK = re.compile(rf"(?m){BEFORE}^```(?P<language>\w+)[^\n]*\n(?P<text>[\s\S]*?)^```$")
 NUMBER = re.compile(r"\d+(?:,\d{3})*(?:\.\d+)?")
 PLACE = re.compile(r"(?<=\.)(yaml|md|xml|py|json)((?::\d+)+)")
-"""The line, and perhaps the column, behind the name of a file."""
+"""The line, and optionally the column, after the name of a file."""
 CLOCK = re.compile(r"^ *\d+:\d\d\.\d  ")
 """The time before a line of a transcript."""
 END = "--- the end of a command:"
 LONGEST = 400.0
-"""How long one block may take [s]."""
+"""The timeout of one block [s]."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ class Shown:
         return self.language == "console" or any((self.before, *map(self.word, ("file", "append", "by"))))
 
     def commands(self) -> list[tuple[str, list[str]]]:
-        """Each command, and the lines that it prints."""
+        """Return each command with the lines of its output."""
         parts = re.split(r"(?m)^\$ ", self.text)[1:]
         return [(command, output.splitlines()) for command, _, output in (part.partition("\n") for part in parts)]
 
@@ -90,13 +90,13 @@ def blocks(page: Path) -> Iterator[Shown]:
 
 
 def available() -> set[str]:
-    """What the machine has of what a block may need."""
+    """Return the facilities of this machine that blocks may need."""
     there = {"physics"} if importlib.util.find_spec("mujoco") else set()
     return there | ({"broker"} if shutil.which("rabbitmq-server") else set())
 
 
 def differing(expected: list[str], printed: list[str]) -> str | None:
-    """The first expected line that was not printed where it should be; None where all is as expected."""
+    """Return the first expected line that is not printed at its place; None if the output is as expected."""
     at, free = 0, False
     for line in expected:
         if line.strip() == "…":
@@ -125,7 +125,7 @@ def same(expected: str, printed: str) -> bool:
 
 
 def _spelled(place: re.Match[str]) -> str:
-    """A line and a column in letters, so that they are no numbers that may differ."""
+    """Return a line and a column in letters, so that they don't count as numbers, which may differ."""
     return place[1] + "".join(chr(ord("a") + int(sign)) if sign.isdigit() else sign for sign in place[2])
 
 
@@ -155,7 +155,7 @@ class Workplace:
         self.here = self.folder
 
     def perform(self, block: Shown) -> Iterator[str]:
-        """Run a block or write its file; what is not as the page says, a line each."""
+        """Run a block or write its file; yield a line for each difference from the page."""
         if block.word("in") == "empty":
             self.here = self.empty
         if block.before:
@@ -187,7 +187,7 @@ class Workplace:
     def _run(
         self, commands: list[str], variables: Mapping[str, str] = MappingProxyType({})
     ) -> list[tuple[list[str], int]]:
-        """What each command printed, with its exit code; what was started in the background ends with the block."""
+        """Return each command's output and exit code; background processes end with the block."""
         where = self.folder.parent / "where"
         script = "".join(f"{command}\nprintf '\\n%s %d\\n' '{END}' $?\n" for command in commands) + f"pwd >{where}\n"
         path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
@@ -215,7 +215,7 @@ class Workplace:
 
 @contextlib.contextmanager
 def broker() -> Iterator[str]:
-    """A RabbitMQ of our own on loopback, by its address."""
+    """Yield the address of a private RabbitMQ on loopback."""
     from tests.rabbitmq import RabbitMQ
 
     rabbitmq = RabbitMQ()
@@ -227,7 +227,7 @@ def broker() -> Iterator[str]:
 
 
 def check(page: Path, there: set[str], bus: str = "") -> tuple[int, list[str], list[str]]:
-    """How many commands of a page were run, what was not as it says, and what was left out."""
+    """Return the number of commands of a page that were run, the differences, and the blocks that were left out."""
     shown = [block for block in blocks(page) if block.runs]
     count, wrong, left = 0, [], []
     if not any((block.language == "console" or block.word("by")) and block.needs <= there for block in shown):

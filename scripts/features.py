@@ -1,4 +1,4 @@
-"""Whether each capability is in one folder: imports of features, and modules that are too small."""
+"""Check that each capability is in one folder: imports of features, and modules that are too small."""
 
 import ast
 from collections import defaultdict
@@ -8,7 +8,7 @@ from scopes import Place
 from source_files import SourceFile
 
 SMALL = 50
-"""A module of fewer lines needs a second reader, or a reason."""
+"""A module with fewer lines needs a second reader, or a reason."""
 ALONE: Mapping[str, str] = {
     "cli/report.py": "imported only after a fault, with the modules that describe it",
     "features/answers/meaning.py": "knows numpy only for types: the retriever imports it when vectors are there",
@@ -17,7 +17,7 @@ ALONE: Mapping[str, str] = {
     "features/naoqi/offers.py": "the names that the robot's row may import without a connection",
     "features/simulation/tactile_sensors.py": "with it the robot's own file would have more than 450 lines",
 }
-"""Small modules with one reader, and why they are files of their own."""
+"""Small modules with one reader, and why they are separate files."""
 SHARED: Mapping[str, str] = {
     "motion/gait/swing.py": "part of the gait, which the simulation follows",
     "project/formats/behavior_data.py": "what every reader of charts of other tools needs, also one of a package",
@@ -27,27 +27,27 @@ SHARED: Mapping[str, str] = {
     "run/captions.py": "the words of a transcript, which pictures of charts show too",
     "run/new_saying.py": "saved files, as `run/new_passage.py`, beside which it is read",
 }
-"""Modules of the core that only one feature imports, and why they are core."""
+"""Modules of the core that only one feature imports, and why they belong to the core."""
 
 
 def imports_by_core(files: Sequence[SourceFile]) -> Iterator[Place]:
-    """The imports of features by the core."""
+    """Yield the imports of features by the core."""
     for file, line, name in _imports(files):
         if _feature(file) is None:
             yield Place(file, line, f"imports {name}")
 
 
 def imports_by_features(files: Sequence[SourceFile]) -> Iterator[Place]:
-    """The imports of one feature by another."""
+    """Yield the imports of one feature by another."""
     for file, line, name in _imports(files):
         if (own := _feature(file)) is not None and own != name.split(".")[2]:
             yield Place(file, line, f"imports {name}")
 
 
 def small_modules(files: Sequence[SourceFile]) -> Iterator[Place]:
-    """The modules of fewer than `SMALL` lines that only a module of the same folder imports, without a reason.
+    """Yield the modules with fewer than `SMALL` lines that only a module of the same folder imports, without a reason.
 
-    One that an import string names has a reader elsewhere.
+    A module named by an import string has a reader elsewhere.
     """
     sizes = {file.path: file.text.count("\n") for file in files if not file.path.endswith("__init__.py")}
     readers: dict[str, set[str]] = defaultdict(set)
@@ -71,7 +71,7 @@ def small_modules(files: Sequence[SourceFile]) -> Iterator[Place]:
 
 
 def files_elsewhere(files: Sequence[SourceFile]) -> Iterator[Place]:
-    """The modules of the core that belong to one feature: only modules in its folder name them, without a reason."""
+    """Yield the modules of the core that only modules in one feature's folder name, without a reason."""
     paths = {file.module: file.path for file in files}
     readers: dict[str, set[str | None]] = defaultdict(set)
     for file in files:
@@ -85,7 +85,7 @@ def files_elsewhere(files: Sequence[SourceFile]) -> Iterator[Place]:
 
 
 def elsewhere_by_feature(files: Sequence[SourceFile]) -> dict[str, list[str]]:
-    """Each feature with the files of it that are not in its folder."""
+    """Return each feature with its files outside of its folder."""
     found: dict[str, list[str]] = {name: [] for file in files if (name := _feature(file.path)) is not None}
     for place in files_elsewhere(files):
         found[place.why.removeprefix("belongs to features/").partition(":")[0]].append(place.path)
@@ -93,7 +93,7 @@ def elsewhere_by_feature(files: Sequence[SourceFile]) -> dict[str, list[str]]:
 
 
 def _named(file: SourceFile) -> Iterator[str]:
-    """The modules that a file may name: by an import, or by an import string."""
+    """Yield the modules that a file may name: in an import, or in an import string."""
     for node in ast.walk(file.tree):
         if isinstance(node, ast.ImportFrom) and node.module:
             yield from (node.module, *(f"{node.module}.{alias.name}" for alias in node.names))
@@ -104,7 +104,7 @@ def _named(file: SourceFile) -> Iterator[str]:
 
 
 def _imports(files: Sequence[SourceFile]) -> Iterator[tuple[str, int, str]]:
-    """File, line and module of each import of a module in a feature's folder."""
+    """Yield file, line and module of each import of a module in a feature's folder."""
     folders = {path.split("/")[1] for file in files if (path := file.path).count("/") > 1 and _feature(path)}
     for file in files:
         for node in ast.walk(file.tree):
@@ -117,7 +117,7 @@ def _imports(files: Sequence[SourceFile]) -> Iterator[tuple[str, int, str]]:
 
 
 def _feature(path: str) -> str | None:
-    """The feature in whose folder a file is; None for a file of the core."""
+    """Return the feature in whose folder a file is; None for a file of the core."""
     parts = path.split("/")
     return parts[1] if parts[0] == "features" and len(parts) > 2 else None
 

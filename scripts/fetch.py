@@ -1,6 +1,6 @@
-"""Fetch the folders of scripts/fetched.txt that are not there yet: `python scripts/fetch.py [FOLDER …]`. Needs npm.
+"""Fetch the missing folders of scripts/fetched.txt: `python scripts/fetch.py [FOLDER …]`. Needs npm.
 
-Whoever comes second, in another terminal or another worker of pytest, waits until the first is done.
+A second call in another terminal or another worker of pytest waits until the first is done.
 """
 
 import fcntl
@@ -32,18 +32,18 @@ class Package(NamedTuple):
 
     @property
     def stamp(self) -> Path:
-        """The file that is there once it has been fetched."""
+        """Return the file that exists once the package has been fetched."""
         return ROOT / self.folder / self.version
 
 
 def main() -> str | None:
-    """Fetch what is missing; what to say where that cannot be done."""
+    """Fetch the missing packages; return the reason if that is impossible."""
     wanted = tuple(sys.argv[1:]) or (".cache/",)
     rows = [line.split() for line in (ROOT / "scripts/fetched.txt").read_text().splitlines()]
     packages = [Package(*row) for row in rows if row and row[0].startswith(wanted)]
     missing = MISSING.read_text().splitlines() if MISSING.exists() else []
     if not sys.argv[1:] and not shutil.which("npm") and any(line.startswith("npm ") for line in missing):
-        return None  # scripts/packages.sh has said so, and the tests that need it are left out
+        return None  # scripts/packages.sh has reported that, and the tests that need it are left out
     if all(package.stamp.exists() for package in packages):
         return None
     CACHE.mkdir(exist_ok=True)
@@ -53,7 +53,7 @@ def main() -> str | None:
 
 
 def fetch(packages: list[Package]) -> str | None:
-    """Have npm download their archives, and unpack them; what to say where that fails."""
+    """Download the archives with npm, and unpack them; return the reason if that fails."""
     if not packages:
         return None
     if not shutil.which("npm"):
@@ -75,7 +75,7 @@ def fetch(packages: list[Package]) -> str | None:
 
 
 def unpack(archive: Path, package: Package) -> None:
-    """Put what the archive's only folder holds where the package belongs."""
+    """Move the content of the archive's only folder to the package's place."""
     unpacked = archive.with_suffix("")
     shutil.unpack_archive(archive, unpacked)
     (content,) = unpacked.iterdir()

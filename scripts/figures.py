@@ -1,7 +1,7 @@
-"""The figures of the architecture: how an exhibition is put together, and how long and wide the code is.
+"""The figures of the architecture: the composition of an exhibition, and the lengths and widths of the code.
 
 Each is counted by a rule from the code alone; the rules are in wiring.py, closed_lists.py, features.py and below.
-tests/house holds them: ceilings.yaml lists the greatest value that each may have.
+tests/house checks them: ceilings.yaml lists the greatest allowed value of each.
 """
 
 import ast
@@ -19,25 +19,25 @@ from source_files import SourceFile, statements
 from wiring import added_callables, assigned_callables, composition_sites, seam_probes, storing_methods
 
 LONG = 50
-"""Functions of more lines are listed."""
+"""Functions with more lines are listed."""
 WIDE = 8
-"""Functions of more parameters are counted, without the object or class that a method belongs to."""
+"""Functions with more parameters are counted, without the object or class to which a method belongs."""
 STEPS = {"statements": 500}
-"""The ceilings of these figures are multiples, so that not every change of the code changes them."""
+"""The ceilings of these figures are multiples of a step, so that small changes of the code don't change them."""
 CEILINGS = "tests/house/ceilings.yaml"
 TOP_LEVEL = "top-level files"
 NO_FORMAT = re.compile(r"#\s*fmt:\s*(skip|off)")
 
 
 class Figure(NamedTuple):
-    """A figure, and a line for each thing that it counts."""
+    """A figure, and a line for each item that it counts."""
 
     value: int
     counted: Sequence[object]
 
 
 def figures(files: Sequence[SourceFile]) -> dict[str, Figure]:
-    """All figures by name. Raises LookupError if the package has no parts and nodes to be composed."""
+    """Return all figures by name. Raises LookupError if the package lacks the classes `Part` or `Node`."""
     package = Package(files)
     callables = Callables(package)
     long = sorted(long_functions(package), reverse=True)
@@ -68,14 +68,14 @@ def _number(places: Iterable[Place]) -> Figure:
 
 
 def long_functions(package: Package) -> Iterator[tuple[int, Place]]:
-    """All functions, each with its lines from `def` to its end."""
+    """Yield all functions, each with its number of lines from `def` to its end."""
     for scoped in package.of(ast.FunctionDef, ast.AsyncFunctionDef):
         lines = (scoped.node.end_lineno or scoped.node.lineno) - scoped.node.lineno + 1
         yield lines, scoped.place(scoped.node.name)
 
 
 def wide_functions(package: Package) -> Iterator[Place]:
-    """The functions of more than `WIDE` parameters."""
+    """Yield the functions with more than `WIDE` parameters."""
     for scoped in package.of(ast.FunctionDef, ast.AsyncFunctionDef):
         if (number := len(parameters(scoped.node))) > WIDE:
             owner = f"{scoped.owner.name}." if scoped.owner else ""
@@ -83,7 +83,7 @@ def wide_functions(package: Package) -> Iterator[Place]:
 
 
 def unformatted_statements(files: Iterable[SourceFile]) -> Iterator[Place]:
-    """The lines that the formatter leaves as they are."""
+    """Yield the lines that are excluded from formatting."""
     for file in files:
         for number, line in enumerate(file.text.splitlines(), 1):
             if NO_FORMAT.search(line):
@@ -91,7 +91,7 @@ def unformatted_statements(files: Iterable[SourceFile]) -> Iterator[Place]:
 
 
 def folder_sizes(files: Iterable[SourceFile]) -> Counter[str]:
-    """The statements in each folder of the package; those of its own files are counted as its `TOP_LEVEL`."""
+    """Return the number of statements in each folder of the package; its own files are its `TOP_LEVEL`."""
     found: Counter[str] = Counter()
     for file in files:
         found[file.path.partition("/")[0] if "/" in file.path else TOP_LEVEL] += statement_count(file)
@@ -99,7 +99,7 @@ def folder_sizes(files: Iterable[SourceFile]) -> Counter[str]:
 
 
 def statement_count(file: SourceFile) -> int:
-    """The statements of a file, without imports and without bare texts, which are docstrings."""
+    """Return the number of statements of a file, without imports and without bare texts, which are docstrings."""
     return sum(isinstance(node, ast.stmt) and not _is_uncounted(node) for node in statements(file.tree))
 
 
@@ -109,7 +109,7 @@ def _is_uncounted(node: ast.stmt) -> bool:
 
 
 def beyond_ceilings(figures: Mapping[str, Figure], ceilings: Mapping[str, int]) -> list[str]:
-    """The figures that are above their ceiling, with all that they count, or below it, with the ceiling to write."""
+    """Return the figures above their ceiling, with all items, and those below it, with the ceiling to write."""
     found = []
     for name in {**figures, **ceilings}:
         if name not in figures or name not in ceilings:
@@ -127,12 +127,12 @@ def beyond_ceilings(figures: Mapping[str, Figure], ceilings: Mapping[str, int]) 
 
 
 def values(found: Mapping[str, Figure]) -> str:
-    """A line for each figure: its value and its name."""
+    """Return a line for each figure: its value and its name."""
     return "\n".join(f"{figure.value:>8,}  {name}" for name, figure in found.items())
 
 
 def compared(there: Sequence[SourceFile], here: Sequence[SourceFile]) -> str:
-    """A line for each figure, and for the statements of each folder: the value there, the value here, and the name."""
+    """Return a line for each figure, and for the statements of each folder: both values, and the name."""
     before, now = _with_folders(there), _with_folders(here)
     rows = [(f"{before.get(name, 0):,}", f"{now.get(name, 0):,}", name) for name in {**now, **before}]
     return "\n".join(f"{old:>8} {new:>8}  {name}".rstrip() for old, new, name in [("there", "here", ""), *rows])

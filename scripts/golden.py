@@ -1,7 +1,7 @@
 """Record goldens: `python scripts/golden.py [SUBJECT …]`, all of them by default.
 
-A recording changes only in a commit of its own, with its reason in docs/decisions/.
-`tests` is no subject: it makes the number of tests of now the floor that `scripts/collected.py` compares with.
+A recording changes only in a commit of its own, with its reason in docs/decisions/. `tests` is no subject: it makes the
+present number of tests the floor with which `scripts/collected.py` compares.
 """
 
 import shutil
@@ -19,7 +19,7 @@ COUNTED = "tests"
 
 
 def main(wanted: list[str]) -> int:
-    """Record the subjects and print what changed; 2 for an unknown name."""
+    """Record the subjects and print the changes; return 2 for an unknown name."""
     if unknown := sorted(set(wanted) - {*names(), COUNTED}):
         print(f"unknown {', '.join(unknown)}: choose from {', '.join([*names(), COUNTED])}", file=sys.stderr)
         return 2

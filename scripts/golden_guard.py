@@ -1,10 +1,10 @@
-"""Refuse a golden that changes unseen: `python scripts/golden_guard.py` looks at each commit of this branch.
+"""Refuse a golden that changes unseen: `python scripts/golden_guard.py` checks each commit of this branch.
 
-Looked at are the commits since the common ancestor with `origin/main` or `main` (if there are none, the last one), and
-what is not committed, as one more commit. Refused are:
+It checks the commits since the common ancestor with `origin/main` or `main` (if there are none, the last one), and the
+uncommitted changes as one more commit. It refuses:
 
 - a change under tests/golden/recorded/ together with more than 50 changed lines of engine/;
-- a recording that changes or goes without a record that is added or changed under docs/decisions/.
+- a changed or deleted recording without an added or changed record under docs/decisions/.
 
 A first recording needs no record, and neither does a floor of the counted tests that rises.
 """
@@ -23,7 +23,7 @@ FLOORS = f"{RECORDED}collected/floors.json"
 DECISIONS = "docs/decisions/"
 ENGINE = "engine/"
 MOST_LINES = 50
-"""Of the engine, added and removed together: more than that moves or rewrites something."""
+"""Lines of the engine, added and removed together: a larger change moves or rewrites something."""
 
 
 class Change(NamedTuple):
@@ -35,7 +35,7 @@ class Change(NamedTuple):
 
 
 def main(root: Path) -> int:
-    """Print a sentence for each commit that is refused; 1 if there is one."""
+    """Print a sentence for each refused commit; return 1 if there is any."""
     if not _git(root, "rev-parse", "--git-dir"):
         print("no git repository: changes of goldens are not checked", file=sys.stderr)
         return 0
@@ -45,7 +45,7 @@ def main(root: Path) -> int:
 
 
 def _commits(root: Path) -> Iterator[tuple[str, list[Change]]]:
-    """Yield the name of each commit, the work tree last, and what it changed."""
+    """Yield the name of each commit, the work tree last, with its changes."""
     head = _git(root, "rev-parse", "--verify", "HEAD")
     bases = [found for name in ("origin/main", "main") for found in _git(root, "merge-base", "HEAD", name)]
     base = [one for one in bases if [one] != head][:1] or _git(root, "rev-parse", "--verify", "HEAD~1")
@@ -64,7 +64,7 @@ def _changes(root: Path, *between: str) -> list[Change]:
 
 
 def _numbers(root: Path, words: tuple[str, ...]) -> Iterator[tuple[str, str, str]]:
-    """Yield lines added, lines removed and path of each file; of one that was only moved none are."""
+    """Yield lines added, lines removed and path of each file; a file that only moved has 0 lines."""
     fields = iter("\n".join(_git(root, *words, "--numstat", "-z")).split("\0"))
     for field in fields:
         if field:
@@ -93,7 +93,7 @@ def _faults(root: Path, name: str, changes: list[Change]) -> Iterator[str]:
 
 
 def _rises(root: Path, name: str, change: Change) -> bool:
-    """Return whether these are floors, of which none falls."""
+    """Return True if the change is one of the floors, of which none falls."""
     if change.path != FLOORS or change.kind != "M":
         return False
     worktree = " " in name

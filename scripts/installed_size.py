@@ -1,8 +1,7 @@
-"""Print what Lumen takes on the disk: `python scripts/installed_size.py [EXTRA …]`, first the core, then each with it.
+"""Print the size of Lumen on the disk: `python scripts/installed_size.py [EXTRA …]`, of the core, then with each extra.
 
-A wheel is built from this checkout and installed into an environment that holds nothing else, not even pip. Counted are
-the files of the packages; the bytecode that Python keeps beside them is told on its own, since not every installer
-compiles it.
+A wheel is built from this checkout and installed in an environment that is otherwise empty, even of pip. The size is
+that of the packages' files; the size of Python's bytecode is printed separately, since not every installer compiles it.
 """
 
 import subprocess
@@ -16,7 +15,7 @@ PIP = (sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet")
 
 
 class Size(NamedTuple):
-    """What an environment holds: [MB] of files without bytecode, [MB] of bytecode, and how many packages."""
+    """The content of an environment: [MB] of files without bytecode, [MB] of bytecode, and the number of packages."""
 
     files: float
     bytecode: float
@@ -27,7 +26,7 @@ class Size(NamedTuple):
 
 
 def main() -> None:
-    """One line for the core and one for each extra."""
+    """Print one line for the core and one for each extra."""
     with tempfile.TemporaryDirectory() as folder:
         wheel = build(Path(folder))
         for extra in ("", *sys.argv[1:]):
@@ -37,25 +36,25 @@ def main() -> None:
 
 
 def build(folder: Path) -> Path:
-    """The wheel of this checkout, built there with what the pinned requirements installed here."""
+    """Return the wheel of this checkout, built there with the pinned requirements installed here."""
     command = [*PIP, "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", str(folder), str(ROOT)]
     subprocess.run(command, check=True)
     return next(folder.glob("lumen_robot-*.whl"))
 
 
 def environment(folder: Path) -> Path:
-    """The Python of a new environment that is empty."""
+    """Make an empty environment; return its Python."""
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
     return folder / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
 
 
 def install(python: Path, *what: str) -> None:
-    """Have our pip install that into another environment."""
+    """Install packages in another environment with the pip of this one."""
     subprocess.run([*PIP, "--python", str(python), "install", *what], check=True)
 
 
 def size(python: Path) -> Size:
-    """What was installed into an environment."""
+    """Return the size of the packages in an environment."""
     code = "import sysconfig; print(sysconfig.get_path('purelib'))"
     packages = Path(subprocess.run([python, "-c", code], check=True, capture_output=True, text=True).stdout.strip())
     files = [(file.suffix == ".pyc", file.stat().st_size / 1e6) for file in packages.rglob("*") if file.is_file()]

@@ -22,7 +22,7 @@ from packaging.utils import parse_wheel_filename
 ROOT = Path(__file__).parents[1]
 LOCK = ROOT / "locks/pylock.toml"
 PYTHON = "3.11"
-"""The oldest that Lumen runs on."""
+"""The oldest Python that Lumen supports."""
 
 
 class Group(NamedTuple):
@@ -93,7 +93,7 @@ def pins(lock: Mapping[str, Any]) -> Pins:
 
 
 def required() -> dict[str, list[str]]:
-    """Return what pyproject.toml requires for each group, without what Lumen's extras require of each other."""
+    """Return the requirements of each group in pyproject.toml, without those between Lumen's own extras."""
     whole = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
     extras, groups = whole["project"]["optional-dependencies"], whole["dependency-groups"]
     lines = {
@@ -121,7 +121,7 @@ def _head(subject: str) -> str:
 
 
 def _rows(lock: Mapping[str, Any], group: str) -> Iterator[str]:
-    """Yield what a group adds to those before it, a package a row."""
+    """Yield the packages that a group adds to those before it, one per row."""
     for package in lock["packages"]:
         clauses = {clause[1]: clause[2] for clause in CLAUSE.finditer(package["marker"])}
         if group in clauses:
@@ -150,7 +150,7 @@ def _files(everything: Pins) -> list[dict[str, Any]]:
 
 
 def _uv(form: str, group: str, versions: Pins, *bound: str) -> str:
-    """Return what uv writes in this form for a group and those before it."""
+    """Return uv's output in this form for a group and those before it."""
     names = list(GROUPS)[: list(GROUPS).index(group) + 1]
     wanted = [f"--extra={extra}" for name in names for extra in GROUPS[name].extras]
     wanted += [f"--group={one}" for name in names for one in GROUPS[name].groups]

@@ -1,4 +1,4 @@
-"""Measure a command, on the wall and in processor time: `python scripts/measured.py COMMAND …`.
+"""Measure the wall time and the processor time of a command: `python scripts/measured.py COMMAND …`.
 
 The processor time is that of all processes that it starts.
 """
@@ -17,11 +17,11 @@ from typing import NamedTuple
 
 PR_SET_CHILD_SUBREAPER = 36
 PATIENCE = 60.0
-"""How long what a command leaves behind may take to end by itself [s]."""
+"""The time that remaining processes have to end by themselves [s]."""
 
 
 class Measured(NamedTuple):
-    """A command's exit code, and its times on the wall and of the processor [s]."""
+    """A command's exit code, its wall time and its processor time [s]."""
 
     code: int
     wall: float
@@ -49,7 +49,7 @@ def measured(command: Sequence[str], environment: Mapping[str, str] | None = Non
 
 
 def _left(deadline: float) -> list[str]:
-    """Wait for the orphans; kill and return those that are there after the deadline."""
+    """Wait for the orphans; kill and return those that still exist after the deadline."""
     killed: list[str] = []
     while True:
         try:

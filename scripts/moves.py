@@ -35,12 +35,12 @@ PYTHON = (".py", ".pyi")
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """The rows of moves.toml. A path ends in `/` if it is a folder; the row of the longest path counts for a file."""
+    """The rows of moves.toml. A path ends in `/` if it is a folder; the row with the longest matching path applies."""
 
     stages: Mapping[str, Mapping[str, str]]
     stays: Sequence[str]
     packages: Mapping[str, str]
-    """The docstrings of packages that are new."""
+    """The docstrings of new packages."""
     texts: Sequence[str]
     """Files in which names are rewritten in strings, comments and prose."""
     leave: Sequence[str]
@@ -52,7 +52,7 @@ class Plan:
         return cls(data["stages"], data["stays"], data.get("packages", {}), data["texts"], data["leave"])
 
     def rows(self) -> dict[str, str]:
-        """Return all rows: what is moved, and where to."""
+        """Return all rows: the sources and their targets."""
         return {source: target for rows in self.stages.values() for source, target in rows.items()}
 
     def row(self, path: str) -> str | None:
@@ -71,7 +71,7 @@ def _below(row: str, target: str, path: str) -> str:
 
 
 def problems(plan: Plan, files: Sequence[str], exports: Mapping[str, Sequence[str]]) -> list[str]:
-    """Return what is wrong with a plan for these files; `exports` are the public names by packages' new folders."""
+    """Return the problems of a plan for these files; `exports` are the public names by packages' new folders."""
     rows = plan.rows()
     homes = {*plan.stays, *rows.values(), *(f"{package}/__init__.py" for package in plan.packages)}
     found = {path: plan.row(path) for path in files}
@@ -107,7 +107,7 @@ def exports(plan: Plan, package: Path, files: Iterable[str]) -> dict[str, list[s
 
 
 def waits(plan: Plan, files: Collection[str]) -> list[str]:
-    """Return the files that stay until their folder is empty: those that go, and what keeps the rest a package.
+    """Return the files that stay until their folder is empty: those to delete, and those that keep the rest a package.
 
     A stage that moves the `__init__.py` of a folder whose other files move later leaves an empty one.
     """
@@ -154,7 +154,7 @@ class Mover:
         return [name.removeprefix(f"{folder}/") for name in listed if name and (self.root / name).is_file()]
 
     def problems(self) -> list[str]:
-        """Return what is wrong with the plan in this checkout."""
+        """Return the problems of the plan in this checkout."""
         files = self.tracked(PACKAGE)
         return problems(self.plan, files, exports(self.plan, self.root / PACKAGE, files))
 
@@ -164,7 +164,7 @@ class Mover:
         return next((name for name in names[: names.index(stage)] if moves(self.plan, name, files)), None)
 
     def carry_out(self, stage: str) -> None:
-        """Move the files of a stage, and rewrite what names them."""
+        """Move the files of a stage, and rewrite the references to them."""
         before = self.tracked(PACKAGE)
         self._origins = {
             f"{PACKAGE}/{now}": f"{PACKAGE}/{then}"
@@ -198,7 +198,7 @@ class Mover:
                 print(f"{target} differs so much that git does not follow it to {origins[target]}")
 
     def _offered(self, files: Iterable[str]) -> Iterator[str]:
-        """Return the names in `__all__` of each package, below the package as it is called before a stage."""
+        """Return the names in `__all__` of each package, with the package's name before a stage."""
         for path in files:
             if PurePosixPath(path).name == "__init__.py":
                 origin = self._origins.get(f"{PACKAGE}/{path}", f"{PACKAGE}/{path}").removeprefix(f"{PACKAGE}/")
@@ -206,7 +206,7 @@ class Mover:
                     yield from (f"{module_of(each)}.{name}" for each in (path, origin))
 
     def _rewrite(self, name: str, goal: str | None, moved: Moved) -> bool:
-        """Rewrite the references in a file; `goal` is the new path of one that moves. Return whether there were any."""
+        """Rewrite the references in a file; `goal` is the new path of one that moves. Return True if there were any."""
         file = self.root / name
         try:
             text = file.read_text("utf-8")
@@ -246,7 +246,7 @@ class Mover:
         self._git("mv", "--", source, target)
 
     def _new_packages(self, targets: Iterable[str]) -> None:
-        """Write the `__init__.py` of each new package that no file becomes."""
+        """Write the `__init__.py` of each new package, unless a file becomes it."""
         python = {folder for target in targets if target.endswith(PYTHON) for folder in PurePosixPath(target).parents}
         data = {
             folder
@@ -282,7 +282,7 @@ class Mover:
         return gone
 
     def _tidy(self, folders: Iterable[PurePosixPath]) -> None:
-        """Delete folders that hold nothing but compiled Python: to an import they are packages."""
+        """Delete folders that contain only compiled Python, because an import would treat them as packages."""
         for folder in sorted(folders, key=lambda folder: -len(folder.parts)):
             place = self.root / PACKAGE / folder
             if place.is_dir() and not [file for file in place.rglob("*") if file.is_file() and file.suffix != ".pyc"]:

@@ -39,20 +39,20 @@ EQUIVALENT = Path(__file__).with_name("equivalent_mutants.yaml")
 BUDGET = 60.0
 """Processor time of a mutant [s]."""
 IDLE = 600.0
-"""The limit on the wall for a test that does not end [s]."""
+"""The wall time after which a hanging test is ended [s]."""
 HANGS = (10.0, 10.0)
-"""A test hangs if it takes longer than this [s] and so many times as long as in the recording."""
+"""A test hangs if it takes longer than this [s] and this many times as long as in the recording."""
 OVERHEAD = 0.005
 """The time that pytest itself adds to each test [s]."""
 BATCHES = (0.5, 4.0, 20.0)
-"""After how much recorded time the next tests are collected [s]: most mutants die before."""
+"""Recorded times after which the next tests are collected [s]: most mutants die before."""
 CLASSES = (0.05, 0.5, 5.0)
 """Tests of about the same cost run file by file, as they share fixtures [s]."""
 COLUMNS = ("mutants", "test", "all", "hangs", "not executed", "survived", "equivalent", "% test", "% all")
 
 
 class Mutant(NamedTuple):
-    """A change of a statement of a file; `before` and `after` show it."""
+    """A change of a statement in a file; `before` and `after` show it."""
 
     file: str
     statement: Statement
@@ -68,7 +68,7 @@ class Mutant(NamedTuple):
         return f"{self.file}:{self.line} {self.before} -> {self.after}"
 
     def described(self) -> dict[str, Any]:
-        """The row that is kept of it; `file`, `in` and `change` find it again among the equivalent ones."""
+        """Return the row to store; `file`, `in` and `change` identify it among the equivalent mutants."""
         inner = self.file.removeprefix(f"{ENGINE}/")
         folder = inner.partition("/")[0] if "/" in inner else "."
         change = f"{self.before} -> {self.after}"
@@ -76,7 +76,7 @@ class Mutant(NamedTuple):
 
 
 class Engine:
-    """The sources of the engine, and where in its functions a name is used."""
+    """The sources of the engine, and where its functions use each name."""
 
     def __init__(self, root: Path = ROOT) -> None:
         files = sorted((root / ENGINE).rglob("*.py"))
@@ -84,7 +84,7 @@ class Engine:
 
     @cached_property
     def uses(self) -> Mapping[str, Mapping[str, set[int]]]:
-        """By name: the files and lines of functions that use it."""
+        """Return by name the files and lines of functions that use it."""
         found: dict[str, dict[str, set[int]]] = defaultdict(lambda: defaultdict(set))
         for file, source in self.sources.items():
             for function in _functions(source.tree):
@@ -95,7 +95,7 @@ class Engine:
         return found
 
     def draw(self, count: int, seed: int, only: str = "") -> list[Mutant]:
-        """Draw different mutants; the same seed draws the same ones, and more of them begin with the same."""
+        """Draw different mutants; the same seed draws the same ones, and a greater `count` only adds to them."""
         random = Random(seed)
         statements = [
             (file, statement)
@@ -131,7 +131,7 @@ class Engine:
         )
 
     def tests(self, mutant: Mutant, located: Any) -> set[str]:
-        """The tests that execute what a mutant changes."""
+        """Return the tests that execute the changed code of a mutant."""
         file, source = mutant.file, self.sources[mutant.file]
         if not mutant.statement.binds:
             lines = source.lines(mutant.change)
@@ -153,7 +153,7 @@ def _body(function: ast.FunctionDef | ast.AsyncFunctionDef) -> range:
 
 
 def batches(tests: Iterable[str], cpu: Mapping[str, float]) -> list[list[str]]:
-    """Tests in the order in which they run: the cheapest first, and as much as the budget may allow."""
+    """Return tests in the order in which they run: the cheapest first, and no more than the budget may allow."""
     cost = {test: cpu.get(test, 1.0) + OVERHEAD for test in tests}
     ordered = sorted(cost, key=lambda t: (sum(cost[t] > limit for limit in CLASSES), t.partition("::")[0], cost[t], t))
     found: dict[int, list[str]] = defaultdict(list)
@@ -176,7 +176,7 @@ def outcome(ended: Ended, cpu: Mapping[str, float]) -> str:
 
 
 class Trials:
-    """Tries mutants in copies of the repository, as many at once as there are copies."""
+    """Tries mutants in copies of the repository, one at a time in each copy."""
 
     def __init__(
         self, copies: Sequence[Copy], located: Any, engine: Engine, suites: Mapping[str, set[str] | None]
@@ -189,11 +189,11 @@ class Trials:
         self._cpu = located.recording.cpu
 
     def end(self) -> None:
-        """Begin no more trials."""
+        """Start no more trials."""
         self._workers.shutdown(cancel_futures=True)
 
     def settle(self, mutants: Sequence[Mutant], kept: Path) -> None:
-        """Try mutants, and try again those that were killed by a test which fails on the engine as it is."""
+        """Try mutants, and try those again that were killed by a test that fails on the original engine."""
         if self._failing({min(self._cpu, key=lambda test: self._cpu[test])}):
             raise RuntimeError("the cheapest test fails in a copy of the repository, without any mutant")
         left, unfit = [mutant for mutant in mutants if mutant.name not in results(kept)], set[str]()
@@ -240,7 +240,7 @@ class Trials:
 
 
 def table(results: Iterable[Mapping[str, Any]]) -> str:
-    """A row for each folder: how many were killed by `make test`, by all tests, and by neither."""
+    """Return a row for each folder: the numbers killed by `make test`, by all tests, and by neither."""
     folders: dict[str, list[Mapping[str, Any]]] = defaultdict(list)
     for result in results:
         folders[result["folder"]].append(result)
@@ -268,7 +268,7 @@ def table(results: Iterable[Mapping[str, Any]]) -> str:
 
 
 def record(folder: Path, suite: str, words: Sequence[str]) -> int:
-    """Run a suite, or what pytest selects by some words, while the lines that each test executes are recorded."""
+    """Run a suite, or the tests selected by `words`, and record the lines that each test executes."""
     from mutation.executed import prepare, read
 
     engine = ROOT / ENGINE
@@ -311,7 +311,7 @@ def compare(before: Path, after: Path) -> int:
 
 
 def draw(options: argparse.Namespace) -> int:
-    """Draw mutants, try those of which no result is kept, and print the survivors and the table."""
+    """Draw mutants, try those without a stored result, and print the survivors and the table."""
     from mutation.executed import Located, read
 
     engine = Engine()
@@ -342,13 +342,13 @@ def draw(options: argparse.Namespace) -> int:
 
 
 def results(kept: Path) -> dict[str, dict[str, Any]]:
-    """The results in a file by mutant; the latest of each."""
+    """Return the results in a file by mutant; the latest of each."""
     lines = kept.read_text().splitlines() if kept.exists() else []
     return {result["name"]: result for result in map(json.loads, lines)}
 
 
 def first_tests(file: Path | None) -> set[str] | None:
-    """The tests of `make test`: those in a file, else those that pytest collects; None if there is one suite only."""
+    """Return the tests of `make test`, from a file or as pytest collects them; None if there is only one suite."""
     if file:
         return set(file.read_text().split("\n"))
     if not (ROOT / "tests/suites.py").exists():

@@ -1,10 +1,10 @@
-"""The files of tests that stand nearest to what has changed, the nearest first: what `make quick` runs, in that order.
+"""List the files of tests nearest to the changes, nearest first: `make quick` runs them in that order.
 
     python scripts/nearest.py [FOLDER]
 
-Changed is what differs from where this branch left `main` (`origin/main` where there is none), saved or committed. Near
-is a test that was changed itself or has a changed file in its folder, then one that imports a changed module, then one
-that imports an importer of it, and so on.
+Changes are all differences from the point at which this branch left `main` (`origin/main` without it), committed or
+not. A test is near if it was changed itself or has a changed file in its folder; then come tests that import a changed
+module, then those that import one of its importers, and so on.
 """
 
 import shutil
@@ -17,9 +17,9 @@ import grimp
 
 ROOT = Path(__file__).parents[1]
 MOST = 200
-"""How many files at most: more than are begun in `make quick`, whose workers read all of them before the first test."""
+"""The number of files, at most: more than `make quick` can run; its workers read all of them before the first test."""
 FAR = 1_000
-"""The distance of what no change can be reached from."""
+"""The distance of a file from which no change can be reached."""
 
 
 def main() -> None:
@@ -31,14 +31,14 @@ def main() -> None:
 
 
 def changed() -> list[Path]:
-    """The files that differ from the common ancestor with `main`, those that git has never seen among them."""
+    """Return the files that differ from the common ancestor with `main`, including untracked files."""
     bases = [git("merge-base", "HEAD", base) for base in ("main", "origin/main")]
     base = next((base[0] for base in bases if base), "HEAD")
     return [Path(name) for name in git("diff", "--name-only", base) + git("ls-files", "--others", "--exclude-standard")]
 
 
 def git(*words: str) -> list[str]:
-    """Return the lines that git prints; none if there is no git, or no repository, as in an archive of the sources."""
+    """Return the lines that git prints; none without git or a repository, as in an archive of the sources."""
     if not shutil.which("git"):
         return []
     done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False)
@@ -46,25 +46,25 @@ def git(*words: str) -> list[str]:
 
 
 def importers(graph: grimp.ImportGraph) -> Mapping[str, set[str]]:
-    """Who imports a module."""
+    """Return the direct importers of each module."""
     return {module: graph.find_modules_that_directly_import(module) for module in graph.modules}
 
 
 def nearest(files: list[Path], changes: Iterable[Path], importers: Mapping[str, set[str]]) -> list[Path]:
-    """The files of tests by their distance from the changes; those as far as each other stay in their order."""
+    """Return the files of tests by their distance from the changes; equally distant ones keep their order."""
     folders = {change.parent for change in changes if change.suffix != ".py"}
     near = distances({module(change) for change in changes if change.suffix == ".py"}, importers)
     return sorted(files, key=lambda file: 0 if folders.intersection(file.parents) else near.get(module(file), FAR))
 
 
 def module(file: Path) -> str:
-    """The dotted name of a file of the engine or the tests."""
+    """Return the dotted name of a file of the engine or the tests."""
     name = ".".join(file.with_suffix("").parts).removeprefix("engine.")
     return name.removesuffix(".__init__")
 
 
 def distances(changed: set[str], importers: Mapping[str, set[str]]) -> dict[str, int]:
-    """How many imports lead from each module to a changed one."""
+    """Return the number of imports on the shortest way from each module to a changed one."""
     found: dict[str, int] = {}
     edge, distance = changed, 0
     while edge:

@@ -1,4 +1,4 @@
-"""Names that mean two things: definitions of a word outside the code that has its one meaning, and images."""
+"""Find names with two meanings: definitions of a word outside the code that has its one meaning, and images."""
 
 import ast
 from collections.abc import Iterator, Mapping, Sequence
@@ -12,7 +12,7 @@ Definition = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
 
 
 class Meaning(NamedTuple):
-    """What a word means as the name of something defined, and the files and folders that may define it."""
+    """The meaning of a word as the name of something defined, and the files and folders that may define it."""
 
     text: str
     homes: tuple[str, ...] = ()
@@ -45,7 +45,7 @@ MEANINGS: Mapping[str, Meaning] = {
     ),
     "snapshotstore": Meaning("the snapshots and files that a run keeps", ("run/snapshot_store.py",)),
 }
-"""Words that meant two or three things, in small letters and without underscores around them."""
+"""Words that had two or three meanings, in small letters and without underscores around them."""
 IMAGES: Mapping[str, str] = {
     "_came": "_received",
     "_heed": "_on_interrupt, _on_listening",
@@ -53,13 +53,13 @@ IMAGES: Mapping[str, str] = {
     "doings": "activity_tracker",
     "tells": "reports",
 }
-"""Words of another field, and the term for each."""
+"""Words of another field, each with the proper term."""
 
 
 def names_of_two_meanings(files: Sequence[SourceFile]) -> Iterator[Place]:
-    """The definitions of a word outside its homes, and those of an image.
+    """Yield the definitions of a word outside its homes, and those of an image.
 
-    Counted are modules, classes, functions, attributes of objects, fields and constants; local names are not.
+    Modules, classes, functions, attributes of objects, fields and constants count; local names do not.
     """
     for file in files:
         for name, line in _defined(file):
@@ -71,7 +71,7 @@ def names_of_two_meanings(files: Sequence[SourceFile]) -> Iterator[Place]:
 
 
 def _defined(file: SourceFile) -> Iterator[tuple[str, int]]:
-    """The names that a file defines for others, each with its line."""
+    """Yield the names that a file defines for others, each with its line."""
     yield PurePosixPath(file.path).stem, 1
     for node in ast.walk(file.tree):
         if isinstance(node, Definition):

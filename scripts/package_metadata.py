@@ -1,8 +1,8 @@
-"""What the package says of itself in an index, made when it is built: addresses, and a README whose links work there.
+"""Metadata of the package for an index, made when it is built: addresses, and a README whose links work there.
 
 With `LUMEN_REPOSITORY=https://example.org/us/lumen` in the environment, links and pictures of the README lead to that
-repository, and its addresses stand beside it. Without it nothing is claimed: links to files become their texts, and
-pictures are left out. A hook of Hatchling.
+repository, and its addresses are added. Without it, links to files become their texts, and pictures are left out. This
+is a hook of Hatchling.
 """
 
 import os
@@ -20,7 +20,7 @@ class PackageMetadata(MetadataHookInterface):
     """Fills in `readme` and `urls` of pyproject.toml, which are dynamic."""
 
     def update(self, metadata: dict[str, Any]) -> None:
-        """Called by Hatchling, with the table `project`."""
+        """Add both to the table `project`; called by Hatchling."""
         repository = os.environ.get("LUMEN_REPOSITORY", "").rstrip("/")
         text = (Path(self.root) / "README.md").read_text(encoding="utf-8")
         metadata["readme"] = {"content-type": "text/markdown", "text": readme(text, repository)}
@@ -28,7 +28,7 @@ class PackageMetadata(MetadataHookInterface):
 
 
 def readme(text: str, repository: str) -> str:
-    """The README for who reads it elsewhere."""
+    """Return the README for readers outside of the repository."""
 
     def moved(found: re.Match[str]) -> str:
         if not repository:
@@ -40,7 +40,7 @@ def readme(text: str, repository: str) -> str:
 
 
 def urls(repository: str) -> dict[str, str]:
-    """The addresses of a repository, none where there is none."""
+    """Return the addresses of a repository; empty without one."""
     pages = {"Documentation": "blob/HEAD/docs/README.md", "Changelog": "blob/HEAD/CHANGELOG.md", "Issues": "issues"}
     more = {name: f"{repository}/{page}" for name, page in pages.items()}
     return {"Homepage": repository, "Source": repository, **more} if repository else {}

@@ -1,4 +1,4 @@
-"""References to modules and files of the package in a text, and the text after they have moved.
+"""Find references to modules and files of the package in a text, and rewrite the text after they have moved.
 
 Imports, and uses of an imported module, are found by syntax tree. A name in a string, a comment or a page is found by
 its spelling, which is not certain: a routing key such as `lumen.state` can look like a module.
@@ -21,7 +21,7 @@ FROM = re.compile(r"from\s+([\w.]+)\s+import")
 
 
 class Edit(NamedTuple):
-    """Other text for a part of a text."""
+    """A replacement for a part of a text."""
 
     start: int
     end: int
@@ -32,8 +32,8 @@ class Moved:
     """The new paths of moved files, and of folders that move as a whole, by their old paths below the package.
 
     `known` are the paths of all files before the move. If another module gets the name of one that moves, that name
-    stays as it is everywhere: the new module offers what the old one did. `offered` are names like `lumen.life.vigour`
-    that packages define themselves, and that are therefore no modules although there may be a file of that name.
+    stays unchanged everywhere: the new module offers what the old one did. `offered` are names like `lumen.life.vigour`
+    that packages define themselves, and that are therefore not modules, although a file may have that name.
     """
 
     def __init__(
@@ -49,7 +49,7 @@ class Moved:
         self.modules = {old: new for old, new in named_modules.items() if old not in self._reused}
 
     def for_file(self, new_path: str) -> "Moved":
-        """Return the moves as a file sees them that moves to this path: by a name that it gets, it means another."""
+        """Return the moves for a file that moves to this path: a name that it gets has another meaning inside it."""
         seen, module = copy(self), module_of(new_path)
         if module in self._reused:
             seen.modules = {**self.modules, module: self._reused[module]}
@@ -116,7 +116,7 @@ def page_edits(text: str, moved: Moved) -> list[Edit]:
 
 
 def spelled_edits(text: str, moved: Moved, but: Iterable[Edit] = ()) -> list[Edit]:
-    """Return the edits of names that are spelled like a moved module, file or folder, except within other edits."""
+    """Return the edits of names spelled like a moved module, file or folder, except inside other edits."""
     others = list(but)
     found = [
         *(edit for match in DOTTED.finditer(text) if (edit := _spelled_module(match, moved))),
@@ -143,7 +143,7 @@ def _spelled_path(match: re.Match[str], moved: Moved) -> Edit | None:
 
 
 class _Places:
-    """Offsets into a text, of nodes of its tree: the columns of these count bytes."""
+    """Offsets of tree nodes in a text; the columns of the nodes count bytes."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -179,7 +179,7 @@ def _as(name: str, other: str | None) -> str:
 
 
 def _import_from(node: ast.ImportFrom, places: _Places, moved: Moved) -> Iterator[Edit]:
-    """Follow the names of an import: those that are modules to where these are now, the others with their module."""
+    """Follow the names of an import: modules to their new places, the others with their module."""
     homes: dict[str, list[str]] = {}
     source = node.module or ""
     for alias in node.names:
@@ -204,7 +204,7 @@ def _import_from(node: ast.ImportFrom, places: _Places, moved: Moved) -> Iterato
 
 
 def _in_quotes(annotation: ast.expr, places: _Places, moved: Moved) -> Iterator[Edit]:
-    """Follow moved modules within the quoted parts of an annotation."""
+    """Follow moved modules inside the quoted parts of an annotation."""
     for node in ast.walk(annotation):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             start, end = places.span(node)

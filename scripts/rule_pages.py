@@ -1,6 +1,6 @@
 """Writes docs/rules/ from the pages of the rules: `python scripts/rule_pages.py`.
 
-Each example is laid over a small sound project and linted; what lint says of the wrong ones stands in the docs.
+Each example is laid over a small valid project and linted; the docs show lint's output for the wrong ones.
 """
 
 import re
@@ -28,13 +28,13 @@ BASE = ROOT / "tests/lint/pages/base"
 INSTALLED = "installed"
 """The note at modules of an installed distribution."""
 PHYSICS, OTHERS = "physics", 1
-"""What is noted at examples that are about the shipped robot in simulation, and how many robots play them beside it."""
+"""The note at examples about the shipped robot in simulation, and the number of robots that play them besides it."""
 
 _BLOCK = re.compile(r"^(?=[^\s#])", re.MULTILINE)
 
 
 def laid(base: Mapping[str, bytes], sheets: Iterable[Example]) -> dict[str, bytes]:
-    """The files of the small project with those of an example laid over them."""
+    """Return the files of the small project with those of an example laid over them."""
     files = dict(base)
     for sheet in sheets:
         if sheet.language == "python":
@@ -50,7 +50,7 @@ def laid(base: Mapping[str, bytes], sheets: Iterable[Example]) -> dict[str, byte
 
 
 def _kept(below: str, sheet: Example) -> str:
-    """The blocks of a YAML file whose keys an example leaves as they are."""
+    """Return the blocks of a YAML file whose keys an example does not change."""
     if sheet.language != "yaml" or sheet.note:
         return ""
     given = {block.split(":")[0] for block in _BLOCK.split(sheet.text)}
@@ -59,7 +59,7 @@ def _kept(below: str, sheet: Example) -> str:
 
 @cache
 def said(sheets: tuple[Example, ...]) -> list[Diagnostic]:
-    """What lint says of an example; of one that was otherwise before, what it says with `--against` that."""
+    """Return lint's findings for an example; with a state `before`, including those of `--against` that state."""
     if any(sheet.note == PHYSICS for sheet in sheets):
         return _played(sheets)
     if modules := {sheet.file: sheet.text for sheet in sheets if sheet.note == INSTALLED}:
@@ -84,7 +84,7 @@ def _with_code(sheets: tuple[Example, ...]) -> list[Diagnostic]:
 
 
 def _installed(modules: Mapping[str, str], sheets: tuple[Example, ...]) -> list[Diagnostic]:
-    """Return the findings beside a distribution of these modules, the first of which has its manifest."""
+    """Return the findings with a distribution of these modules installed, the first of which has its manifest."""
     module = next(iter(modules)).removesuffix(".py")
     with TemporaryDirectory() as folder:
         write_distribution(Path(folder), module.replace("_", "-"), f"{module}:FEATURE", modules)
@@ -93,7 +93,7 @@ def _installed(modules: Mapping[str, str], sheets: tuple[Example, ...]) -> list[
 
 
 def _played(sheets: tuple[Example, ...]) -> list[Diagnostic]:
-    """What `--physics` says of a motion in the shipped project, with the robot of the model and two others."""
+    """Return the findings of `--physics` for a motion in the shipped project, with the model's robot and others."""
     files = laid(read_files(ROOT), sheets)
     asked = [sheet.file for sheet in sheets if sheet.file.startswith("motions/")]
     found = played(Findings((), files, str(ROOT), asked), lambda d: d.code in families()["physics"], OTHERS, keep=False)
@@ -101,7 +101,7 @@ def _played(sheets: tuple[Example, ...]) -> list[Diagnostic]:
 
 
 def written() -> dict[str, str]:
-    """The pages of the docs, by file name."""
+    """Return the pages of the docs, by file name."""
     index = "".join(f"\n## [{_title(name)}]({name}.md)\n\n{_list(name)}\n" for name in families())
     pages = {"README.md": f"{_INTRODUCTION}{index}"}
     for name, members in families().items():

@@ -53,7 +53,7 @@ SCENE = """<mujoco model="nao scene">
 
 
 def scene(models: Path) -> str:
-    """The text of the file; the robot's MJCF and meshes are in `models`."""
+    """Return the text of the file; the robot's MJCF and meshes are in `models`."""
     nao = Nao(lumen.load(ROOT).body, models)
     empty = SCENE.format(keys="").replace('file="nao.xml"', f'file="{models / "nao.xml"}"')
     model = mujoco.MjModel.from_xml_string(empty)

@@ -1,7 +1,7 @@
 """The reference of the YAML files and of the messages, made from schemas/: a page of Markdown for each schema.
 
-Every property is a heading with its type, its limits, its description and its examples. What a schema names once and
-uses often (`$defs`) has a heading of its own, and is linked.
+Every property is a heading with its type, its limits, its description and its examples. A part that a schema defines
+once and uses often (`$defs`) has a heading of its own, and links to it.
 """
 
 import json
@@ -34,7 +34,7 @@ DEEPEST = 6
 
 
 def pages(folder: Path) -> dict[str, str]:
-    """The pages by their paths below the reference: `motion.md`, `messages/sonar.md` and the two lists of them."""
+    """Return the pages by their paths below the reference: `motion.md`, `messages/sonar.md` and two lists."""
     kinds = {file: load(file) for file in sorted(folder.glob("*.schema.json"))}
     messages = {file: load(file) for file in sorted((folder / "messages").glob("*.schema.json"))}
     if not kinds or not messages:
@@ -72,7 +72,7 @@ def _title(file: Path, schema: Schema) -> str:
 
 
 def page(schema: Schema, file: str, title: str = "") -> str:
-    """One schema as Markdown."""
+    """Return one schema as Markdown."""
     rows = [f"# {title or schema.get('title', file)}", str(schema.get("description", "")), f"Schema: {file}."]
     rows += _examples(schema)
     rows += _within(schema, 2, ())
@@ -82,7 +82,7 @@ def page(schema: Schema, file: str, title: str = "") -> str:
 
 
 def _within(schema: Schema, depth: int, path: tuple[str, ...]) -> Iterator[str]:
-    """The properties of a schema, and theirs, each beneath its heading."""
+    """Yield the properties of a schema, and theirs, each below its heading."""
     required = set(schema.get("required", ()))
     for key, part in schema.get("properties", {}).items():
         here = (*path, key)
@@ -101,7 +101,7 @@ def alternatives(schema: Schema) -> list[Schema]:
 
 
 def _said(schema: Schema | bool, required: bool = False) -> Iterator[str]:
-    """What is to be known of one value: its type and limits, what it means, and examples."""
+    """Yield the description of one value: its type and limits, its meaning, and examples."""
     if isinstance(schema, bool):
         yield "*anything*" if schema else "*nothing*"
         return
@@ -112,7 +112,7 @@ def _said(schema: Schema | bool, required: bool = False) -> Iterator[str]:
 
 
 def kind(schema: Schema) -> str:
-    """The type of a value in words; what is named elsewhere is a link to it."""
+    """Return the type of a value in words; a reference becomes a link."""
     if reference := schema.get("$ref"):
         return _link(str(reference))
     if "const" in schema:
@@ -153,7 +153,7 @@ def _code(value: Any) -> str:
 
 
 def _examples(schema: Schema) -> Iterator[str]:
-    """The examples as YAML, a block for all that fit into a line."""
+    """Yield the examples as YAML: one block for all that fit on a line."""
     texts = [_yaml(value) for value in schema.get("examples", ())]
     short = [text for text in texts if "\n" not in text]
     if short:

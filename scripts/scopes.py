@@ -15,7 +15,7 @@ OWN = {"self", "cls"}
 
 
 class Place(NamedTuple):
-    """A line of a file, and why it counts."""
+    """A line of a file, and the reason why it counts."""
 
     path: str
     line: int
@@ -40,8 +40,8 @@ class Scoped(NamedTuple):
 class Package:
     """The files of a package, and an index of their statements and classes.
 
-    A class is known by its name: a public one has a name of its own in the whole package (tests/house/test_house.py),
-    and private ones of the same name count as one.
+    Classes are identified by name: a public one has a unique name in the whole package (tests/house/test_house.py), and
+    private ones of the same name count as one.
     """
 
     def __init__(self, files: Sequence[SourceFile]) -> None:
@@ -52,19 +52,19 @@ class Package:
                 self._nodes[type(scoped.node)].append(scoped)
 
     def of(self, *kinds: type[ast.AST]) -> Iterator[Scoped]:
-        """The nodes of these kinds, one kind after the other, in the order of the files."""
+        """Return the nodes of these kinds, one kind after another, in the order of the files."""
         return (scoped for kind in kinds for scoped in self._nodes[kind])
 
     @cached_property
     def classes(self) -> dict[str, list[Scoped]]:
-        """The classes by name."""
+        """Return the classes by name."""
         found: dict[str, list[Scoped]] = defaultdict(list)
         for scoped in self.of(ast.ClassDef):
             found[scoped.node.name].append(scoped)
         return dict(found)
 
     def ancestors(self, name: str) -> list[str]:
-        """The names of a class of the package and of those that it inherits from, nearest first."""
+        """Return the names of a class of the package and of those that it inherits from, nearest first."""
         found = [name] if name in self.classes else []
         for each in found:  # grows
             bases = (last_word(base) for scoped in self.classes[each] for base in scoped.node.bases)
@@ -72,7 +72,7 @@ class Package:
         return found
 
     def family(self, root: str) -> set[str]:
-        """The names of a class and of all that inherit from it; raises LookupError if there is no such class."""
+        """Return the names of a class and of all that inherit from it; raise LookupError if there is no such class."""
         if root not in self.classes:
             raise LookupError(f"no class is named {root}: the figures that need it are not known")
         return {name for name in self.classes if root in self.ancestors(name)}
@@ -93,7 +93,7 @@ def _scoped(
 
 
 def last_word(expression: ast.expr) -> str:
-    """The last name of a dotted one: `c` of `a.b.c` and of `a.b.c[int]`; empty for an expression without a name."""
+    """Return the last name of a dotted one: `c` of `a.b.c` and of `a.b.c[int]`; empty for other expressions."""
     match expression:
         case ast.Name():
             return expression.id
@@ -107,20 +107,20 @@ def last_word(expression: ast.expr) -> str:
 
 
 def is_property(function: Function) -> bool:
-    """Return whether a function is read, or written, like an attribute."""
+    """Return True if a function is read, or written, like an attribute."""
     words = {last_word(decorator) for decorator in function.decorator_list}
     return bool(words & {"property", "cached_property", "setter"})
 
 
 def parameters(function: Function) -> list[ast.arg]:
-    """All parameters of a function, without the object or class that a method belongs to."""
+    """Return all parameters of a function, without the object or class to which a method belongs."""
     named = function.args
     found = [*named.posonlyargs, *named.args, named.vararg, *named.kwonlyargs, named.kwarg]
     return [parameter for parameter in found if parameter is not None and parameter.arg not in OWN]
 
 
 def assigned(node: ast.Assign | ast.AnnAssign) -> Iterator[tuple[ast.expr, ast.expr | None]]:
-    """The targets of an assignment, each with its value; the values of `a, b = c` are not known."""
+    """Yield the targets of an assignment, each with its value; None if the value is unknown, as in `a, b = c`."""
     for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
         if not isinstance(target, ast.Tuple):
             yield target, node.value

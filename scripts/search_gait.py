@@ -2,12 +2,12 @@
 
     python scripts/search_gait.py NAME [--pace usual|brisk] [--tries 40] [--robots 3] [--seconds 8] [--seed 0] [--write]
 
-Begins with what `models/NAME.yaml` has, or with what follows from the legs by rule, and draws each try near the best
-one so far, nearer and nearer: a random search, as NAO's brisk pace was found (docs/decisions/074). Robots differ in
-their masses, floors and noise. A try counts how far they come in the given time, less what they end aside of their way;
-where one falls, the whole try counts nothing. Two tries run at once (`--workers 1`: one after the other; what is found
-is the same). Each is kept in `.cache/search_gait/` by what it hangs on, the file's content and the software: started
-again, the search goes on. `--write` puts the best into the file, and another search begins there.
+It begins with the numbers of `models/NAME.yaml`, or with those that follow from the legs by rule, and draws each try
+near the best one so far, with a shrinking spread: a random search, as for NAO's brisk pace (docs/decisions/074). Robots
+differ in their masses, floors and noise. The score of a try is the distance walked in the given time, minus the
+sideways error; it is 0 if any robot falls. Two tries run at once (`--workers 1`: one after the other, with the same
+result). Tries are stored in `.cache/search_gait/` by everything they depend on, the file's content and the software:
+after a restart the search continues. `--write` puts the best numbers into the file, and another search begins there.
 """
 
 import argparse
@@ -43,21 +43,21 @@ SEARCHED = {
     "usual": ("double", "single", "forward", "lift", "torso", "lean", "ahead", "inside"),
     "brisk": ("double", "single", "forward", "lift", "ahead", "inside"),
 }
-"""The parameters that are drawn. A brisk walk carries the torso as the usual one: a walk goes from one to the other."""
+"""The parameters to draw. A brisk walk carries the torso at the usual height, because a walk can change its pace."""
 
 SPREAD, NARROWS = 0.12, 0.97
-"""How far a try is drawn from the best one, as a part of each number, and how that shrinks with each."""
+"""The spread of tries around the best one, relative to each number, and its factor after each try."""
 
 AT_ONCE = 2
 FASTER = {"usual": 0.98, "brisk": 10.0}
-"""What is asked for, as a factor of the pace's own speed: `brisk` is taken where the usual one is too slow."""
+"""The requested speed, relative to the pace's own: `brisk` is used if the usual pace is too slow."""
 
 BEGINS = 1.5
-"""A robot shifts its weight and begins before its way counts [s]."""
+"""The time that a robot needs to shift its weight and begin, before its distance counts [s]."""
 
 
 class Try(NamedTuple):
-    """What was tried, and how good it was: the way that all robots came [m], aside counted against it."""
+    """The numbers of a try, and its score: the mean distance of all robots [m], minus sideways errors."""
 
     numbers: dict[str, float]
     score: float
@@ -65,7 +65,7 @@ class Try(NamedTuple):
 
 
 def tried(kit: UnpackedKit, name: str, pace: str, numbers: dict[str, float], robots: int, seconds: float) -> Try:
-    """A task: let robots walk with these numbers. The body is in the repository, beside this script."""
+    """Let robots walk with these numbers, as a task of a worker; the body is in this repository."""
     body = shipped(name)
     body = replace(body, gait={**body.gait, pace: {**body.gait.get(pace, {}), **numbers}})
     paces = paces_of(read_legs(MassModel(body, MODELS).model, body), body.gait)
@@ -85,13 +85,13 @@ def tried(kit: UnpackedKit, name: str, pace: str, numbers: dict[str, float], rob
 
 
 def drawn(best: dict[str, float], count: int, random: np.random.Generator) -> dict[str, float]:
-    """Numbers near the best ones."""
+    """Return numbers near the best ones."""
     spread = SPREAD * NARROWS**count
     return {name: round(value * (1 + spread * random.standard_normal()), 4) for name, value in best.items()}
 
 
 def search(options: argparse.Namespace, workers: Workers, cache: Path = CACHE) -> Try:
-    """Try after try, from where the last search ended; each is printed."""
+    """Make and print one try after another, from the end of the last search; return the best."""
     if workers.address:
         raise UsageError("--workers of this search are processes of this machine: write a number")
     body = shipped(options.model)
@@ -121,7 +121,7 @@ def search(options: argparse.Namespace, workers: Workers, cache: Path = CACHE) -
 
 
 def written(text: str, pace: str, numbers: dict[str, float]) -> str:
-    """The text of a body's file with these numbers [m], [rad], [s] in its `gait`, which has to end it."""
+    """Return the text of a body's file with these numbers [m], [rad], [s] in its `gait`, which must be at its end."""
     head, _, tail = text.partition("\ngait:\n")
     kept: dict[str, Any] = yaml.safe_load(f"gait:\n{tail}")
     if kept.keys() != {"gait"}:

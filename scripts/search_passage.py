@@ -41,22 +41,23 @@ from lumen.run.workers.workers import Workers, workers_of
 CACHE = Path(__file__).parent.parent / ".cache" / "search_passage"
 
 MISS, EFFORT, BUMP, TIME, BEYOND, WORST = 2.0, 0.4, 1.0, 0.01, 1.0, 0.3
-"""The price of how far the torso's up ends from where it should, of the mean of the motors' load cubed, of what the
-torso sinks faster than `GENTLE` [m/s], of each second, and of each radian (per second) beyond the body's limits. The
-robots' mean counts, and `WORST` times the worst of them."""
+"""The price of the torso's final direction error, of the mean cubed load of the motors, of sinking faster than `GENTLE`
+[m/s], of each second, and of each radian (per second) beyond the body's limits. The cost is the robots' mean plus
+`WORST` times the worst of them.
+"""
 
 GENTLE, SETTLING = 0.3, 1.0
 
 ANGLE, TIMES = 8.0, 0.15
-"""How far around the search looks at first: [degrees], [s]."""
+"""The initial spread of the search: [degrees], [s]."""
 
 _ANGLE, _TIME = re.compile(r"\b([LRH]\w+): (-?\d+)(?=[,}])"), re.compile(r"(?<=at: )[\d.]+(?=s)")
 
 
 class Text:
-    """The text of a passage as `numbers`: so many `angles` of its poses [degrees], then times between keyframes [s].
+    """The text of a passage as `numbers`: first the `angles` of its poses [degrees], then times between keyframes [s].
 
-    `reach` is how far around each of them a search looks at first.
+    `reach` is the initial spread of the search for each of them.
     """
 
     def __init__(self, text: str, body: Body) -> None:
@@ -68,7 +69,7 @@ class Text:
         self.reach = [ANGLE] * self.angles + [TIMES] * (len(times) - 1)
 
     def written(self, numbers: Sequence[float]) -> str:
-        """The passage with these numbers, inside the joints' limits; no two keyframes come closer than 0.05 s."""
+        """Return the passage with these numbers, inside the joints' limits and at least 0.05 s between keyframes."""
         angles = iter(
             min(max(round(number), ceil(joint.minimum / radians(1))), floor(joint.maximum / radians(1)))
             for joint, number in zip(self._joints, numbers[: self.angles], strict=True)
@@ -79,7 +80,7 @@ class Text:
 
 
 class Trial:
-    """One robot, of its own weight and on its own floor, that has come to the posture where a passage begins."""
+    """A robot with its own weight and floor, standing in the posture in which a passage begins."""
 
     def __init__(self, body: Body, models: Path, motion: Motion, seed: int) -> None:
         draw = np.random.default_rng(seed)
@@ -95,7 +96,7 @@ class Trial:
         self._sought = np.array(self._robot.world.up)
 
     def cost(self, motion: Motion) -> float:
-        """What this passage costs here."""
+        """Return the cost of this passage with this robot."""
         world, motors = self._robot.world, self._robot.motors
         mujoco.mj_setState(world.model, world.data, self._begin, self._all)
         mujoco.mj_forward(world.model, world.data)
@@ -120,7 +121,7 @@ class Trial:
 
 
 def cost(text: str, trials: Iterable[Trial], body: Body) -> float:
-    """What a passage costs: the robots' mean, the worst of them, and what is beyond the body's limits."""
+    """Return the cost of a passage: the robots' mean, the worst of them, and the excess over the body's limits."""
     motion = Motion.from_dict(yaml.safe_load(text), "passage")
     beyond = sum(abs(e.value - e.limit) for e in (*beyond_limits(motion, body), *overspeed(motion, body)))
     costs = [trial.cost(motion) for trial in trials]
@@ -128,19 +129,19 @@ def cost(text: str, trials: Iterable[Trial], body: Body) -> float:
 
 
 class KeptCosts:
-    """What passages cost, in a file of its own for each project, software and choice of robots."""
+    """The costs of passages, in a separate file for each project, software and choice of robots."""
 
     def __init__(self, folder: Path, *content: str) -> None:
         self._file = folder / f"{name_of(json.dumps([engine(), *content]).encode())}.jsonl"
         folder.mkdir(parents=True, exist_ok=True)
         text = self._file.read_text("utf-8") if self._file.exists() else ""
         whole, _, torn = text.rpartition("\n")
-        if torn:  # it was ended while it wrote
+        if torn:  # the program was ended during a write
             self._file.write_text(f"{whole}\n" if whole else "", "utf-8")
         self._known: dict[str, float] = dict(map(json.loads, whole.splitlines()))
 
     def of(self, texts: Sequence[str], compute: Callable[[list[str]], Iterable[tuple[int, float]]]) -> list[float]:
-        """The cost of each text; those that are not known are computed, and kept as they come."""
+        """Return the cost of each text; unknown ones are computed, and stored at once."""
         unknown = list(dict.fromkeys(text for text in texts if _name(text) not in self._known))
         with self._file.open("a", encoding="utf-8") as file:
             for number, found in compute(unknown):
@@ -155,22 +156,22 @@ def _name(text: str) -> str:
 
 
 def cost_of(kit: UnpackedKit, text: str, passage: str, robots: int, seed: int) -> float:
-    """A task: what a passage costs, with so many robots that stand where the one in `passage` begins."""
+    """Return the cost of a passage with that many robots, which begin like the one in `passage`; a task of a worker."""
     body, trials = _trials(kit, passage, robots, seed)
     return cost(text, trials, body)
 
 
 @cache
 def _trials(kit: UnpackedKit, passage: str, robots: int, seed: int) -> tuple[Body, list[Trial]]:
-    """Once in each process: the robots are long in coming to where they begin."""
+    """Return the robots, made once in each process, because it takes long to bring them to their initial posture."""
     project = kit.project()
-    assert project is not None  # who sends tasks has loaded it
+    assert project is not None  # the sender of the tasks has loaded it
     motion = Motion.from_dict(yaml.safe_load(passage), "passage")
     return project.body, [Trial(project.body, kit.root / MODELS, motion, seed + i) for i in range(robots)]
 
 
 def searched(args: argparse.Namespace, workers: Workers, kept: Path) -> float:
-    """Search, and write each better passage; the cost of the best one."""
+    """Search, and write each better passage; return the cost of the best one."""
     import cma  # only the search needs it
 
     root, passage = args.passage.resolve().parents[2], args.passage.read_text("utf-8")

@@ -38,18 +38,18 @@ BUSY = "import os\nparent = os.getppid()\nwhile os.getppid() == parent:\n    for
 CROWD = 4
 """The busy loops of a crowded machine."""
 PERIOD, QUOTA = 100_000, 50_000
-"""Half a core: so many microseconds of each period."""
+"""Half a core: this many microseconds of each period."""
 ENDING = 60.0
-"""The time that an interrupted pytest has for ending its fixtures, before it is killed [s]."""
+"""The time that an interrupted pytest has to end its fixtures, before it is killed [s]."""
 LINGERING = 60.0
-"""The time that processes of tests have for ending by themselves after pytest [s]."""
+"""The time that processes of tests have to end by themselves after pytest [s]."""
 USUAL = {"quiet": 8, "crowded": 8, "half": 4}
 REAL = {"quiet": 0, "crowded": 0, "half": 30}
 ENTER = 'for group in $GROUPS_ENTERED; do echo $$ > "$group/cgroup.procs"; done; exec "$@"'
 
 
 class Group:
-    """Control groups that hold all processes of a run: they count its processor time, and may limit it."""
+    """Control groups that contain all processes of a run: they count its processor time, and may limit it."""
 
     def __init__(self, name: str) -> None:
         self.folders: list[Path] = []
@@ -58,13 +58,13 @@ class Group:
             mounted = [CGROUPS] if not controllers else [CGROUPS / one for one in controllers.split(",")]
             for mount in {folder.resolve() for folder in mounted if folder.name in ("cgroup", "cpu", "cpuacct")}:
                 if not (mount / "cgroup.procs").exists():
-                    continue  # a folder that only holds the groups of version 1
+                    continue  # a folder that only contains the groups of version 1
                 with suppress(OSError):
                     (folder := mount / path.strip("/") / name).mkdir()
                     self.folders.append(folder)
 
     def limit(self) -> bool:
-        """Set the quota to half a core; return whether the system lets us."""
+        """Set the quota to half a core; return True if the system permits it."""
         settings = {"cpu.max": f"{QUOTA} {PERIOD}", "cpu.cfs_quota_us": str(QUOTA)}
         for folder in self.folders:
             for file, value in settings.items():
@@ -75,7 +75,7 @@ class Group:
         return False
 
     def cpu_time(self) -> float | None:
-        """The processor time of all that ever was in the group [s]; None if the system does not count it."""
+        """Return the processor time of all processes of the group [s]; None if the system does not count it."""
         for folder in self.folders:
             with suppress(OSError, ValueError, KeyError):
                 if (usage := folder / "cpuacct.usage").exists():
@@ -92,7 +92,7 @@ class Group:
         return found
 
     def close(self) -> int:
-        """Kill what does not end by itself, remove the groups, and return how many processes were killed."""
+        """Kill the processes that do not end by themselves, remove the groups, and return the number of killed ones."""
         deadline = time.monotonic() + LINGERING
         while self.pids() and time.monotonic() < deadline:
             time.sleep(0.05)
@@ -111,15 +111,18 @@ class Group:
 
 @dataclass(frozen=True)
 class Run:
-    """One run of the tests: how it went."""
+    """The results of one run of the tests."""
 
     condition: str
     seed: int
     passed: int
     failed: frozenset[str]
     wall: float
+    """Wall time [s]."""
     cpu: float
+    """Processor time [s]."""
     left: int
+    """The number of processes left behind."""
     log: Path
 
 
@@ -135,7 +138,7 @@ def main(words: Sequence[str] | None = None) -> int:
     counts = {name: getattr(arguments, name) for name in USUAL}
     plans = planned({name: usual(arguments)[name] if n is None else n for name, n in counts.items()}, arguments.seed)
     LOGS.mkdir(parents=True, exist_ok=True)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ended in order, as by Ctrl-C
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end in order, as after Ctrl-C
     print(
         f"{len(plans)} runs, the first with --seed {arguments.seed}: {' '.join(selection(arguments)) or 'all'}",
         flush=True,
@@ -164,7 +167,7 @@ def parsed(words: Sequence[str]) -> argparse.Namespace:
 
 
 def usual(arguments: argparse.Namespace) -> dict[str, int]:
-    """The runs of each kind, if the command line has no number: none of a kind that it does not name beside others."""
+    """Return the default numbers of runs of each kind: 0 for kinds not named, if the command line names others."""
     if any(getattr(arguments, name) is not None for name in USUAL):
         return dict.fromkeys(USUAL, 0)
     return REAL if arguments.only_real else USUAL
@@ -176,13 +179,13 @@ def planned(counts: dict[str, int], seed: int) -> list[Plan]:
 
 
 def selection(arguments: argparse.Namespace) -> list[str]:
-    """The words by which pytest chooses tests."""
+    """Return the words by which pytest selects tests."""
     words = ["--suite", arguments.suite] if arguments.suite else []
     return [*words, *(["--only-real"] if arguments.only_real else []), *arguments.words]
 
 
 def shaken(plan: Plan, arguments: argparse.Namespace) -> Run:
-    """Run the tests once, and end whatever is left of them."""
+    """Run the tests once, and end all processes that are left."""
     log = LOGS / f"{plan.condition}-{plan.seed}.log"
     outcomes = log.with_suffix(".jsonl")
     outcomes.write_text("")
@@ -222,7 +225,7 @@ def shaken(plan: Plan, arguments: argparse.Namespace) -> Run:
 
 
 def finished(command: Sequence[object], group: Group, told: object) -> int:
-    """Run the command in the group, and return its exit code; on Ctrl-C let it end its fixtures first."""
+    """Run the command in the group, and return its exit code; on Ctrl-C it may end its fixtures first."""
     environment = {**os.environ, "GROUPS_ENTERED": " ".join(map(str, group.folders))}
     words = ["sh", "-c", ENTER, "sh", *command]
     process: Guarded[bytes] = Guarded(words, stdout=told, stderr=STDOUT, cwd=ROOT, env=environment)
@@ -240,7 +243,7 @@ def finished(command: Sequence[object], group: Group, told: object) -> int:
 
 @contextmanager
 def busy(*, alone: bool = False) -> Iterator[None]:
-    """A busy loop, on the first core alone if that is wanted."""
+    """Run a busy loop, on the first core alone if requested."""
     command: list[object] = [sys.executable, "-c", BUSY]
     process: Guarded[bytes] = Guarded(pinned(command) if alone else command)
     try:
@@ -279,7 +282,7 @@ def told(run: Run) -> str:
 
 
 def summary(runs: Sequence[Run]) -> list[str]:
-    """A line for each test that failed, in how many runs of which kind, and with which seeds; the worst first."""
+    """Return lines for each failed test: in how many runs of which kind, and with which seeds; the worst first."""
     tests = {test for run in runs for test in run.failed}
     lines = []
     for test in sorted(tests, key=lambda test: (-sum(test in run.failed for run in runs), test)):

@@ -35,13 +35,13 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = "engine/lumen"
 
 MAX_SHARING_FILES = 3
-"""More files than these with a constant, or a file name, in common are told of."""
+"""Constants and file names shared by more files than this are listed."""
 
 SHOWN_ACTION = "leds"
-"""The action whose files are counted where no other is asked for."""
+"""The action whose files are counted by default."""
 
 TOP_LEVEL = "top-level files"
-"""What stands in the package itself, in no floor's folder."""
+"""The files in the package itself, outside of any floor's folder."""
 
 BEGIN, END = "<!-- shape: written by scripts/shape.py -->\n", "<!-- end of shape -->"
 
@@ -52,7 +52,7 @@ _WORD = re.compile(r"[A-Z]?[a-z0-9]+|[A-Z]+(?![a-z])")
 
 
 class When(StrEnum):
-    """When an import happens."""
+    """The time at which an import happens."""
 
     LOADING = "at loading"
     LATE = "in a function"
@@ -60,7 +60,7 @@ class When(StrEnum):
 
 
 class Import(NamedTuple):
-    """One file of the package imports another."""
+    """An import of one file of the package by another."""
 
     source: str
     target: str
@@ -69,7 +69,7 @@ class Import(NamedTuple):
 
 @dataclass(frozen=True, slots=True, order=True)
 class Size:
-    """How many lines something has."""
+    """The number of lines of something."""
 
     lines: int
     name: str
@@ -77,7 +77,7 @@ class Size:
 
 @dataclass(frozen=True, slots=True)
 class Floor:
-    """A folder of the package, with all that is in it."""
+    """A folder of the package, with everything in it."""
 
     name: str
     files: int
@@ -86,7 +86,7 @@ class Floor:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """The figures. Names that several files have are given with those files; `circles` by the imports counted."""
+    """The figures. Names that several files share are listed with those files; `circles` by the imports that count."""
 
     floors: list[Floor]
     median_file: int
@@ -104,14 +104,14 @@ class Shape:
 
 
 def floor_order(pyproject: str) -> list[set[str]]:
-    """What stands on each floor, from the top: the first contract of layers in the text of a pyproject.toml."""
+    """Return the content of each floor, from the top: the first contract of layers in the text of a pyproject.toml."""
     contracts = tomllib.loads(pyproject)["tool"]["importlinter"]["contracts"]
     layers = next(contract["layers"] for contract in contracts if contract["type"] == "layers")
     return [{name.strip(" ()").partition(".")[2] for name in row.split("|")} for row in layers]
 
 
 def floors(files: Iterable[SourceFile], order: Sequence[set[str]]) -> list[Floor]:
-    """Files and lines of each floor from the top; folders that are no floor, and single files, come last."""
+    """Return files and lines of each floor from the top; other folders, and single files, come last."""
     found: dict[str, list[int]] = defaultdict(list)
     for file in files:
         found[file.path.split("/")[0] if "/" in file.path else TOP_LEVEL].append(file.lines)
@@ -121,12 +121,12 @@ def floors(files: Iterable[SourceFile], order: Sequence[set[str]]) -> list[Floor
 
 
 def file_sizes(files: Iterable[SourceFile]) -> list[Size]:
-    """The files by their lines, smallest first, without those that hold nothing."""
+    """Return the files by their lines, smallest first, without empty ones."""
     return sorted(Size(file.lines, file.path) for file in files if file.lines)
 
 
 def function_sizes(files: Iterable[SourceFile]) -> list[Size]:
-    """The functions and methods by their lines, smallest first."""
+    """Return the functions and methods by their lines, smallest first."""
     return sorted(
         Size((node.end_lineno or node.lineno) - node.lineno + 1, f"{node.name} in {file.path}")
         for file in files
@@ -136,18 +136,18 @@ def function_sizes(files: Iterable[SourceFile]) -> list[Size]:
 
 
 def type_names(file: SourceFile) -> set[str]:
-    """The classes and the aliases of types at a file's top level."""
+    """Return the classes and the aliases of types at a file's top level."""
     classes = {node.name for node in top_level(file.tree.body) if isinstance(node, ast.ClassDef)}
     return classes | {name for name in _assigned(file, aliases=True) if _TYPE_NAME.fullmatch(name)}
 
 
 def constants(file: SourceFile) -> set[str]:
-    """The public constants at a file's top level."""
+    """Return the public constants at a file's top level."""
     return {name for name in _assigned(file) if _CONSTANT.fullmatch(name)}
 
 
 def _assigned(file: SourceFile, *, aliases: bool = False) -> Iterator[str]:
-    """The names that are given values at a file's top level; with `aliases`, those that may be types."""
+    """Yield the names assigned at a file's top level; with `aliases`, those that may be types."""
     for node in top_level(file.tree.body):
         if isinstance(node, ast.Assign | ast.AnnAssign) and not (aliases and _is_made(node.value)):
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]
@@ -156,14 +156,14 @@ def _assigned(file: SourceFile, *, aliases: bool = False) -> Iterator[str]:
 
 
 def _is_made(value: ast.expr | None) -> bool:
-    """Whether a value is what a call returns, as a TypeVar is; a NewType is a type all the same."""
+    """Return True if a value is the result of a call, such as a TypeVar; a NewType counts as a type."""
     return isinstance(value, ast.Call) and not (isinstance(value.func, ast.Name) and value.func.id == "NewType")
 
 
 def shared(
     names: Callable[[SourceFile], Iterable[str]], files: Iterable[SourceFile], most: int
 ) -> dict[str, list[str]]:
-    """The names that more than `most` files have, with those files."""
+    """Return the names that more than `most` files have, with those files."""
     found: dict[str, list[str]] = defaultdict(list)
     for file in files:
         for name in names(file):
@@ -172,13 +172,13 @@ def shared(
 
 
 def file_name(file: SourceFile) -> list[str]:
-    """The base name of a file, of one that has a name of its own."""
+    """Return the base name of a file; empty for special names such as `__init__.py`."""
     name = file.path.rpartition("/")[2]
     return [] if name.startswith("__") else [name]
 
 
 def imports(files: Sequence[SourceFile]) -> list[Import]:
-    """Which file imports which, as it is written: that a package is loaded before what is in it does not count."""
+    """Return the imports between files, as written: the implicit import of a parent package does not count."""
     paths = {file.module: file.path for file in files}
     return sorted(
         {
@@ -193,7 +193,7 @@ def imports(files: Sequence[SourceFile]) -> list[Import]:
 def _import_statements(
     body: Iterable[ast.AST], when: When = When.LOADING
 ) -> Iterator[tuple[ast.Import | ast.ImportFrom, When]]:
-    """The imports in these statements, at any depth, each with when it happens."""
+    """Yield the imports in these statements, at any depth, each with its time."""
     for node in body:
         if isinstance(node, ast.Import | ast.ImportFrom):
             yield node, when
@@ -207,14 +207,14 @@ def _import_statements(
 
 
 def _imported(node: ast.Import | ast.ImportFrom, modules: Iterable[str]) -> Iterator[str]:
-    """Those of the modules that a statement imports; `from a import b` imports `a.b` where that is one, else `a`."""
+    """Yield those of the modules that a statement imports; for `from a import b`, `a.b` if that is one, else `a`."""
     for alias in node.names:
         parent = node.module if isinstance(node, ast.ImportFrom) else None
         yield from [name for name in (f"{parent}.{alias.name}", parent or alias.name) if name in modules][:1]
 
 
 def circles(arrows: Iterable[Import], counted: Iterable[When]) -> list[list[str]]:
-    """The groups of files of which each reaches every other, largest first."""
+    """Return the groups of files in which each reaches every other, largest first."""
     targets: dict[str, set[str]] = defaultdict(set)
     for arrow in arrows:
         if arrow.when in counted and arrow.source != arrow.target:
@@ -235,7 +235,7 @@ def _reached(file: str, targets: Mapping[str, set[str]]) -> set[str]:
 
 
 def arrows_up(arrows: Iterable[Import], order: Sequence[set[str]]) -> list[str]:
-    """The imports, whenever they happen, of a floor above one's own or beside it."""
+    """Return the imports, at any time, of a floor above the own one or beside it."""
     rank = {name: number for number, row in enumerate(order) for name in row}
     found = []
     for arrow in arrows:
@@ -246,26 +246,26 @@ def arrows_up(arrows: Iterable[Import], order: Sequence[set[str]]) -> list[str]:
 
 
 def action_files(files: Iterable[SourceFile], action: str) -> list[str]:
-    """The files that know an action: its name is a word of an identifier, or of a text that is nothing but names."""
+    """Return the files that name an action, in a word of an identifier or of a text that consists of names."""
     return [file.path for file in files if action in file.text.lower() and action in _words(file.tree)]
 
 
 def _words(tree: ast.Module) -> set[str]:
-    """The words, in small letters, of all names in a file: of `SayText`, of `say_text` and of `"say.text"` the same."""
+    """Return the words, in small letters, of all names in a file, equal for `SayText`, `say_text`, `"say.text"`."""
     values = (value for node in ast.walk(tree) for _, value in ast.iter_fields(node))
     names = {value for value in values if isinstance(value, str) and _DOTTED.fullmatch(value)}
     return {word.lower() for name in names for word in _WORD.findall(name)}
 
 
 def commit_files(root: Path, commit: str) -> list[str]:
-    """The Python files of the package that a commit touched; raises CalledProcessError for one that is not there."""
+    """Return the Python files of the package that a commit touched; raise CalledProcessError for an unknown commit."""
     command = ["git", "show", "--name-only", "--format=", commit, "--", PACKAGE]
     names = subprocess.run(command, cwd=root, capture_output=True, text=True, check=True).stdout.split("\n")
     return [name.removeprefix(f"{PACKAGE}/") for name in names if name.endswith(".py")]
 
 
 def measure(files: Sequence[SourceFile], order: Sequence[set[str]], action: str = SHOWN_ACTION) -> Shape:
-    """All figures of the files of a package, whose floors stand in that order from the top."""
+    """Return all figures of the files of a package, with its floors in order from the top."""
     by_file, by_function, arrows = file_sizes(files), function_sizes(files), imports(files)
     types = shared(type_names, files, 1)
     counted = [[When.LOADING], [When.LOADING, When.TYPES], [When.LOADING, When.LATE], list(When)]
@@ -287,7 +287,7 @@ def measure(files: Sequence[SourceFile], order: Sequence[set[str]], action: str 
 
 
 def report(shape: Shape) -> str:
-    """All figures, and the names behind them."""
+    """Return all figures as text, with the names behind them."""
     sizes = [
         f"{floor.name:<16}{floor.files:>5} files {floor.lines:>7} lines" for floor in (*shape.floors, total(shape))
     ]
@@ -317,12 +317,12 @@ def _listed(title: str, items: Iterable[str]) -> str:
 
 
 def total(shape: Shape) -> Floor:
-    """All floors as one."""
+    """Return all floors as one."""
     return Floor("together", sum(floor.files for floor in shape.floors), sum(floor.lines for floor in shape.floors))
 
 
 def table(shape: Shape) -> str:
-    """The figures for the docs, in Markdown; lines are rounded, so that not every change makes them stale."""
+    """Return the figures for the docs, in Markdown; lines are rounded, so that small changes don't make them stale."""
     most, every = MAX_SHARING_FILES, " + ".join(When)
     rows = [
         *((f"`{floor.name}`", f"{floor.files} files, {rounded(floor.lines):,} lines") for floor in shape.floors),
@@ -344,12 +344,12 @@ def _size(size: Size) -> str:
 
 
 def rounded(number: int) -> int:
-    """A number to two significant digits."""
+    """Return a number rounded to two significant digits."""
     return int(float(f"{number:.2g}"))
 
 
 def placed(page: str, text: str) -> str:
-    """A page with the text between its markers; raises ValueError for one without them."""
+    """Return a page with the text between its markers; raise ValueError if it has none."""
     before, begin, rest = page.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not end:
@@ -384,7 +384,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _report(shape: Shape, files: Sequence[SourceFile], asked: argparse.Namespace) -> None:
-    """Print the figures, or write them, in the form that is asked for."""
+    """Print the figures, or write them, in the requested form."""
     if page := asked.write or asked.check:
         _keep(page, table(shape), only_check=asked.check is not None)
     elif asked.json or asked.markdown:
@@ -394,7 +394,7 @@ def _report(shape: Shape, files: Sequence[SourceFile], asked: argparse.Namespace
 
 
 def _elsewhere(files: Sequence[SourceFile]) -> str:
-    """A line for each feature: its files that are not in its folder."""
+    """Return a line for each feature: its files outside of its folder."""
     found = elsewhere_by_feature(files)
     return _listed(
         "features, each with its files elsewhere", (f"{n}: {', '.join(p) or 'none'}" for n, p in found.items())
@@ -408,7 +408,7 @@ def _places(name: str, found: Mapping[str, Figure]) -> str:
 
 
 def _keep(page: Path, text: str, *, only_check: bool) -> None:
-    """Put the table into a page, or end with 1 where it does not stand there."""
+    """Put the table into a page, or exit with a message if the page differs."""
     now = page.read_text(encoding="utf-8")
     new = placed(now, text)
     if only_check and now != new:
@@ -418,5 +418,5 @@ def _keep(page: Path, text: str, *, only_check: bool) -> None:
 
 
 if __name__ == "__main__":
-    gc.disable()  # the trees stay until the end: looking for what could go took two fifths of the time
+    gc.disable()  # the trees live until the end: garbage collection would take two fifths of the time
     main()

@@ -1,8 +1,8 @@
-"""What `make docs` adds to docs/ before MkDocs makes a site of it (the `hooks` of mkdocs.yml).
+"""The additions of `make docs` to docs/ before MkDocs makes a site of it (the `hooks` of mkdocs.yml).
 
-The menu is docs/README.md: its headings, and beneath each the pages that it links to; a folder's README brings all of
-its folder. The reference of the YAML files and messages is made from schemas/. A link to a schema leads to its page
-there, a link to any other file of the repository to a page that shows the file.
+The menu is docs/README.md: its headings, and below each the pages that it links to; a folder's README brings all of its
+folder. The reference of the YAML files and messages is made from schemas/. A link to a schema leads to its page there,
+a link to any other file of the repository to a page that shows the file.
 """
 
 import posixpath
@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
 REFERENCE = "schemas"
 SHOWN = "repository"
-"""The folders of the pages that are made."""
+"""The folders of generated pages."""
 
 HEADING = re.compile(r"(?m)^## (.+)$")
 ENTRY = re.compile(r"(?m)^- \[([^\]]+)\]\(([^)#]+)\)")
@@ -50,7 +50,7 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
 
 
 def menu(index: str, written: set[str]) -> Menu:
-    """The site's menu: headings with the pages that they list; for a folder's README all of its folder."""
+    """Return the site's menu: headings with the pages that they list; for a folder's README all of its folder."""
     titles = ["Start", *HEADING.findall(index)]
     sections: Menu = [{"Start": ["README.md"]}]
     for title, text in zip(titles[1:], HEADING.split(index)[2::2], strict=True):
@@ -75,7 +75,7 @@ def _written() -> set[str]:
 
 
 def made() -> dict[str, str]:
-    """The pages that stand in no file of docs/, by path: the reference, and files that pages link to."""
+    """Return the generated pages by path: the reference, and files of the repository that pages link to."""
     written = {f"{REFERENCE}/{path}": text for path, text in pages(ROOT / "schemas").items()}
     waiting = [(page, (DOCS / page).read_text(encoding="utf-8")) for page in sorted(_written())]
     while waiting:
@@ -91,7 +91,7 @@ def made() -> dict[str, str]:
 
 
 def pictures(shown: Mapping[str, str]) -> dict[str, Path]:
-    """The pictures of the pages that show files of the repository, by their path in the site."""
+    """Return the pictures on pages that show files of the repository, by their path in the site."""
     links = ((found[2], page) for page, text in shown.items() for found in LINK.finditer(text))
     files = (file for link, page in links if (file := outside(link, page)) and not file.startswith("docs/"))
     return {shown_at(file): ROOT / file for file in files if _is_picture(file) and (ROOT / file).is_file()}
@@ -102,7 +102,7 @@ def _is_picture(file: str) -> bool:
 
 
 def outside(link: str, page: str) -> str | None:
-    """The file of the repository that a link from a page leads to, where it stands outside docs/."""
+    """Return the file of the repository that a link from a page leads to; None if it is inside docs/."""
     if ":" in link:
         return None
     if page.startswith(f"{SHOWN}/"):
@@ -113,7 +113,7 @@ def outside(link: str, page: str) -> str | None:
 
 
 def led(link: str, page: str) -> str:
-    """A link as it leads within the site."""
+    """Return a link as it is within the site."""
     target = outside(link, page)
     if target is None:
         return link
@@ -122,7 +122,7 @@ def led(link: str, page: str) -> str:
 
 
 def shown_at(file: str) -> str:
-    """The page of the site where a file of the repository is shown."""
+    """Return the page of the site that shows a file of the repository."""
     if match := re.fullmatch(r"schemas/(.+)\.schema\.json", file):
         return f"{REFERENCE}/{match[1]}.md"
     if file.rstrip("/") in ("schemas", "schemas/messages"):

@@ -20,7 +20,7 @@ class SourceFile(NamedTuple):
 
 
 def read(package: Path) -> list[SourceFile]:
-    """The Python files beneath a folder, in the order of their paths; raises SyntaxError for one that is not Python."""
+    """Return the Python files below a folder, in the order of their paths; raise SyntaxError for an invalid one."""
     if not (files := sorted(package.rglob("*.py"))):
         raise SystemExit(f"no Python file is beneath {package}: the shape of nothing is not checked")
     return [_source_file(package, path) for path in files]
@@ -33,7 +33,7 @@ def _source_file(package: Path, path: Path) -> SourceFile:
 
 
 def statements(parent: ast.AST) -> Iterator[ast.AST]:
-    """The statements beneath a node, at any depth; quicker than `ast.walk`, which looks into expressions, too."""
+    """Yield the statements below a node, at any depth; faster than `ast.walk`, which also visits expressions."""
     for node in ast.iter_child_nodes(parent):
         if isinstance(node, ast.stmt | ast.excepthandler | ast.match_case):
             yield node
@@ -41,7 +41,7 @@ def statements(parent: ast.AST) -> Iterator[ast.AST]:
 
 
 def top_level(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
-    """The statements of a module, those under an `if` or a `try` too."""
+    """Yield the statements of a module, including those under an `if` or a `try`."""
     for node in body:
         yield node
         if isinstance(node, ast.If | ast.Try):

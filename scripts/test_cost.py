@@ -1,10 +1,10 @@
-"""Print what the tests cost in processor time: by folder, the twenty dearest, and all of a run.
+"""Print the cost of the tests in processor time: by folder, the twenty most expensive, and the whole run.
 
     python scripts/test_cost.py [--suite test|rest|all] [--markdown] [--report FILE] [-- PYTEST_ARGUMENTS]
 
-Processor time, since machines and what else they do differ by a factor of three on the wall. A test's share is what its
-worker, and the processes that the worker waited for, used meanwhile; what is shared (collecting, the one browser, the
-one broker) is the line below the folders.
+It uses processor time, since wall times differ by a factor of three between machines and loads. A test's share is the
+time of its worker, and of processes for which the worker waited, during the test; shared costs (collecting, the one
+browser, the one broker) are the line below the folders.
 """
 
 import argparse
@@ -21,7 +21,7 @@ DEAREST = 20
 
 
 def main() -> int:
-    """Run the tests, and print the tables; pytest's exit code."""
+    """Run the tests, and print the tables; return pytest's exit code."""
     parser = argparse.ArgumentParser(description="Print what the tests cost in processor time.")
     parser.add_argument("--suite", choices=("test", "rest", "all"), default="test")
     parser.add_argument("--workers", default=str(os.cpu_count() or 1), help="of pytest-xdist; 0 for none")
@@ -44,7 +44,7 @@ def main() -> int:
             f"--junitxml={report}",
             *given.arguments,
         ]
-        # As the Makefile does: else each of the processes that tests start compiles everything again.
+        # As in the Makefile: otherwise each of the processes that tests start would compile everything again.
         environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
         run = measured(command, environment)
         if not report.exists():
@@ -70,7 +70,7 @@ def read(report: Path) -> dict[str, float]:
 
 
 def folders(costs: dict[str, float]) -> dict[str, tuple[int, float]]:
-    """Return the number of tests and their cost [s] by folder, the dearest first."""
+    """Return the number of tests and their cost [s] by folder, the most expensive first."""
     found: dict[str, list[float]] = defaultdict(list)
     for name, cost in costs.items():
         modules = name.partition("::")[0].split(".")

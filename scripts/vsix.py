@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[1]
 EXTENSION, CLIENT = ROOT / "editors/vscode", ROOT / ".cache/vscode/node_modules"
 FILES = ("package.json", "extension.js", "terminal.js", "README.md", "LICENSE")
 KEPT = (".js", ".json", ".md", ".txt")
-"""What is taken of the packages; without sources, types and maps."""
+"""Kinds of files to keep of the packages; sources, types and maps are left out."""
 SAME_TIME = (1980, 1, 1, 0, 0, 0)
 
 TYPES = """<?xml version="1.0" encoding="utf-8"?>
@@ -45,7 +45,7 @@ MANIFEST = """<?xml version="1.0" encoding="utf-8"?>
 
 
 def main() -> str | None:
-    """Write the file; what to say where that cannot be done."""
+    """Write the file; return the reason if that is impossible."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0] if __doc__ else "")
     parser.add_argument("--output", type=Path, default=Path("lumen.vsix"), metavar="FILE")
     output = parser.parse_args().output
@@ -57,7 +57,7 @@ def main() -> str | None:
 
 
 def build(output: Path) -> None:
-    """The same bytes whenever it is built of the same files."""
+    """Write the extension; equal files give equal bytes."""
     data = json.loads((EXTENSION / "package.json").read_text("utf-8"))
     files = {f"extension/{name}": (EXTENSION / name).read_bytes() for name in FILES}
     if not (packages := sorted(CLIENT.rglob("*"))):

@@ -1,4 +1,4 @@
-"""The places at which an exhibition is composed, and at which its parts are connected after they were made."""
+"""Find the places at which an exhibition is composed, and at which its parts are connected after their creation."""
 
 import ast
 from collections import defaultdict
@@ -8,7 +8,7 @@ from callables import Callables, Held
 from scopes import OWN, Function, Package, Place, Scoped, assigned, is_property, last_word, parameters
 
 SEAMS = {"bus", "clock", "robot"}
-"""The objects that touch the world, by the last word of the names that they have in the code."""
+"""The objects that access the world, by the last word of their names in the code."""
 SEAM_TYPES = {"Bus", "Clock", "Robot"}
 PORTS = "ports.py"
 """The file whose protocols are the seams and their abilities."""
@@ -18,7 +18,7 @@ CONSTRUCTORS = {"__init__", "__post_init__", "__new__"}
 
 
 def composition_sites(package: Package) -> list[Place]:
-    """The files that make a node, or make a part other than to return it, as the one function of a row does."""
+    """Return the files that make a node, or make a part other than to return it, as the one function of a row does."""
     parts, nodes = package.family("Part"), package.family("Node")
     returned = {
         id(value)
@@ -38,7 +38,7 @@ def _is_choice(scoped: Scoped) -> bool:
 
 
 def seam_probes(package: Package) -> list[Place]:
-    """The lines that look with `getattr` or `hasattr` for what a bus, a clock or a robot has.
+    """Return the lines that probe a bus, a clock or a robot with `getattr` or `hasattr`.
 
     An expression is such an object if its last name ends in one of `SEAMS`, if its annotation names a seam or one of
     the protocols of ports.py, or if the file assigns it from such an expression.
@@ -62,7 +62,7 @@ def seam_probes(package: Package) -> list[Place]:
 
 
 def _seam_names(package: Package, types: set[str]) -> dict[str, set[str]]:
-    """The names in each file that are annotated as a seam, or assigned from one."""
+    """Return the names in each file that are annotated as a seam, or assigned from one."""
     found: dict[str, set[str]] = defaultdict(set)
     for scoped in package.of(ast.FunctionDef, ast.AsyncFunctionDef, ast.AnnAssign):
         node = scoped.node
@@ -80,7 +80,7 @@ def _seam_names(package: Package, types: set[str]) -> dict[str, set[str]]:
 
 
 def _names_type(annotation: ast.expr, types: set[str]) -> bool:
-    """Return whether an annotation is one of these types, or a union with one."""
+    """Return True if an annotation is one of these types, or a union with one."""
     if isinstance(annotation, ast.Constant) and isinstance(annotation.value, str):
         return _names_type(ast.parse(annotation.value, mode="eval").body, types)
     if isinstance(annotation, ast.BinOp):
@@ -96,7 +96,7 @@ def _is_seam(expression: ast.expr, names: set[str]) -> bool:
 
 
 def assigned_callables(package: Package, callables: Callables) -> list[Place]:
-    """The assignments of a callable to an attribute of another object, an attribute that a class of the package has."""
+    """Return the assignments of a callable to an attribute of another object, if a class of the package has it."""
     found = []
     for scoped in package.of(ast.Assign, ast.AnnAssign):
         for target, value in assigned(scoped.node):
@@ -126,7 +126,7 @@ def _assignment(target: ast.expr, value: ast.expr | None) -> str:
 
 
 def added_callables(package: Package, callables: Callables) -> list[Place]:
-    """The callables that are put into a list, a set or a table which is an attribute of another object."""
+    """Return the callables added to a list, a set or a table that is an attribute of another object."""
     found = []
     for scoped in package.of(ast.Call, ast.AugAssign, ast.Assign):
         for collection, value in _added(scoped.node):
@@ -137,7 +137,7 @@ def added_callables(package: Package, callables: Callables) -> list[Place]:
 
 
 def _added(node: ast.AST) -> Iterator[tuple[ast.expr, ast.expr]]:
-    """The collections that a statement changes, each with a value that it puts in."""
+    """Yield the collections that a statement changes, each with a value that it adds."""
     match node:
         case ast.Call(func=ast.Attribute(value=collection, attr=method), args=values) if method in ADDING:
             yield from ((collection, each) for value in values for each in _elements(value))
@@ -152,7 +152,7 @@ def _elements(value: ast.expr) -> list[ast.expr]:
 
 
 def storing_methods(package: Package, callables: Callables) -> list[Place]:
-    """The methods, other than constructors, that do nothing but store a callable that they are given."""
+    """Return the methods, other than constructors, that only store a callable parameter."""
     found = []
     for scoped in package.of(ast.FunctionDef):
         method = scoped.node
@@ -171,7 +171,7 @@ def _is_docstring(node: ast.stmt) -> bool:
 
 
 def _stores(node: ast.stmt) -> bool:
-    """Return whether a statement only changes an attribute of the object, or of an object that it holds."""
+    """Return True if a statement only changes an attribute of the object, or of an object that it contains."""
     match node:
         case ast.Assign() | ast.AugAssign() | ast.AnnAssign():
             targets = node.targets if isinstance(node, ast.Assign) else [node.target]

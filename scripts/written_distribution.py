@@ -23,7 +23,7 @@ def write_distribution(folder: Path, name: str, manifest: str, files: Mapping[st
 
 @contextmanager
 def on_path(folder: Path) -> Iterator[None]:
-    """Let this process import what is in that folder, features included, as long as the context lasts."""
+    """Let this process import modules from that folder, including features, while the context lasts."""
     before = set(sys.modules)
     sys.path.insert(0, str(folder))
     _forget()
@@ -38,9 +38,9 @@ def on_path(folder: Path) -> Iterator[None]:
 
 
 def _forget() -> None:
-    """Let Lumen find its features again: forget what its functions with a cache returned.
+    """Let Lumen find its features again: clear the caches of its functions.
 
-    The process that waits to judge files knows the features of its own start, so it ends.
+    The process that waits to check files has the features of its own start, so it ends.
     """
     invalidate_caches()
     if idle := sys.modules.get("lumen.run.reload.idle_process"):

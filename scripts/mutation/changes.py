@@ -1,7 +1,7 @@
 """Small changes of Python source, one at a time, each of which a test should notice.
 
-Left alone are annotations, docstrings, `TYPE_CHECKING`, `__all__`, f-strings, strings with a space in them (texts for
-people), `assert_never`, and what only saves time or memory (`cache`, `slots`).
+Annotations, docstrings, `TYPE_CHECKING`, `__all__`, f-strings, strings with a space in them (texts for people),
+`assert_never`, and code that only saves time or memory (`cache`, `slots`) are never changed.
 """
 
 import ast
@@ -27,7 +27,7 @@ CALLS = {
     "startswith": "endswith", "endswith": "startswith", "lower": "upper", "strip": "rstrip",
 }  # fmt: skip
 DECORATORS = {"cache", "lru_cache", "overload", "override", "final", "abstractmethod", "runtime_checkable"}
-"""Decorators that only save time, or that only a type checker reads."""
+"""Decorators that only save time, or that only a type checker uses."""
 TYPING = {"cast", "TypeVar", "NewType", "ParamSpec", "assert_never"}
 LISTS = (ast.stmt, ast.excepthandler)
 
@@ -50,7 +50,7 @@ class Statement(NamedTuple):
 
     @property
     def header(self) -> range:
-        """The lines of the statement itself, without those of the statements within it."""
+        """Return the lines of the statement itself, without those of the statements inside it."""
         body = getattr(self.node, "body", None) or getattr(self.node, "cases", None)
         last = self.node.end_lineno or self.node.lineno
         inner = body[0] if isinstance(body, list) else None
@@ -87,7 +87,7 @@ class Source:
         return None if ast.dump(tree) == ast.dump(self.tree) else content
 
     def lines(self, change: Change) -> range:
-        """The lines that a change touches."""
+        """Return the lines that a change touches."""
         first = self.content.count(b"\n", 0, change.start) + 1
         return range(first, first + self.content.count(b"\n", change.start, max(change.start, change.end - 1)) + 1)
 
@@ -95,14 +95,14 @@ class Source:
         return self.content[self._starts[node.lineno] :].partition(b"\n")[0].decode().strip()
 
     def shown(self, change: Change) -> tuple[str, str]:
-        """The source before and after a change, each in one line."""
+        """Return the source before and after a change, each on one line."""
         start, end = change.shown
         before = self.content[start:end].decode()
         after = (self.content[start : change.start] + change.text.encode() + self.content[change.end : end]).decode()
         return _one_line(before), _one_line(after)
 
     def changes(self, statement: ast.stmt) -> list[Change]:
-        """Every change of a statement itself, not of the statements within it; assign None if there is no other."""
+        """Return every change of a statement itself, without nested statements; assign None if there is no other."""
         found = [*self._statement(statement)]
         for node in _expressions(statement):
             found += self._expression(node)
@@ -230,7 +230,7 @@ LITERALS = (ast.JoinedStr, ast.List, ast.Tuple, ast.Dict)
 
 
 def _statements(body: Sequence[ast.stmt], *, imported: bool, owner: str = "") -> Iterator[Statement]:
-    """Yield the statements that may be changed, with those within them."""
+    """Yield the statements that may be changed, including nested ones."""
     for node in body:
         match node:
             case ast.Import() | ast.ImportFrom() | ast.Expr(ast.Constant()) | ast.Pass() | ast.Global():
@@ -257,7 +257,7 @@ def _handlers(node: ast.stmt) -> Sequence[ast.excepthandler]:
 
 
 def _bound(node: ast.stmt, owner: str) -> Iterator[str]:
-    """The names by which the rest of the engine can reach what a statement defines."""
+    """Yield the names by which the rest of the engine can use what a statement defines."""
     match node:
         case ast.FunctionDef(name) | ast.AsyncFunctionDef(name) | ast.ClassDef(name):
             yield owner if name.startswith("__") and owner else name
@@ -269,7 +269,7 @@ def _bound(node: ast.stmt, owner: str) -> Iterator[str]:
 
 
 def _expressions(statement: ast.stmt) -> Iterator[ast.AST]:
-    """Yield the expressions of a statement that may be changed, outside the statements within it."""
+    """Yield the expressions of a statement that may be changed, outside the statements inside it."""
     left: list[ast.AST] = [statement]
     while left:
         node = left.pop()
@@ -288,7 +288,7 @@ def _expressions(statement: ast.stmt) -> Iterator[ast.AST]:
 
 
 def _others(value: object) -> tuple[str, ...]:
-    """Other constants than this one, as source."""
+    """Return other constants than this one, as source."""
     match value:
         case None:
             return ("1",)
@@ -311,7 +311,7 @@ def _is_text(node: ast.AST) -> bool:
 
 
 def _is_type(name: str, value: ast.AST) -> bool:
-    """Whether an assignment gives a type another name."""
+    """Return True if an assignment gives a type another name."""
     return name[:1].isupper() and not name.isupper() and isinstance(value, ast.Subscript | ast.BinOp)
 
 

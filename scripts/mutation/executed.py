@@ -1,7 +1,7 @@
-"""Which tests execute which lines of the engine, child processes included: `--record` and `--compare` of mutants.py.
+"""Records which tests execute which lines of the engine, including child processes, for mutants.py.
 
 The pytest plug-in takes the traced arcs after each test from coverage.py's tracer. A child process is traced by
-coverage.py itself; its data names, as context, the test that was under way when it began.
+coverage.py itself; the context in its data is the test during which it was started.
 """
 
 import difflib
@@ -38,11 +38,11 @@ ARCS = (
 
 Arc = tuple[int, int]
 Lines = dict[str, dict[bytes, set[int]]]
-"""By file: the same lines (coverage.py's bits) → the tests that execute exactly these."""
+"""By file: a set of lines (coverage.py's bits) → the tests that execute exactly these."""
 
 
 class Tracer:
-    """Keep the lines of each test and the arcs of all of them."""
+    """Collects the lines of each test and the arcs of all of them."""
 
     def __init__(self, folder: str) -> None:
         self._folder = folder
@@ -53,7 +53,7 @@ class Tracer:
         self._cpu: dict[str, float] = {}
 
     def _take(self, test: str = "") -> None:
-        """Take what was executed since the last time; it is the given test's."""
+        """Collect what was executed since the last call, for the given test."""
         for file, traced in list(self._coverage._collector.data.items()):  # type: ignore[union-attr]
             if packed := set(traced):
                 traced.clear()
@@ -84,16 +84,18 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 class Recording(NamedTuple):
-    """Which test of a run executed what; `cpu` is their processor time [s], `sources` the engine as it was."""
+    """The lines and arcs that the tests of a run execute."""
 
     tests: list[str]
     cpu: dict[str, float]
+    """Processor time of each test [s]."""
     lines: Lines
     arcs: dict[str, set[Arc]]
     sources: dict[str, str]
+    """The sources of the engine at that time."""
 
     def executing(self, file: str, lines: Iterable[int]) -> set[str]:
-        """The tests that execute one of these lines."""
+        """Return the tests that execute one of these lines."""
         wanted = int.from_bytes(nums_to_numbits(lines), "little") if (lines := set(lines)) else 0
         groups = self.lines.get(file, {}).items()
         found = {test for bits, tests in groups if int.from_bytes(bits, "little") & wanted for test in tests}
@@ -104,14 +106,14 @@ class Recording(NamedTuple):
 
 
 def prepare(folder: Path, engine: Path) -> dict[str, str]:
-    """Make a folder ready to be recorded into; return the environment that pytest needs for it."""
+    """Prepare a folder for a recording; return the environment variables for pytest."""
     folder.mkdir(parents=True)
     (folder / "rc").write_text(SETTINGS.format(source=engine, folder=folder))
     return {OUT: str(folder), "COVERAGE_PROCESS_START": str(folder / "rc")}
 
 
 def read(folder: Path, engine: Path | None = None) -> Recording:
-    """Read a recording; the first time, join what the processes wrote with the sources of the engine."""
+    """Read a recording; the first call joins the files of all processes with the sources of the engine."""
     kept = folder / "recording.pickle"
     if not kept.exists():
         kept.write_bytes(pickle.dumps(tuple(_joined(folder, engine))))
@@ -144,7 +146,7 @@ def _joined(folder: Path, engine: Path | None) -> Recording:
 
 
 def _child(data: Path) -> Iterator[tuple[str, str, list[Arc]]]:
-    """Read a file of coverage.py: the test, the file, its arcs; nothing if the process was killed while it wrote."""
+    """Yield the test, the file and its arcs from a file of coverage.py; nothing if a kill has damaged the file."""
     found: dict[tuple[str, str], list[Arc]] = defaultdict(list)
     try:
         with closing(sqlite3.connect(f"file:{data}?mode=ro", uri=True)) as database:
@@ -169,7 +171,7 @@ def _lines(arcs: Iterable[Arc]) -> set[int]:
 
 
 def _id(test: str) -> str:
-    """The id of a test without the group that xdist appends."""
+    """Return the id of a test without the group that xdist appends."""
     return test if test.endswith("]") else re.sub(r"@[^@]*$", "", test)
 
 
@@ -178,20 +180,20 @@ def _relative(file: str) -> str:
 
 
 def moved(before: str, after: str) -> dict[int, int]:
-    """Where the lines of a file are that are in both versions of it."""
+    """Return the new numbers of the lines that are in both versions of a file."""
     matcher = difflib.SequenceMatcher(None, before.splitlines(), after.splitlines(), autojunk=False)
     return {a + i + 1: b + i + 1 for a, b, size in matcher.get_matching_blocks() for i in range(size)}
 
 
 class Lost(NamedTuple):
-    """Return the lines of a file that one run executed and another did not, as numbered in the later one."""
+    """The lines and branches of a file that one run executed and another did not, as numbered in the later one."""
 
     lines: list[int]
     branches: list[Arc]
 
 
 def compare(before: Recording, after: Recording) -> dict[str, Lost]:
-    """The lines and branches that are still in the engine and were executed before, but not after."""
+    """Return the lines and branches that are still in the engine and were executed before, but not after."""
     found = {}
     for file, source in before.sources.items():
         if file not in after.sources:
@@ -210,13 +212,13 @@ def compare(before: Recording, after: Recording) -> dict[str, Lost]:
 
 
 class Located(NamedTuple):
-    """A recording seen from the engine as it is now, which may have changed since."""
+    """A recording, translated to the present engine, which may have changed since."""
 
     recording: Recording
     now: dict[str, str]
 
     def executing(self, file: str, lines: Iterable[int]) -> set[str]:
-        """The tests that execute one of these lines of the present file."""
+        """Return the tests that execute one of these lines of the present file."""
         before = self.recording.sources.get(file)
         if before is None:
             return set()

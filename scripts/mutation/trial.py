@@ -1,10 +1,10 @@
-"""Run tests on a copy of the repository, with a limit in processor time for all processes that they start.
+"""Run tests in a copy of the repository, with a limit on the processor time of all processes that they start.
 
-    python -m mutation.trial JOB       # in a copy: keeps watch over …
+    python -m mutation.trial JOB       # in a copy: watches over …
     python -m mutation.trial JOB run   # … pytest, which runs batch after batch until a test fails
 
 The watching process adopts each process that loses its parent (`PR_SET_CHILD_SUBREAPER`), so none leaves the tree. The
-processor time of a process is in /proc or, once it has ended, in the times of the one that waited for it.
+processor time of a process is in /proc or, once it has ended, in the times of the process that waited for it.
 """
 
 import ctypes
@@ -26,18 +26,18 @@ LINKED = (".git", ".cache")
 LEFT_OUT = (*LINKED, ".venv", ".pytest_cache", ".mypy_cache", ".ruff_cache", ".import_linter_cache", "build", ".lumen")
 PR_SET_CHILD_SUBREAPER = 36
 LOOK = 0.5
-"""The pause between two looks at the processes [s]."""
+"""The pause between two checks of the processes [s]."""
 MEMORY = 6 << 30
 """The memory limit of one process [bytes]."""
 PASSED = (0, 5)
-"""How pytest ends if no test failed, or none was left to run."""
+"""Exit codes of pytest if no test failed, or none was left to run."""
 
 
 class Ended(NamedTuple):
-    """How the tests ended: "passed", "failed", or by which limit.
+    """The end of a run of tests: "passed", "failed", or the limit that was reached.
 
-    `test` is the one that failed first or was under way; `own` is the processor time of the latest test alone, `cpu`
-    that of all [s].
+    `test` is the first one that failed, or the one that was running; `own` is its processor time alone, `cpu` that of
+    all [s].
     """
 
     how: str
@@ -48,7 +48,7 @@ class Ended(NamedTuple):
 
 
 class Copy:
-    """A copy of the repository with a virtual environment whose `lumen` is the copy's engine."""
+    """A copy of the repository, with a virtual environment whose `lumen` is the copy's engine."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -90,7 +90,7 @@ class Copy:
         *,
         every: bool = False,
     ) -> Ended:
-        """Run batches of tests until one fails, or `every` test, with another content of a file if one is given."""
+        """Run batches of tests until one fails, or `every` test, with a changed file if a change is given."""
         shutil.rmtree(self.folder / ".cache/xdg", ignore_errors=True)
         job = self.folder / "job.json"
         job.write_text(json.dumps({"batches": batches, "cpu": cpu, "idle": idle, "every": every}))
@@ -106,7 +106,7 @@ class Copy:
             if change:
                 original.write_bytes(change[1])
                 self._changes += 1
-                os.utime(original, (0, self._changes))  # each has its own, so no compiled file is taken for another's
+                os.utime(original, (0, self._changes))  # each content has its own time, so no compiled file is reused
             done = subprocess.run(
                 command, cwd=self.folder, env=environment, capture_output=True, text=True, check=False
             )
@@ -123,7 +123,7 @@ def _left_out(folder: str, names: list[str]) -> list[str]:
 
 
 def watch(job: Path) -> Ended:
-    """Run the tests in a process of their own until they end or reach a limit; no process is left."""
+    """Run the tests in a process of their own until they end or reach a limit; leave no process behind."""
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     limits = json.loads(job.read_text())
     progress = job.with_suffix(".progress")
@@ -175,7 +175,7 @@ def _stat(pid: int) -> Stat:
 
 
 def _descendants() -> dict[int, Stat]:
-    """All processes that this one has started or adopted."""
+    """Return all processes that this one has started or adopted."""
     children: dict[int, dict[int, Stat]] = defaultdict(dict)
     for pid in [int(name) for name in os.listdir("/proc") if name.isdecimal()]:
         stat = _stat(pid)
@@ -190,12 +190,12 @@ def _descendants() -> dict[int, Stat]:
 
 
 def _used(tree: Mapping[int, Stat]) -> float:
-    """The processor time of these processes and of those that have ended [s]."""
+    """Return the processor time of these processes and of those that have ended [s]."""
     return sum(stat.ticks for stat in tree.values()) / os.sysconf("SC_CLK_TCK") + sum(os.times()[2:4])
 
 
 def _reap(tree: Mapping[int, Stat], but: int = 0) -> None:
-    """Wait for adopted processes that have ended."""
+    """Collect adopted processes that have ended."""
     for pid, stat in tree.items():
         if pid != but and stat.parent == os.getpid():
             with suppress(ChildProcessError):
@@ -203,7 +203,7 @@ def _reap(tree: Mapping[int, Stat], but: int = 0) -> None:
 
 
 def run(job: Path) -> int:
-    """Run pytest for each batch until a test fails; report each test in a file beside the job."""
+    """Run pytest for each batch until a test fails; report each test in a file in the job's folder."""
     import pytest
 
     class Picked:

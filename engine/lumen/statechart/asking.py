@@ -19,7 +19,7 @@ MAX_SENTENCES = 5
 MAX_NAME = 60
 """Maximum length of a text that may be a name [characters]."""
 MARKUP = str.maketrans(dict.fromkeys("\\^<>{}[]|`*_#~\n\r\t", " "))
-r"""Signs that a voice may interpret as commands, such as NAOqi's `^start(…)` and `\\rspd=…\\`; each becomes a blank."""
+"""Signs that a voice may interpret as commands, such as NAOqi's `^start(…)` and `\\rspd=…\\`; each becomes a blank."""
 
 
 class Sentence(NamedTuple):
