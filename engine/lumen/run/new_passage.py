@@ -44,7 +44,7 @@ def write_passage(
             raise UsageError(f"{KNOWLEDGE_FOLDER}/ is a symbolic link: replace it with a folder")
         for name in _names(question):
             file = folder / f"{name}.yaml"
-            if not file.with_suffix(".md").exists() and _created(file, text):
+            if not file.with_suffix(".md").exists() and create_file(file, text):
                 return file.relative_to(root)
     except OSError as error:
         raise UsageError(f"{KNOWLEDGE_FOLDER}/ can't be written: {error.strerror}") from None
@@ -71,7 +71,7 @@ def _names(question: str) -> list[str]:
     return [name, *(f"{name}-{number}" for number in range(2, MAX_SAME + 1))]
 
 
-def _created(file: Path, text: str) -> bool:
+def create_file(file: Path, text: str) -> bool:
     """Write a new file; return False if it exists. After an error no part of it is left."""
     try:
         held = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)

@@ -60,6 +60,27 @@ def test_a_question_becomes_a_passage_of_the_project(copy: Path) -> None:
         assert served.browser.get("/api/day").data["numbers"]["unanswered"] == []
 
 
+def test_a_visit_becomes_a_story_without_the_name(copy: Path) -> None:
+    with closing(Hosted(copy)) as hosted, closing(Served(copy)) as served:
+        hosted.send("face", {"x": 160, "y": 120})
+        until(lambda: "ask_name" in hosted.exhibition.configuration)
+        hosted.send("heard", {"result": "my name is Budi", "language": "en"})
+        until(lambda: hosted.exhibition.context["visitor"] == "Budi")
+        until(lambda: served.browser.get("/api/day").data["visits"])
+        [visit] = served.browser.get("/api/day").data["visits"]
+        story = {"position": visit["from"], "visitor": "Budi", "name": "Ani"}
+        kept = served.browser.post("/api/stories", story).data
+        text = (copy / kept["file"]).read_text("utf-8")
+        assert kept["file"].startswith("behaviors/stories/visit_")
+        assert "Ani" in text
+        assert "Budi" not in text
+        assert [str(one) for one in check_files(copy, read_files(copy))[1] if one.place.file == kept["file"]] == []
+        assert served.browser.post("/api/stories", story).data["file"] != kept["file"]
+        for wrong in ({**story, "name": " "}, {**story, "position": "1"}, {**story, "position": 10**9}):
+            refused = served.browser.post("/api/stories", wrong)
+            assert (refused.status, list(refused.data)) == (400, ["reason"])
+
+
 def test_a_passage_in_all_languages_makes_no_warning(copy: Path) -> None:
     with closing(Hosted(copy)), closing(Served(copy)) as served:
         until(lambda: any(robot["connected"] for robot in served.browser.robots))

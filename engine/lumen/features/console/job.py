@@ -87,6 +87,14 @@ def saying(
     yield orjson.dumps({"file": write_saying(root, Saying(behavior, state, row, language, text), robot).as_posix()})
 
 
+def story(pipe: AnswerPipe, root: Path, robot: str, position: int, visitor: str, name: str) -> Iterator[bytes]:
+    """Write the story of a visit, in which the visitor has another name."""
+    from lumen.features.console.kept_stories import keep_story
+
+    kept = keep_story(root, position, robot, visitor=visitor, name=name)
+    yield orjson.dumps({"file": kept.file.as_posix(), "remark": kept.remark})
+
+
 def shape(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
     """What the robot's links look like, and its stage."""
     from lumen.features.console.drawing import Drawing
@@ -105,7 +113,8 @@ def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 
 
 JOBS: dict[str, Callable[..., Iterable[bytes]]] = {
-    "day": day, "entries": entries, "why": why, "replay": replay, "saying": saying, "shape": shape, "poses": poses
+    "day": day, "entries": entries, "why": why, "replay": replay, "saying": saying, "story": story, "shape": shape,
+    "poses": poses,
 }  # fmt: skip
 
 

@@ -53,6 +53,7 @@ class JournalSource:
 QUESTION_TIMEOUT = 20.0
 """How long an exhibition may take for a question about the past [s]."""
 MAX_QUESTION = 500
+MAX_STORY_NAME = 200
 MAX_FOUND = 200
 """Entries that a search lists; the page says if there are more."""
 MAX_SEARCHED = 200_000
@@ -79,6 +80,7 @@ class Past:
             Route("/api/files", self._files),
             Route("/api/passages", self._passage, methods=["POST"]),
             Route("/api/sayings", self._saying, methods=["POST"]),
+            Route("/api/stories", self._story, methods=["POST"]),
         ]
 
     async def _why(self, request: Request) -> Response:
@@ -204,8 +206,25 @@ class Past:
         if not self._is_ours(view):
             raise DeniedError(400, ELSEWHERE)
         said = [str(data.get(key, "")) for key in SAID]
+        return await self._written("saying", view, *said)
+
+    async def _story(self, request: Request) -> Response:
+        """Save a recorded visit as a story, which `lumen test` plays."""
+        self._reception.person(request, Role.AUTHOR)
+        data = await self._reception.posted(request)
+        view = self._reception.robot(data.get("robot"))
+        if not self._is_ours(view):
+            raise DeniedError(400, ELSEWHERE)
+        position, visitor, name = (data.get(key) for key in ("position", "visitor", "name"))
+        if not isinstance(position, int) or isinstance(position, bool):
+            raise DeniedError(400, "`position` must be the position of an entry of the visit: a whole number")
+        texts = [str(text or "")[:MAX_STORY_NAME] for text in (visitor, name)]
+        return await self._written("story", view, position, *texts)
+
+    async def _written(self, job: str, view: KnownRobot, *arguments: Any) -> Response:
+        """The answer of a job that writes a file. Raises DeniedError: a refusal is a fault of the request."""
         try:
-            saved = await self._jobs.do("saying", self._home(view), *said)
+            saved = await self._jobs.do(job, self._home(view), *arguments)
         except DeniedError as error:
             raise DeniedError(400 if error.status == 404 else error.status, error.reason) from None
         return Response(saved, headers=NO_STORE, media_type="application/json")

@@ -9,6 +9,7 @@ import { Find } from "./find.js";
 import { Fork, speechOf } from "./fork.js";
 import { Line, bounds, stretches } from "./line.js";
 import { Numbers, Totals } from "./numbers.js";
+import { KeepStory } from "./story.js";
 
 const AROUND = 40; // entries that are shown around a moment
 const SOON = 500, AGAIN = 15000; // [ms] after what happened last, and between two looks at the day: a look is dear
@@ -43,6 +44,7 @@ function Around({ name, visit, moment, chosen, choose, change }) {
   const shown = entries ? nearest(entries, moment) : [];
   const now = shown.filter((entry) => Date.parse(entry.at_time) <= moment).at(-1);
   return html`<${Part} title=${t("day.entries")} kind="entries" aside=${html`<b>${visit && !visit.n ? `${t("day.between")}, ` : ""}${t("day.at", { time: clock(new Date(moment).toISOString()) })}</b>`}>
+    ${may("author") && visit?.n && html`<${KeepStory} key=${visit.from} name=${name} visit=${visit} />`}
     ${failed && html`<p class="bad" role="alert"><${Quote} text=${failed} /></p>`}${visit && !entries && !failed && html`<p class="quiet">${t("loading")}</p>`}
     <ol class="entry-list bounded" tabindex="0" aria-label=${t("day.entries")}>${shown.map((entry) => html`<${Entry} key=${entry.position} entry=${entry}
       current=${entry.position === (chosen ?? now)?.position} onOpen=${choose} />`)}</ol>
