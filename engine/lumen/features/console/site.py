@@ -23,6 +23,7 @@ from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.orders import NEEDS, REST
 from lumen.features.console.past import Past
 from lumen.features.console.people import Person, Role
+from lumen.features.console.prepared_sentences import PreparedSentences
 from lumen.features.console.requests import ALL, NO_STORE, DeniedError, Reception, address_of, as_json, say_why_not
 from lumen.features.console.sights import STREAM, Sights
 from lumen.features.console.streams import Listener, Streams, positions_in
@@ -58,6 +59,7 @@ class Site:
                 *past.routes,
                 *FleetPages(self.reception).routes,
                 *self.sights.routes,
+                *PreparedSentences(self.reception, root).routes,
                 Mount("/pages", StaticFiles(directory=PAGES)),
             ],
             exception_handlers={HTTPException: say_why_not, DeniedError: say_why_not, Exception: say_why_not},

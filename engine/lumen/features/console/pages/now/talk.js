@@ -4,6 +4,7 @@ import { isHere, live } from "../live.js";
 import { inPageLanguage } from "../quoted.js";
 import { may } from "../session.js";
 import { Part, Since, Usable, clock, html, languageName, percent, t, useEffect, useRef, useState } from "../ui.js";
+import { Prepared, usePrepared } from "./prepared.js";
 
 const LINES = 10;
 
@@ -32,6 +33,8 @@ function SayForm({ robot }) {
   const languages = robot.languages?.length ? robot.languages : [robot.language ?? "en"];
   const [text, set] = useState(""), [chosen, choose] = useState(null);
   const spoken = chosen ?? robot.language ?? languages[0];
+  const prepared = usePrepared();
+  const keep = () => text.trim() && prepared.keep({ text: text.trim(), language: spoken });
   const say = (event) => {
     event.preventDefault();
     if (!text.trim()) return;
@@ -43,7 +46,9 @@ function SayForm({ robot }) {
       <input value=${text} maxlength="500" lang=${spoken} onInput=${(e) => set(e.target.value)} autocomplete="off" /></label>
     ${languages.length > 1 && html`<label><span>${t("language")}</span><select value=${spoken} onChange=${(e) => choose(e.target.value)}>
       ${languages.map((one) => html`<option value=${one} selected=${one === spoken}>${languageName(one)}</option>`)}</select></label>`}
-    <button class="strong">${t("say")}</button></form>`;
+    <button class="strong">${t("say")}</button>
+    <button type="button" class="keep-sentence" onClick=${keep}>${t("prepared.keep")}</button></form>
+    <${Prepared} robot=${robot} prepared=${prepared} />`;
 }
 
 export function Talk({ robot }) {

@@ -31,6 +31,7 @@ export default {
   "command.reload": "Read the files", "command.dry-run": "What would change", "command.try": "Try for one visitor", "command.refuse": "Refuse", "command.mark": "Mark",
   "talk": "Conversation", "visitor": "Visitor", "nobody.here": "no name yet", "robot.says": "The robot says", "visitor.said": "The visitor said",
   "says.nothing": "says nothing", "heard.nothing": "nothing heard yet", "moves.nothing": "No motion", "say": "Say", "say.text": "Text to say",
+  "prepared": "Prepared sentences", "prepared.keep": "Keep for later", "prepared.remove": "Remove", "prepared.remove.one": "Remove “{text}”",
   "talk.now": "Speech and motion", "talk.robot": "Robot:", "talk.visitor": "Visitor:", "talk.sure": "(the ears are {percent} sure)",
   "now.rests": "Rests", "now.speaks": "Speaks", "now.waits": "Waits", "now.for": "for {name}", "now.left": "{seconds} s left",
   "now.play": "Plays {name}", "now.posture": "Takes the posture {name}", "now.walk": "Walks", "now.move": "Moves", "now.goto": "Walks to {name}",

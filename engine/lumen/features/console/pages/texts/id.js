@@ -30,6 +30,7 @@ export default {
   "command.reload": "Baca berkas", "command.dry-run": "Apa yang berubah", "command.try": "Coba untuk satu pengunjung", "command.refuse": "Tolak", "command.mark": "Beri tanda",
   "talk": "Percakapan", "visitor": "Pengunjung", "nobody.here": "belum ada nama", "robot.says": "Robot berkata", "visitor.said": "Pengunjung berkata",
   "says.nothing": "tidak berkata apa-apa", "heard.nothing": "belum ada yang terdengar", "moves.nothing": "Tidak ada gerakan", "say": "Ucapkan", "say.text": "Teks untuk diucapkan",
+  "prepared": "Kalimat siap pakai", "prepared.keep": "Simpan untuk nanti", "prepared.remove": "Hapus", "prepared.remove.one": "Hapus “{text}”",
   "talk.now": "Ucapan dan gerakan", "talk.robot": "Robot:", "talk.visitor": "Pengunjung:", "talk.sure": "(telinga yakin {percent})",
   "now.rests": "Beristirahat", "now.speaks": "Berbicara", "now.waits": "Menunggu", "now.for": "untuk {name}", "now.left": "sisa {seconds} detik",
   "now.play": "Memainkan {name}", "now.posture": "Mengambil sikap {name}", "now.walk": "Berjalan", "now.move": "Bergerak", "now.goto": "Berjalan ke {name}",
