@@ -101,6 +101,26 @@ def test_what_is_staged_is_tried_for_one_visitor_and_waits_again(manual: Live) -
 
 
 @pytest.mark.slow
+def test_what_is_tried_is_kept_during_the_trial(manual: Live) -> None:
+    before = manual.show.loop.project.hash
+    manual.edit(SORRY, PARDON)
+    manual.until_told("staged: ")
+    assert manual.ask("try")["verdict"] == "applied"
+    tried = manual.show.loop.project.hash
+    manual.greet()
+    assert manual.ask("status")["trial"] is True
+    kept = manual.ask("apply")
+    assert (kept["verdict"], kept["reason"]) == ("applied", "the files that were tried for one visitor stay active")
+    assert "trial" not in manual.ask("status")
+    leave(manual)
+    manual.live(5.0)
+    assert manual.show.loop.project.hash == tried != before
+    assert manual.ask("apply")["verdict"] == "refused"  # there is no trial any more
+    assert manual.ask("rollback")["verdict"] == "applied"
+    assert manual.show.loop.project.hash == before
+
+
+@pytest.mark.slow
 def test_what_is_staged_can_be_refused(manual: Live) -> None:
     before = manual.show.loop.project
     manual.edit(SORRY, PARDON)

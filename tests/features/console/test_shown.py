@@ -150,6 +150,21 @@ def test_a_roll_back_restores_the_file_and_names_the_newer_one(viewer: Viewer, o
     assert "See you tomorrow" not in viewer.text(".changes")
 
 
+def test_files_that_are_tried_are_kept_during_the_visit(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
+    hosted, served = own
+    tour = hosted.root / "behaviors" / "tour.yaml"
+    viewer.open(served.console.address, "robot/NAO/files", ready=".saved", mode="author")
+    tour.write_text(tour.read_text("utf-8").replace(SORRY, LATER), "utf-8")
+    viewer.shows("See you tomorrow, perhaps", ".changes ins")
+    viewer.click(".saved [data-verb=try]")
+    viewer.shows("These files are tried for one visitor", ".file-actions")
+    viewer.click(".saved [data-verb=apply]")
+    viewer.shows("Keep the files that are tried?", "dialog")
+    viewer.click("dialog .strong")
+    viewer.shows("stay active", ".saved")
+    viewer.shows("Nothing waits", ".file-actions")
+
+
 def test_a_robot_is_drawn_only_once_its_pose_is_known(served: Served, hosted: Hosted) -> None:
     names = list(hosted.exhibition.project.body.joints)
     joints = {"name": names, "angle": [0.0] * len(names), "stiffness": [1.0] * len(names)}

@@ -39,6 +39,7 @@ class Trial:
 OTHER_VISITS = "recorded visits would go differently with these files"
 APPLY = "`lumen reload --apply` activates them anyway"
 ONE_VISITOR = "for one visitor: after that visit, the previous files come back"
+KEPT = "the files that were tried for one visitor stay active"
 VISIT_OVER = "the visit for which these files were tried is over; `lumen reload --apply` activates them permanently"
 BETWEEN = "a visit is under way"
 BY_A_PERSON = "a person refused these files"
@@ -131,6 +132,19 @@ class MigrationQueue:
         """Activate a bundle until a visit ends; then it waits as before."""
         staged.trial = True
         self.stage(staged, order)
+
+    @property
+    def on_trial(self) -> bool:
+        """Whether the bundle that runs was activated for one visitor."""
+        return self._trial is not None
+
+    def keep(self, order: ReloadRequest) -> None:
+        """End the trial for one visitor: the bundle that is tried stays active."""
+        assert self._tried
+        report = self._about(self._tried, "applied")
+        report.reason = KEPT
+        self._trial = self._tried = None
+        self._notifier.tell(report, [order])
 
     def refuse(self, staged: StagedBundle, order: ReloadRequest) -> None:
         """Refuse a bundle for a person."""

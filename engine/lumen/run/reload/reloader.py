@@ -274,6 +274,8 @@ class Reloader:
             queue.stage(StagedBundle(back, changes(self._running, back), who="command", back=True), order)
         elif order.verb == "apply" and queue.staged:
             queue.stage(queue.staged, order)
+        elif order.verb == "apply" and queue.on_trial:
+            queue.keep(order)
         elif order.verb == "try" and queue.staged:
             queue.attempt(queue.staged, order)
         elif order.verb == "refuse" and queue.staged:
@@ -327,6 +329,7 @@ class Reloader:
             "mode": self._mode,
             "staged": [str(change) for change in staged.changes] if staged else None,
             "waiting": staged.told if staged else "",
+            **({"trial": True} if self._queue.on_trial else {}),
             "probation": self._queue.rollback_guard.left(self._behavior.loop.clock.now()),
             "last": last.to_json() if last else None,
             "lines": [report.reason, *(last.lines() if last else [])],

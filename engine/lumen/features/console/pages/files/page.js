@@ -64,17 +64,18 @@ function Actions({ name, files }) {
   const [asking, ask] = useState(null);
   const waits = Boolean(files.staged?.length || files.waiting);
   const nothing = waits ? null : t(files.mode === "off" ? "files.grey.off" : "files.grey.nothing");
+  const keeps = Boolean(files.trial) && !waits; // newer files that wait are what Apply means
   const go = () => { command(name, asking); ask(null); };
   const action = (verb, label, more = {}) => html`<${Action} name=${name} verb=${verb} label=${label} ask=${ask}
     ...${more} />`;
   return html`<ul class="file-actions">
       ${action("dry-run", "files.look")}${action("reload", "files.read")}
-      ${action("apply", "files.apply", { strong: true, grey: nothing })}
+      ${action("apply", keeps ? "files.keep" : "files.apply", { strong: true, grey: keeps ? null : nothing })}
       ${action("try", "files.try", { grey: nothing })}${action("refuse", "files.refuse", { grey: nothing })}
       ${action("rollback", "files.back")}</ul>
-    ${asking && html`<${Dialog} title=${t(asking === "apply" ? "files.apply.ask" : "files.back.ask")}
+    ${asking && html`<${Dialog} title=${t(asking === "rollback" ? "files.back.ask" : keeps ? "files.keep.ask" : "files.apply.ask")}
       onClose=${() => ask(null)} actions=${html`<button type="button" class="strong" onClick=${go}>
-        ${t(asking === "apply" ? "files.apply" : "files.back")}</button>`}>
+        ${t(asking === "rollback" ? "files.back" : keeps ? "files.keep" : "files.apply")}</button>`}>
       <p><${Quote} text=${files.waiting || files.reason || ""} /></p></${Dialog}>`}`;
 }
 
