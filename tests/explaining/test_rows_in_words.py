@@ -3,7 +3,6 @@
 from typing import Any
 
 from lumen.features.console.day import understood
-from lumen.features.formats_charts.diagrams.transition_rows import rows_of
 from lumen.insight.changes.machines import machine_changes
 from lumen.insight.explaining.words import of_transition
 from lumen.insight.replay.entries import JournalInput
@@ -11,6 +10,7 @@ from lumen.insight.replay.replaying import ReplayedStep
 from lumen.language.events import Event
 from lumen.run.captions import caption
 from lumen.run.coverage import described
+from lumen.run.diagrams.transition_rows import rows_of
 from lumen.run.entry_causes import why
 from lumen.statechart import Machine, initial, step
 from tests.tables import for_each

@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 import lumen
 from lumen.cli.main import main
-from lumen.features.formats_charts.diagrams import dot_text, neighbourhood, overview, region, svg
-from lumen.features.formats_charts.diagrams.diagram import Diagram
-from lumen.features.formats_charts.diagrams.layering import GAP, Extent, layered
-from lumen.features.formats_charts.diagrams.placing import ROW, PlacedBox, place, text_width
-from lumen.features.formats_charts.diagrams.transition_rows import guard_phrase
 from lumen.language.actions import Expression
 from lumen.language.machines import MachineDefinition
+from lumen.run.diagrams import dot_text, neighbourhood, overview, region, svg
+from lumen.run.diagrams.diagram import Diagram
+from lumen.run.diagrams.layering import GAP, Extent, layered
+from lumen.run.diagrams.placing import ROW, PlacedBox, place, text_width
+from lumen.run.diagrams.transition_rows import guard_phrase
 from lumen.statechart import Machine
 from tests import ROOT
 from tests.tables import for_each

@@ -10,11 +10,11 @@ from lumen.cli.formats import configure_format, print_object
 from lumen.cli.projects import shown_project
 from lumen.cli.writing import write_file
 from lumen.errors import UsageError
-from lumen.features.formats_charts.diagrams import dot_text, neighbourhood, overview, region, svg
-from lumen.features.formats_charts.diagrams.diagram import Diagram
 from lumen.features.formats_charts.mermaid import mermaid
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition
+from lumen.run.diagrams import dot_text, neighbourhood, overview, region, svg
+from lumen.run.diagrams.diagram import Diagram
 
 PICTURES = (".svg", ".png")
 LAYOUTS = ("auto", "own", "dot")

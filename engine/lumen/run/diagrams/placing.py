@@ -5,8 +5,8 @@ surroundings.
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from lumen.features.formats_charts.diagrams.diagram import Diagram, StateBox
-from lumen.features.formats_charts.diagrams.layering import GAP, Extent, Point, layered
+from lumen.run.diagrams.diagram import Diagram, StateBox
+from lumen.run.diagrams.layering import GAP, Extent, Point, layered
 
 WIDEST, WAYS = 1260.0, 60.0
 """The greatest width of a layer, and the room around each frame for arrows [px], so that the whole is readable at

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from lumen.features.formats_charts.diagrams.diagram import Diagram, StateBox
+from lumen.run.diagrams.diagram import Diagram, StateBox
 
 _HEAD = """\
 digraph {

@@ -4,9 +4,9 @@ import itertools
 from collections.abc import Iterator
 from xml.sax.saxutils import escape
 
-from lumen.features.formats_charts.diagrams.diagram import Diagram
-from lumen.features.formats_charts.diagrams.layering import Point
-from lumen.features.formats_charts.diagrams.placing import (
+from lumen.run.diagrams.diagram import Diagram
+from lumen.run.diagrams.layering import Point
+from lumen.run.diagrams.placing import (
     PADDING,
     ROW,
     ROW_HEIGHT,

@@ -4,11 +4,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 
 from lumen.errors import UsageError
-from lumen.features.formats_charts.diagrams.diagram import Diagram, StateBox
-from lumen.features.formats_charts.diagrams.transition_rows import made, rows_of, short_name
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.run.captions import invocation
+from lumen.run.diagrams.diagram import Diagram, StateBox
+from lumen.run.diagrams.transition_rows import made, rows_of, short_name
 
 MAX_STATES_WITH_ROWS = 16
 """The number of states above which the whole shows only states and arrows."""

@@ -1,7 +1,0 @@
-"""Pictures of behaviours, drawn without other programs: their content, their layout, and their drawing."""
-
-from lumen.features.formats_charts.diagrams.dot_writer import dot_text
-from lumen.features.formats_charts.diagrams.svg_writer import svg
-from lumen.features.formats_charts.diagrams.views import neighbourhood, overview, region
-
-__all__ = ["dot_text", "neighbourhood", "overview", "region", "svg"]
