@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from lumen.cli.main import main
-from lumen.project.own_project import own_project, projects_below
+from lumen.project.running_project import own_project, projects_below
 
 JUDGING = [["lint"], ["lint", "--fix"], ["test"], ["test", "visitor"], ["diff", "live"], ["doctor"], ["alerts", "test"]]
 

@@ -16,7 +16,7 @@ from lumen.language.gestures import GestureLibrary
 from lumen.language.house import RobotSpec
 from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.roles import Base, EyeRoles
-from lumen.project.field_reader import read_fields
+from lumen.project.sections import read_fields
 from tests import ROOT
 from tests.tables import for_each
 

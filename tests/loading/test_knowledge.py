@@ -7,7 +7,7 @@ from lumen.insight.changes import changes
 from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.files import fingerprint, read_files
-from lumen.project.markdown import parse_markdown
+from lumen.project.knowledge import parse_markdown
 from tests import ROOT
 from tests.tables import for_each
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from lumen.project.looks import Looks
-from lumen.project.misnamed import Misnamed, misnamed_in
+from lumen.project.misplaced import Misnamed, misnamed_in
 from tests.tables import for_each
 
 

@@ -10,8 +10,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.robots import Body, Joint
 from lumen.language.roles import JointRole, Roles
 from lumen.project.document_report import DocumentReport
-from lumen.project.gestures import build_gestures
-from lumen.project.life import build_life
+from lumen.project.life import build_gestures, build_life
 from lumen.project.motions import build_motion
 from lumen.project.schema import check_schema
 from lumen.project.yaml_reader import parse

@@ -26,7 +26,7 @@ from lumen.lint import check_files
 from lumen.ports import Bus
 from lumen.project.broken_features import called
 from lumen.project.files import read_files
-from lumen.project.own_project import own_project
+from lumen.project.running_project import own_project
 from lumen.robot.robot_routes import COMMAND_ROUTE
 from lumen.run.attendance import RobotAttendance
 from lumen.run.delegated_tracking import MOTION_ROUTE as MOTION

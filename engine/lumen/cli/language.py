@@ -23,7 +23,7 @@ from lumen.lint.translation import (
 from lumen.project.building import draft
 from lumen.project.draft import ProjectDraft
 from lumen.project.files import read_files
-from lumen.project.own_project import own_project
+from lumen.project.running_project import own_project
 
 VERBS = {
     "list": "list the languages of the project, and how much is missing in each",

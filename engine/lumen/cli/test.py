@@ -20,8 +20,8 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
-from lumen.project.own_project import own_project
 from lumen.project.project_folders import MAIN_FILE
+from lumen.project.running_project import own_project
 from lumen.retrieval.choice import QuestionTrial
 from lumen.run.chosen_stories import project_of, tests_of
 from lumen.run.coverage import Coverage

@@ -14,7 +14,7 @@ from lumen.language.vocabulary import VOCABULARY
 from lumen.lint.robot_keys import old_keys, with_robot_keys
 from lumen.lint.upgrading import Rewriting, upgraded
 from lumen.project.files import read_files
-from lumen.project.own_project import own_project
+from lumen.project.running_project import own_project
 from lumen.run.linting.targets import checked
 
 

@@ -9,7 +9,7 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 from lumen.project.memoization import memoize
 from lumen.project.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
-from lumen.project.role_names import RoleNames
+from lumen.project.roles import RoleNames
 
 LIMIT_TOLERANCE = 2e-3
 """How far a limit may lie outside the joint's own [rad]: people round."""

@@ -9,7 +9,7 @@ from lumen.project.draft import ProjectDraft
 from lumen.project.keyframes import UNKNOWN_MOTION
 from lumen.project.lending import shipped_names
 from lumen.project.linking import UNKNOWN_BEHAVIOR
-from lumen.project.misnamed import misnamed_for
+from lumen.project.misplaced import misnamed_for
 
 MISSING_FOLDER = Code("missing-folder", "text", ERROR, "a name refers to a folder that is empty or missing")
 UNKNOWN_CONTROLLER = Code(

@@ -5,7 +5,7 @@ from dataclasses import replace
 from lumen.project.building import MISSING_FILE, NOT_READ
 from lumen.project.draft import ProjectDraft
 from lumen.project.files import MISTAKEN_FOLDERS
-from lumen.project.misnamed import misnamed_in
+from lumen.project.misplaced import misnamed_in
 from lumen.project.packaged import misnamed_main_file
 from lumen.project.project_folders import ALL_FOLDERS, MAIN_FILE
 

@@ -6,7 +6,7 @@ from lumen.language.verbs import verb_of
 from lumen.lint.lookups import first
 from lumen.lint.walk import action_sites
 from lumen.project.draft import ProjectDraft
-from lumen.project.role_names import LEFT_OUT
+from lumen.project.roles import LEFT_OUT
 
 
 def check(draft: ProjectDraft) -> None:

@@ -20,7 +20,7 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft
 from lumen.project.expressions import place_within
 from lumen.project.memoization import Same, memoize
-from lumen.project.role_names import LEFT_OUT
+from lumen.project.roles import LEFT_OUT
 from lumen.project.schema import faults
 from lumen.statechart.nesting import ID_SEPARATOR, resolutions
 from lumen.statechart.type_checks import fits, refusal, type_checks

@@ -15,16 +15,14 @@ from lumen.language.machines import MachineDefinition, State, StateKind
 from lumen.language.shared import SHARED, SharedKey, first_values, shared_schema
 from lumen.project.actions import Actions
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
-from lumen.project.buttons import read_buttons
 from lumen.project.common_words import COMMON
 from lumen.project.document_report import DocumentReport
 from lumen.project.expressions import Expressions
-from lumen.project.invocations import check_ids, invocations
 from lumen.project.known_words import WordFiles, known_words
 from lumen.project.outline import BehaviorOutline, OutlinedState
-from lumen.project.properties import build_properties
 from lumen.project.rounds import NOTHING_YET, Rounds, unrolled
 from lumen.project.shapes import check_shapes
+from lumen.project.state_parts import build_properties, check_ids, invocations, read_buttons
 from lumen.project.transitions import TransitionReader
 
 NOT_WITHIN = Code("not-within", "statecharts", ERROR, "the state named in `initial` is not one of the inner states")

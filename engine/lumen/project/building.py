@@ -33,12 +33,10 @@ from lumen.project.controllers import build_controller
 from lumen.project.draft import ProjectDraft
 from lumen.project.files import LEADS_OUT, MISTAKEN_FOLDERS, Unreadable, fingerprint, read_main_file
 from lumen.project.functions import build_function, joined
-from lumen.project.gestures import build_gestures
-from lumen.project.knowledge import build_passage, build_questions
+from lumen.project.knowledge import MARKDOWN_SUFFIX, build_passage, build_questions
 from lumen.project.lending import lend, shipped_models
-from lumen.project.life import build_life
+from lumen.project.life import build_gestures, build_life
 from lumen.project.linking import link, with_robots
-from lumen.project.markdown import MARKDOWN_SUFFIX
 from lumen.project.messages import SCHEMA_SUFFIX, build_message
 from lumen.project.motions import build_motions
 from lumen.project.project_folders import (

@@ -8,7 +8,7 @@ from lumen.language.diagnostics import Diagnostic
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.document import TOO_LARGE
 from lumen.project.document_report import DocumentReport
-from lumen.project.markdown import MARKDOWN_SUFFIX, parse_markdown
+from lumen.project.knowledge import MARKDOWN_SUFFIX, parse_markdown
 from lumen.project.memoization import memoize
 from lumen.project.schema import check_schema
 from lumen.project.yaml_reader import parse

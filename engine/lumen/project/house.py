@@ -1,15 +1,16 @@
-"""Read `robot:` or `robots:` of lumen.yaml as the robots that perform."""
+"""Read `robot:` or `robots:` of lumen.yaml as the robots that perform, and `places:` as the places of the hall."""
 
 import re
 from collections.abc import Mapping
 from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath
+from lumen.language.hall_places import DEFAULT_WITHIN, HallPlace, HallPlaces
 from lumen.language.house import DEFAULT_SPACING, RobotSpec, StartPose
 from lumen.project.complaints import MISSING_KEY
 from lumen.project.document_report import DocumentReport
-from lumen.project.field_reader import read_fields
 from lumen.project.numbers import finite
+from lumen.project.sections import read_fields
 from lumen.project.units import ANGLES, LENGTHS
 
 DEFAULT_ROBOT = "NAO"
@@ -63,3 +64,20 @@ def _pose(data: Mapping[str, Any], where: NodePath, index: int, report: Document
         return StartPose(y=DEFAULT_SPACING * (index - (len(data["robots"]) - 1) / 2))
     length, angle = LENGTHS[units.get("length", "m")], ANGLES[units.get("angle", "deg")]
     return StartPose(row.get("x", 0.0) * length, row.get("y", 0.0) * length, row.get("facing", 0.0) * angle)
+
+
+def read_hall_places(data: Mapping[str, Any], report: DocumentReport) -> HallPlaces:
+    """Return the places whose numbers can be used; headings are in degrees if the file names no unit."""
+    units = data.get("units", {})
+    length, angle = LENGTHS[units.get("length", "m")], ANGLES[units.get("angle", "deg")]
+    found = {}
+    for name, row in data["places"].items():
+        if not all(finite(value, report, ("places", name, key)) for key, value in row.items()):
+            continue
+        found[name] = HallPlace(
+            x=row["x"] * length,
+            y=row["y"] * length,
+            heading=row["heading"] * angle if "heading" in row else None,
+            within=row["within"] * length if "within" in row else DEFAULT_WITHIN,
+        )
+    return HallPlaces(found)

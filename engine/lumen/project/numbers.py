@@ -6,8 +6,7 @@ from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.numbers import is_number
-from lumen.project.document_report import DocumentReport
-from lumen.project.pruning import prune
+from lumen.project.document_report import DocumentReport, prune
 
 EXTREME_NUMBER = Code("extreme-number", "shape", ERROR, "a number is too large or too small to calculate with")
 NOT_A_NUMBER = Code("not-a-number", "shape", ERROR, "a number is infinite, or not a number")

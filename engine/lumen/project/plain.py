@@ -1,11 +1,24 @@
-"""Use a Python dict in place of a file: it is checked to be plain data, and the place of a node is its dotted path."""
+"""Use a Python dict, or a YAML file on its own, in place of a file of a project."""
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, TypeVar
 
-from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place
+from lumen.errors import ProjectError, UsageError
+from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place, has_errors
 from lumen.project.complaints import WRONG_TYPE
 from lumen.project.document import MAX_NODE_DEPTH, MAX_NODES, TOO_LARGE, Document, NodeSpan
+from lumen.project.files import MAX_FILE_BYTES
+from lumen.project.yaml_reader import parse
+from lumen.upkeep.regular_files import read_regular
+
+D = TypeVar("D")
+
+
+def derived(into: type[D], value: Any) -> D:
+    """Return the same value as an instance of `into`, a class derived from its own with the same fields."""
+    return into(**{field.name: getattr(value, field.name) for field in fields(value)})
 
 
 def plain_document(name: str, data: Any) -> tuple[Document | None, list[Diagnostic]]:
@@ -69,3 +82,19 @@ class _Reader:
     def place(self, path: NodePath) -> Place:
         shown = ".".join(map(str, path[:12])) + (" …" if len(path) > 12 else "")
         return Place(f"{self.name} ({shown})" if path else self.name)
+
+
+def parse_file(path: Path) -> tuple[Document | None, list[Diagnostic]]:
+    """Parse a file. Raises UsageError if it can't be read."""
+    try:
+        return parse(str(path), read_regular(path, MAX_FILE_BYTES))
+    except OSError as error:
+        raise UsageError(f"can't read {path}: {(error.strerror or str(error)).lower()}") from None
+
+
+def read_document(path: Path) -> Document:
+    """Return the document in a file. Raises UsageError if it can't be read, ProjectError if it is not YAML."""
+    document, diagnostics = parse_file(path)
+    if document is None or has_errors(diagnostics):
+        raise ProjectError(diagnostics)
+    return document

@@ -11,7 +11,7 @@ from lumen.language.robots import Body
 from lumen.language.roles import JointRole
 from lumen.project.document_report import DocumentReport
 from lumen.project.numbers import NOT_A_NUMBER
-from lumen.project.role_names import OUT_OF_REACH, RoleNames
+from lumen.project.roles import OUT_OF_REACH, RoleNames
 from lumen.project.units import ANGLES, JointUnits, seconds
 
 UNKNOWN_JOINT = Code("unknown-joint", "references", ERROR, "the robot has no joint of that name")

@@ -15,13 +15,12 @@ from lumen.language.text_lines import lines_of
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.complaints import MISSING_KEY, ONE_VERB, UNKNOWN_KEY, WRONG_KEY, WRONG_TYPE, Complaint, complaints
 from lumen.project.document import TOO_LARGE, Document
-from lumen.project.document_report import DocumentReport
+from lumen.project.document_report import DocumentReport, prune
 from lumen.project.feature_schemas import add_bases, add_features
 from lumen.project.misindented import KeyNames, key_names, misindented
 from lumen.project.misplaced import misplaced
 from lumen.project.packaged import schema_folder
 from lumen.project.project_folders import MAIN_KIND
-from lumen.project.pruning import prune
 from lumen.project.sections import with_sections
 from lumen.project.torn_texts import quoting, whole_translation
 from lumen.project.yaml_nodes import read_text

@@ -22,9 +22,8 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.files import composed
 from lumen.project.functions import FunctionFile, build_function, joined
 from lumen.project.linking import link
-from lumen.project.plain import plain_document
+from lumen.project.plain import parse_file, plain_document
 from lumen.project.schema import check_schema
-from lumen.project.single_file import parse_file
 from lumen.project.words import build_words
 from lumen.upkeep.garbage import gc_paused
 

@@ -33,9 +33,9 @@ from lumen.language.stories import (
 from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.document_report import DocumentReport
 from lumen.project.numbers import NOT_A_NUMBER
-from lumen.project.properties import build_properties, unbound_conditions
 from lumen.project.routes import duration
 from lumen.project.schedules import BAD_TIME, schedule
+from lumen.project.state_parts import build_properties, unbound_conditions
 from lumen.project.units import BAD_DURATION, seconds
 
 DEFAULT_WITHIN = 30.0

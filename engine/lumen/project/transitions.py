@@ -9,13 +9,12 @@ from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.hours import Schedule
 from lumen.language.machines import Approval, Hears, StateKind, Transition
 from lumen.project.actions import Actions
-from lumen.project.buttons import read_buttons
 from lumen.project.document_report import DocumentReport
 from lumen.project.expressions import Expressions
 from lumen.project.hears_keys import HearsKeys
-from lumen.project.invocations import invoked
 from lumen.project.outline import BehaviorOutline, OutlinedState
 from lumen.project.schedules import schedule
+from lumen.project.state_parts import invoked, read_buttons
 from lumen.talk.hearing import HEARD
 
 CONFLICTING_TARGETS = Code(

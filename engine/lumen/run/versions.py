@@ -11,8 +11,8 @@ from lumen.lint import check_files
 from lumen.project.chosen_robot import as_robot
 from lumen.project.files import read_files
 from lumen.project.home import Home, home_of
-from lumen.project.own_project import own_project
 from lumen.project.revisions import files_at
+from lumen.project.running_project import own_project
 from lumen.run.one_robot import one_robot
 from lumen.run.snapshot_store import SnapshotStore, StoredSnapshot
 from lumen.statechart import Snapshot, deserialize

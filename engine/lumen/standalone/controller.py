@@ -11,11 +11,10 @@ from lumen.fuzzy.explanation import Explanation, explain
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.diagnostics import has_errors
 from lumen.project.controllers import build_controller
-from lumen.project.derived import derived
 from lumen.project.document import Document
 from lumen.project.document_report import DocumentReport
+from lumen.project.plain import derived, read_document
 from lumen.project.schema import check_schema
-from lumen.project.single_file import read_document
 from lumen.upkeep.arguments import need, need_map, need_numbers, need_path, need_text
 
 if TYPE_CHECKING:

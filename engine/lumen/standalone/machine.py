@@ -13,7 +13,7 @@ from lumen.language import machines
 from lumen.language.events import Event
 from lumen.language.nanoseconds import HALF
 from lumen.ports import Clock
-from lumen.project.derived import derived
+from lumen.project.plain import derived
 from lumen.project.standalone import machine_from_dict, machine_from_file
 from lumen.statechart import (
     Snapshot,

@@ -11,16 +11,15 @@ from lumen.language.diagnostics import has_errors
 from lumen.motion.limits import Excess, beyond_limits, overspeed
 from lumen.motion.trajectories import Trajectory
 from lumen.project.building import motion_parts
-from lumen.project.derived import derived
 from lumen.project.document import Document
 from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft, body_of
 from lumen.project.files import read_files
 from lumen.project.motions import build_motion, countable
 from lumen.project.packaged import find_project, shipped_root
+from lumen.project.plain import derived, read_document
 from lumen.project.project_folders import MAIN_FILE
 from lumen.project.schema import check_schema
-from lumen.project.single_file import read_document
 from lumen.upkeep.arguments import need_map, need_number, need_numbers, need_path, need_text
 
 __all__ = ["Excess", "Motion", "Trajectory", "beyond_limits", "overspeed"]

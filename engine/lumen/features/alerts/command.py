@@ -8,7 +8,7 @@ from lumen.features.alerts.alert import Origin
 from lumen.features.alerts.desk import AlertDesk
 from lumen.features.alerts.settings import Alerts
 from lumen.project.building import main_settings
-from lumen.project.own_project import own_project
+from lumen.project.running_project import own_project
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -5,7 +5,7 @@ from typing import Any
 
 from lumen.features.console.settings import ConsoleSettings
 from lumen.project.document_report import DocumentReport
-from lumen.project.field_reader import read_fields
+from lumen.project.sections import read_fields
 
 
 def read_console(data: Mapping[str, Any], report: DocumentReport) -> ConsoleSettings:

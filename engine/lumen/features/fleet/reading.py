@@ -8,10 +8,10 @@ from lumen.features.fleet.settings import DEFAULT_PAUSE, Fleet, RolloutPlan, Ste
 from lumen.language.diagnostics import ERROR, Code, Diagnostic, NodePath
 from lumen.project.built_file import BuiltFile, read_file
 from lumen.project.document_report import DocumentReport
-from lumen.project.field_reader import read_fields
 from lumen.project.files import MAX_FILE_BYTES
 from lumen.project.project_folders import FLEET_FILE
 from lumen.project.routes import duration
+from lumen.project.sections import read_fields
 from lumen.upkeep.regular_files import read_regular
 
 BAD_SHARE = Code("bad-share", "fleet", ERROR, "a rollout step is not a valid share of the robots")

@@ -6,7 +6,7 @@ from typing import Any
 from lumen.features.show.settings import MQTT_PORT, MQTT_TLS_PORT, Show
 from lumen.language.modules import SHOW
 from lumen.project.document_report import DocumentReport
-from lumen.project.field_reader import read_fields
+from lumen.project.sections import read_fields
 
 
 def read_show(main: Mapping[str, Any], report: DocumentReport) -> Show:

@@ -10,9 +10,9 @@ from lumen.errors import UsageError
 from lumen.language.diagnostics import Diagnostic
 from lumen.project.common_words import own_files
 from lumen.project.files import MAX_FILE_BYTES, belongs, composed, read_files
-from lumen.project.own_project import own_project
 from lumen.project.packaged import project_above
 from lumen.project.project_folders import MAIN_FILE
+from lumen.project.running_project import own_project
 from lumen.run.linting.findings import Findings
 from lumen.run.linting.kept_findings import known_or_checked
 

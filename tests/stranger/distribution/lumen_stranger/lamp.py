@@ -6,7 +6,7 @@ from typing import Any
 
 from lumen.language.diagnostics import ERROR, Code
 from lumen.project.document_report import DocumentReport
-from lumen.project.field_reader import read_fields
+from lumen.project.sections import read_fields
 
 NO_SCENE = Code("no-scene", "robot", ERROR, "the lamp begins with a scene that it does not have")
 
