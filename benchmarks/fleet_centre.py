@@ -15,7 +15,7 @@ from lumen.bus.memory import MemoryBus
 from lumen.features.fleet.centre import Centre
 from lumen.features.fleet.centre_journal import CentreJournal
 from lumen.features.fleet.fleet_log import FleetLog
-from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.installing import BundleFolder
 from lumen.features.fleet.rollouts.presence import RobotPresence
 from lumen.features.fleet.rollouts.rollout import begin
 from lumen.features.fleet.rollouts.state import CentreState

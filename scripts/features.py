@@ -15,7 +15,6 @@ ALONE: Mapping[str, str] = {
     "features/answers/server_vectors.py": "one of three sources of vectors, each with limits of its own",
     "features/editor/server.py": "imported after the command line is read: pygls needs a third of a second",
     "features/naoqi/offers.py": "the names that the robot's row may import without a connection",
-    "features/simulation/tactile_sensors.py": "with it the robot's own file would have more than 450 lines",
 }
 """Small modules with one reader, and why they are separate files."""
 SHARED: Mapping[str, str] = {

@@ -27,8 +27,8 @@ from tests.features.simulation.bodies import shipped  # noqa: E402
 from tests.features.simulation.walks import any_robot, truth  # noqa: E402
 
 from lumen.errors import LumenError, UsageError  # noqa: E402
+from lumen.features.simulation.falling_sense import MassModel  # noqa: E402
 from lumen.features.simulation.leg_geometry import read_legs  # noqa: E402
-from lumen.features.simulation.mass_model import MassModel  # noqa: E402
 from lumen.language.commands import Move  # noqa: E402
 from lumen.motion.gait import GaitParameters, paces_of  # noqa: E402
 from lumen.project.bodies import GAIT_ANGLES, GAIT_LENGTHS  # noqa: E402

@@ -16,7 +16,7 @@ from linear_policy import SIZE, LinearPolicy, save
 from mujoco import rollout
 from push_task import CONTROL_PERIOD, EPISODE, FALLEN, PHYSICS_PERIOD, PUSH_TIME, environment
 
-from lumen.features.simulation.observables import sole_sensors
+from lumen.features.simulation.entity import sole_sensors
 
 BEGIN = 0.3
 STEPS, EACH = round(EPISODE / CONTROL_PERIOD), round(CONTROL_PERIOD / PHYSICS_PERIOD)

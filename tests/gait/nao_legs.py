@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
+from lumen.features.simulation.falling_sense import MassModel
 from lumen.features.simulation.leg_geometry import read_legs
-from lumen.features.simulation.mass_model import MassModel
 from tests import ROOT
 from tests.motions.making import nao
 

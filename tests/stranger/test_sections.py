@@ -13,7 +13,7 @@ from lumen.feature import resolve
 from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.completion import complete
 from lumen.features.editor.hover import hover
-from lumen.features.fleet.house_keys import at_home
+from lumen.features.fleet.bundle_trial import at_home
 from lumen.insight.changes import changes, live
 from lumen.language.projects import Project
 from lumen.lint import check_files

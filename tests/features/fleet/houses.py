@@ -7,7 +7,7 @@ from typing import Any
 
 from lumen.features.fleet.agent import FleetAgent
 from lumen.features.fleet.bundle import messages_of
-from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.installing import BundleFolder
 from lumen.features.fleet.memory import AgentMemory
 from lumen.features.fleet.rollouts.orders import DesiredState
 from lumen.features.fleet.signing import ORDER, Signer

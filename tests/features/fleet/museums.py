@@ -8,7 +8,7 @@ from pathlib import Path
 from lumen.bus import connect
 from lumen.features.fleet.agent import FleetAgent
 from lumen.features.fleet.bundle import messages_of
-from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.installing import BundleFolder
 from lumen.features.fleet.memory import AgentMemory
 from lumen.features.fleet.serving import ServedCentre
 from lumen.features.fleet.signing import Signer, generate

@@ -11,9 +11,8 @@ import pytest
 
 from lumen.errors import UsageError
 from lumen.features.fleet.bundle import messages_of, packed
-from lumen.features.fleet.house_keys import at_home
-from lumen.features.fleet.installing import all_have, finish
-from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.bundle_trial import at_home
+from lumen.features.fleet.installing import BundleFolder, all_have, finish
 from lumen.features.fleet.memory import AgentMemory, keep, remember
 from lumen.features.fleet.rollouts.presence import presence_from
 from lumen.features.fleet.signing import BUNDLE, ORDER, Signer, generate, verified

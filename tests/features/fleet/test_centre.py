@@ -14,7 +14,7 @@ from lumen.cli.main import main
 from lumen.errors import UsageError
 from lumen.features.fleet.agent import FleetAgent
 from lumen.features.fleet.bundle import messages_of
-from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.installing import BundleFolder
 from lumen.features.fleet.memory import AgentMemory
 from lumen.features.fleet.serving import ServedCentre, fleet_in
 from lumen.features.fleet.signing import Signer, generate

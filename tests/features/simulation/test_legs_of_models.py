@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import RobotModelError
+from lumen.features.simulation.falling_sense import MassModel
 from lumen.features.simulation.leg_geometry import read_legs
-from lumen.features.simulation.mass_model import MassModel
 from lumen.language.robots import Body
 from lumen.motion.gait import FOUND, LegGeometry, paces_of
 from tests.features.simulation.conftest import MODELS

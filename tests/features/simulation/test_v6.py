@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import lumen
-from lumen.features.simulation.mass_model import MassModel
+from lumen.features.simulation.falling_sense import MassModel
 from lumen.features.simulation.offers import SimulatedRobot
 from lumen.language.commands import Walk
 from lumen.language.robots import Body

@@ -11,9 +11,8 @@ from typing import Any, Protocol
 
 from lumen.errors import UsageError
 from lumen.features.fleet.bundle import BadBundleError, BundleParts
-from lumen.features.fleet.bundle_trial import BundleTrial, FileTrier, refusal
-from lumen.features.fleet.house_keys import as_started, fitted
-from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.bundle_trial import BundleTrial, FileTrier, as_started, fitted, refusal
+from lumen.features.fleet.installing import BundleFolder
 from lumen.features.fleet.memory import AgentMemory
 from lumen.features.fleet.rollouts.orders import NOT, desired_from, heed
 from lumen.features.fleet.rollouts.presence import (

@@ -12,7 +12,7 @@ from lumen.errors import BusError, UsageError
 from lumen.features.fleet.bundle import messages_of
 from lumen.features.fleet.centre_journal import CentreJournal
 from lumen.features.fleet.fleet_log import FleetLog
-from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.installing import BundleFolder
 from lumen.features.fleet.overview import overview
 from lumen.features.fleet.rollouts.orders import DesiredState
 from lumen.features.fleet.rollouts.presence import presence_from

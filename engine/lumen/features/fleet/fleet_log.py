@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lumen.bus.brokers import StreamEntry
-from lumen.features.fleet.rollouts.counting import rates
-from lumen.features.fleet.rollouts.presence import HOURS, MAX_TEXT, measures_from
+from lumen.features.fleet.rollouts.presence import HOURS, MAX_TEXT, measures_from, rates
 from lumen.features.fleet.settings import FleetMeasure
 from lumen.language.fleet_keys import INCIDENT, NUMBERS, robot_of
 from lumen.project.home import Home

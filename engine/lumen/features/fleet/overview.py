@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lumen.features.fleet.rollouts.counting import rates
+from lumen.features.fleet.rollouts.presence import rates
 from lumen.features.fleet.rollouts.rollout import allowed
 from lumen.features.fleet.rollouts.state import CentreState, HeardPresence, Rollout
 from lumen.features.fleet.rollouts.trying import FRESH, counted

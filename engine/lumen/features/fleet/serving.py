@@ -12,7 +12,7 @@ from lumen.features.fleet.centre import Centre
 from lumen.features.fleet.centre_desk import CentreDesk
 from lumen.features.fleet.centre_journal import CentreJournal
 from lumen.features.fleet.fleet_log import FleetLog
-from lumen.features.fleet.kept_bundles import BundleFolder
+from lumen.features.fleet.installing import BundleFolder
 from lumen.features.fleet.reading import read_fleet
 from lumen.features.fleet.rollouts.state import CentreState
 from lumen.features.fleet.settings import Fleet

@@ -4,10 +4,9 @@ from lumen.features.simulation.balance import BalanceController
 from lumen.features.simulation.base import BaseRequest
 from lumen.features.simulation.catching import FallCatcher
 from lumen.features.simulation.contact_shadows import Soles
-from lumen.features.simulation.falling_sense import FallingSense
+from lumen.features.simulation.falling_sense import FallingSense, MassModel
 from lumen.features.simulation.joint_envelope import JointVector
 from lumen.features.simulation.leg_geometry import read_legs
-from lumen.features.simulation.mass_model import MassModel
 from lumen.features.simulation.odometry import Odometry
 from lumen.features.simulation.walking import WalkController
 from lumen.language.commands import Move, Walk

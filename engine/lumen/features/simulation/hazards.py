@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lumen.features.simulation.sonar import Sonars
+from lumen.features.simulation.hall_sensors import Sonars
 from lumen.robot.hazards import danger
 
 

@@ -6,9 +6,16 @@ from pathlib import Path
 
 from lumen.errors import RobotModelError
 from lumen.features.simulation.imperfections import BACKLASH
-from lumen.features.simulation.model_terms import PLAY_SUFFIX, ROBOT_PREFIX, STAGE_SITE, Variation
+from lumen.features.simulation.model_terms import (
+    PLAY_SUFFIX,
+    ROBOT_PREFIX,
+    STAGE_SITE,
+    Variation,
+    lacks_of_body,
+    lacks_of_hall,
+    lacks_of_robot,
+)
 from lumen.features.simulation.physics import mjcf, mujoco
-from lumen.features.simulation.requirements import lacks_of_body, lacks_of_hall, lacks_of_robot
 from lumen.language.robots import Body
 from lumen.project.packaged_models import mjcf_path
 

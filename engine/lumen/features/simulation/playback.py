@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from lumen.features.simulation.joint_transition import JointTransition
 from lumen.features.simulation.lights import Lights
 from lumen.features.simulation.motors import Motors
-from lumen.features.simulation.speech_playback import SpeechPlayback
+from lumen.features.simulation.sound_playback import SpeechPlayback
 from lumen.language.commands import Say
 from lumen.language.motions import Cue, MotionDefinition
 from lumen.motion.trajectories import Trajectory

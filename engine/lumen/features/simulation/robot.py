@@ -12,7 +12,7 @@ from lumen.errors import RobotRefusedError, UsageError
 from lumen.feature import owner
 from lumen.features.simulation.base import BaseRequest, RobotBase
 from lumen.features.simulation.battery_and_heat import BatteryAndHeat
-from lumen.features.simulation.force_sensors import ForceSensors
+from lumen.features.simulation.hall_sensors import ForceSensors, Sonars, TactileSensors
 from lumen.features.simulation.hazards import Hazards
 from lumen.features.simulation.lights import Lights
 from lumen.features.simulation.model_terms import Variation
@@ -22,10 +22,7 @@ from lumen.features.simulation.rendering import CAMERA_QUALITY, PixelArray, Rend
 from lumen.features.simulation.sensors import BodySensors
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.skills import SimulatedSkills
-from lumen.features.simulation.sonar import Sonars
-from lumen.features.simulation.sound_playback import SoundPlayback
-from lumen.features.simulation.speech_playback import SpeechPlayback
-from lumen.features.simulation.tactile_sensors import TactileSensors
+from lumen.features.simulation.sound_playback import SoundPlayback, SpeechPlayback
 from lumen.features.simulation.visitor_figure import VisitorFigure
 from lumen.features.simulation.world import CONTROL_PERIOD, FALLEN_TILT, World
 from lumen.language.body_parts import ARMS, LEGS, VOICE, WHOLE_BODY

@@ -12,8 +12,13 @@ from lumen.features.simulation.motors import Motors
 from lumen.features.simulation.playback import MotionPlayback, SpeechActivity
 from lumen.features.simulation.posture_planner import PosturePlanner, PostureState, lying
 from lumen.features.simulation.sensors import BodySensors
-from lumen.features.simulation.sound_playback import SilentSounds, SoundActivity, SoundPlayback
-from lumen.features.simulation.speech_playback import SilentPlayback, SpeechPlayback
+from lumen.features.simulation.sound_playback import (
+    SilentPlayback,
+    SilentSounds,
+    SoundActivity,
+    SoundPlayback,
+    SpeechPlayback,
+)
 from lumen.features.simulation.world import World
 from lumen.language.body_parts import part_of
 from lumen.language.commands import Leds, Look, Move, PlaySound, Posture, Rest, Say, Stop, Volume, Wake, Walk

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from lumen.errors import BadCommandError, RobotError, RobotFailedError, RobotRefusedError
 from lumen.features.simulation.balance import BalanceController
+from lumen.features.simulation.falling_sense import MassModel
 from lumen.features.simulation.hazards import Hazards
 from lumen.features.simulation.joint_transition import JointTransition
-from lumen.features.simulation.mass_model import MassModel
 from lumen.features.simulation.motors import Motors
 from lumen.features.simulation.odometry import Odometry
 from lumen.features.simulation.sensors import BodySensors

@@ -5,8 +5,7 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TypeVar
 
-from lumen.insight.changes.change import Change, Risk
-from lumen.insight.changes.formatting import code, names, quoted, seconds
+from lumen.insight.changes.change import Change, Risk, code, names, quoted, seconds
 from lumen.language.actions import (
     Action,
     AskQuestion,

@@ -5,10 +5,9 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from lumen.insight.changes.actions import block_changes
-from lumen.insight.changes.change import Change, Risk
-from lumen.insight.changes.formatting import code, how_many, names, quoted
+from lumen.insight.changes.change import Change, Risk, code, how_many, names, quoted
 from lumen.insight.changes.transitions import transition_changes
-from lumen.insight.migration.identity import Identity
+from lumen.insight.migration.placing import Identity
 from lumen.language.machines import MachineDefinition, State
 
 

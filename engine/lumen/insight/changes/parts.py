@@ -4,8 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
-from lumen.insight.changes.change import Change, Risk
-from lumen.insight.changes.formatting import code, names, seconds
+from lumen.insight.changes.change import Change, Risk, code, names, seconds
 from lumen.language.controllers import ControllerDefinition
 from lumen.language.functions import FunctionDefinition
 from lumen.language.motions import MotionDefinition

@@ -6,13 +6,10 @@ from itertools import groupby
 from typing import Any
 
 from lumen.feature import VerbRow
-from lumen.insight.changes.change import Change, Risk
-from lumen.insight.changes.entries import entry_changes
-from lumen.insight.changes.formatting import code, how_many
+from lumen.insight.changes.change import Change, Risk, code, entry_changes, how_many
 from lumen.insight.changes.machines import machine_changes
 from lumen.insight.changes.parts import controller_changes, function_changes, motion_changes, route_changes
-from lumen.insight.changes.restart_fields import RESTART_FIELDS
-from lumen.insight.changes.sections import AT_NEXT_START, section_changes
+from lumen.insight.changes.sections import AT_NEXT_START, RESTART_FIELDS, section_changes
 from lumen.language.projects import Project
 
 MAX_SUMMARY_CHANGES = 4

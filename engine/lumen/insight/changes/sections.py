@@ -5,9 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from lumen.feature import Section, table
-from lumen.insight.changes.change import Change, Risk
-from lumen.insight.changes.entries import entry_changes
-from lumen.insight.changes.formatting import code
+from lumen.insight.changes.change import Change, Risk, code, entry_changes
 from lumen.language.projects import Project
 
 AT_NEXT_START = "it takes effect at the next start"
@@ -59,3 +57,20 @@ def _entries(settings: object, row: Section) -> Mapping[str, object]:
 def _without(settings: Any, row: Section) -> Any:
     """Return the settings without their entries."""
     return replace(settings, **{row.entries: {}})
+
+
+RESTART_FIELDS: Mapping[str, str] = {
+    "robot": "the robot's name",
+    "body": "the robot's model",
+    "hall": "the hall",
+    "stage": "the stage",
+    "bus": "the broker's address",
+    "modules": "the settings of the modules",
+}
+"""Fields of `Project` that take effect only at the next start, with their names for people."""
+
+
+def live(old: Project, new: Project) -> Project:
+    """Return the new bundle, but with the old values of everything that needs a restart, such as `RESTART_FIELDS`."""
+    fixed = {name: getattr(old, name) for name in RESTART_FIELDS}
+    return replace(new, **fixed, sections=live_sections(old, new))

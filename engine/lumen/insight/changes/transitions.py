@@ -6,8 +6,7 @@ from typing import Any
 
 from lumen.expressions.readings import as_written
 from lumen.insight.changes.actions import block_changes, paired
-from lumen.insight.changes.change import Change, Risk
-from lumen.insight.changes.formatting import code, names, seconds
+from lumen.insight.changes.change import Change, Risk, code, names, seconds
 from lumen.language.actions import Expression, Template
 from lumen.language.machines import State, Transition
 

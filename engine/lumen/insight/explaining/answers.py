@@ -5,15 +5,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from lumen.errors import UsageError
-from lumen.insight.explaining.activities import unreached
 from lumen.insight.explaining.chains import chain
 from lumen.insight.explaining.dependence import directly_needed
-from lumen.insight.explaining.effects import effect
+from lumen.insight.explaining.effects import Link, effect
 from lumen.insight.explaining.history import RecordedStep, StepHistory
-from lumen.insight.explaining.links import Link
 from lumen.insight.explaining.names import KnownNames, state_named
 from lumen.insight.explaining.refusals import ORDER, Reason, TransitionRefusals
-from lumen.insight.explaining.ways import deeds, ways
+from lumen.insight.explaining.ways import deeds, unreached, ways
 from lumen.insight.explaining.words import of_event
 from lumen.language.iso_time import iso_time
 from lumen.statechart.nesting import active_names

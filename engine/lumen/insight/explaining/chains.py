@@ -6,22 +6,11 @@ from functools import partial
 from typing import Any, TypeAlias
 
 from lumen.insight.explaining.conditions import values
-from lumen.insight.explaining.effects import Effect
+from lumen.insight.explaining.effects import Effect, Link, LinkKind, origin
 from lumen.insight.explaining.hearing import heard_row
-from lumen.insight.explaining.history import OPERATOR_GOTO, StepHistory
-from lumen.insight.explaining.insides import ended_timer, machine_within, sets_timer
-from lumen.insight.explaining.links import Link, LinkKind
-from lumen.insight.explaining.origins import origin
+from lumen.insight.explaining.history import OPERATOR_GOTO, StepHistory, ended_timer, machine_within, sets_timer
 from lumen.insight.explaining.tracing import Deed, TracedMicrostep
-from lumen.insight.explaining.words import (
-    awaited,
-    brought,
-    of_command,
-    of_event,
-    of_transition,
-    ordinal,
-    prefix_of,
-)
+from lumen.insight.explaining.words import awaited, brought, of_command, of_event, of_transition, ordinal, prefix_of
 from lumen.language.commands import Command, Start
 from lumen.language.diagnostics import Place
 from lumen.language.events import HELD, Event

@@ -1,14 +1,54 @@
-"""The subject of a question: the last time that something was said, played, done or entered."""
+"""The subject of a question, and the links of the chain from that effect to its cause."""
 
-from collections.abc import Iterator
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple
 
 from lumen.errors import UsageError
-from lumen.insight.explaining.history import StepHistory
+from lumen.insight.explaining.history import RecordedStep, StepHistory
 from lumen.insight.explaining.names import KnownNames, same_text, state_named
 from lumen.insight.explaining.words import of_command
+from lumen.language.causes import Cause
 from lumen.language.commands import Command, Publish, Say, Start, Tell
+from lumen.language.diagnostics import Place
+from lumen.language.events import Event, robot_events
+from lumen.language.iso_time import iso_time
+from lumen.language.modules import own_module_events
 from lumen.statechart.nesting import entered_names
+
+LinkKind = Literal["command", "activity", "transition", "event", "timer", "message", "person", "file", "start"]
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """Something that happened, as part of a chain of causes."""
+
+    kind: LinkKind
+    """The kind of link."""
+    text: str
+    """What happened, in words."""
+    at: float
+    """When it happened [s since 1970, in UTC]."""
+    place: Place | None = None
+    """The place in the files that defines it; None if there is none."""
+    id: str = ""
+    """The id of the command, timer or message; empty if it has none."""
+    values: Mapping[str, Any] = field(default_factory=dict)
+    """The values that decided it: those of the guard's parts, or the data of the event."""
+    number: int = 0
+    """The number of the recorded step."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Return an entry of `chain` in the output of `lumen why --format json`."""
+        return {
+            "kind": self.kind,
+            "text": self.text,
+            "at": iso_time(self.at),
+            "file": self.place.file if self.place else None,
+            "line": self.place.line if self.place else None,
+            "id": self.id,
+            "values": dict(self.values),
+        }
 
 
 class Effect(NamedTuple):
@@ -81,3 +121,50 @@ def _unknown(history: StepHistory, what: str) -> str:
     return f"nothing named `{what}` happened {kept}, and no text contains these words" + (
         f": {hint}" if hint else f"; the robot's last action: it {said[-1]}" if said else ""
     )
+
+
+class EventOrigin(NamedTuple):
+    """The cause of an event, which is the last link of a chain."""
+
+    kind: LinkKind
+    text: str
+    id: str = ""
+    values: Mapping[str, Any] = {}
+
+
+def origin(one: RecordedStep, event: Event) -> EventOrigin | None:
+    """Return the cause of an event, as far as the event or the routes give it; None if it is unknown."""
+    if event.cause and (said := _said(event.cause)):
+        return said
+    by = event.data.get("by") if isinstance(event.data, Mapping) else None
+    if event.name in ("stop", "resume") and by:
+        return EventOrigin("person", f"{by} requested it")
+    project = one.project
+    rows = [row for row in project.routes.values() if row.event == event.name] if project else []
+    if project and rows:
+        key = rows[0].key_for(project.robot)
+        return EventOrigin("message", f"a message on {key}", "", {"key": key})
+    if event.name in robot_events():
+        return EventOrigin("event", "the robot detected it")
+    if project and event.name in own_module_events(project.modules):
+        return EventOrigin("event", "the exhibition watches this module")
+    return None
+
+
+def _said(cause: Cause) -> EventOrigin | None:
+    """Return the cause that the event itself carries."""
+    values = {key: value for key in ("key", "sender") if (value := getattr(cause, key))}
+    by = f", from {cause.sender}" if cause.sender else ""
+    match cause.kind:
+        case "message":
+            return EventOrigin("message", f"a message on {cause.key}{by}", cause.id, values)
+        case "person":
+            said = f"{cause.sender or 'somebody'}" + (f", by a message on {cause.key}" if cause.key else "")
+            return EventOrigin("person", said, cause.id, values)
+        case "file":
+            return EventOrigin("file", f"the file {cause.id}", cause.id, values)
+        case "start":
+            return EventOrigin("start", "the run began")
+        case "robot":
+            return EventOrigin("event", f"the robot detected it{by}", cause.id, values)
+    return None

@@ -9,8 +9,7 @@ from lumen.expressions import Scope, parse_expression
 from lumen.insight.explaining.changes import ProposedChange, StepSituation
 from lumen.insight.explaining.conditions import GuardPart, first_false
 from lumen.insight.explaining.hearing import HeardRow, heard_row
-from lumen.insight.explaining.history import OPERATOR_GOTO, StepHistory
-from lumen.insight.explaining.insides import within
+from lumen.insight.explaining.history import OPERATOR_GOTO, StepHistory, within
 from lumen.insight.explaining.searching import Happens, literals_in, smallest_change, taken
 from lumen.insight.explaining.tracing import Moment
 from lumen.insight.explaining.words import awaited, of_transition, prefix_of

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from itertools import combinations
 from typing import Any, NamedTuple
 
-from lumen.insight.migration.identity import Identity
+from lumen.insight.migration.placing import Identity
 from lumen.language.actions import Template
 from lumen.language.machines import ForEach, MachineDefinition, StateKind
 from lumen.language.nanoseconds import nanoseconds

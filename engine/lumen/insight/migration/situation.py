@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from lumen.insight.migration import carried_state
-from lumen.insight.migration.identity import Identity
-from lumen.insight.migration.placing import Placement, Unplaced, place
+from lumen.insight.migration.placing import Identity, Placement, Unplaced, place
 from lumen.insight.migration.verdicts import MigrationDelay, Refusal
 from lumen.language.actions import Action, AskQuestion, If, Parallel, PlacedAction, SayText, Wait
 from lumen.language.machines import MachineDefinition, StateKind

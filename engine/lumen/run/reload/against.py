@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 
 from lumen.insight.changes import live
 from lumen.insight.migration import Refusal
-from lumen.insight.migration.identity import Identity
+from lumen.insight.migration.placing import Identity
 from lumen.language.diagnostics import Code, Diagnostic, NodePath, Place
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project

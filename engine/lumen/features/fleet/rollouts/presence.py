@@ -1,9 +1,10 @@
 """The report that a robot sends its centre every ten seconds, as JSON data: without names, words or images."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from lumen.features.fleet.settings import FleetMeasure
 from lumen.language.numbers import is_finite_number
 
 MAX_TEXT = 300
@@ -101,3 +102,15 @@ def _measures(data: Any) -> bool:
     if not isinstance(data, Mapping) or len(data) > MAX_MEASURES + 1:
         return False
     return all(isinstance(name, str) and is_finite_number(count) and count >= 0 for name, count in data.items())
+
+
+def rates(counts: Iterable[Mapping[str, float]], measures: Mapping[str, FleetMeasure]) -> dict[str, float]:
+    """Return each measure per hour of a robot, or per count of another measure; unknown ones are absent."""
+    rows = list(counts)
+    found = {}
+    for name, measure in measures.items():
+        known = [row for row in rows if row.get(HOURS, 0.0) > 0.0 and name in row]
+        per = sum(row.get(measure.per or HOURS, 0.0) for row in known)
+        if per > 0.0:
+            found[name] = sum(row[name] for row in known) / per
+    return found

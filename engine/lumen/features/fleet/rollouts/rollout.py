@@ -9,9 +9,8 @@ from dataclasses import replace
 from itertools import zip_longest
 
 from lumen.features.fleet.rollouts.conditions import holds
-from lumen.features.fleet.rollouts.counting import rates
 from lumen.features.fleet.rollouts.orders import NOT
-from lumen.features.fleet.rollouts.presence import PROVED, REFUSED, ROLLED_BACK
+from lumen.features.fleet.rollouts.presence import PROVED, REFUSED, ROLLED_BACK, rates
 from lumen.features.fleet.rollouts.state import ABORTED, FINISHED, GOING, PERSON, CentreState, Rollout
 from lumen.features.fleet.rollouts.trying import HeardRobots, begin_steps, fresh, tried
 from lumen.features.fleet.settings import Fleet, RolloutPlan, StepTarget
