@@ -1,4 +1,4 @@
-"""What is asked of the person at this terminal before a robot moves."""
+"""Confirmation by the person at this terminal, before a robot moves."""
 
 import sys
 
@@ -6,7 +6,10 @@ from lumen.errors import UsageError
 
 
 def agrees(question: str, otherwise: str) -> bool:
-    """Whether they say yes; Ctrl-D is a no. Raises UsageError with `otherwise` where nobody sits at a terminal."""
+    """Ask a question on this terminal; return True for y, yes or ya, and False for anything else or for Ctrl-D.
+
+    Raises UsageError with the text `otherwise` if standard input is not a terminal.
+    """
     if sys.stdin is None or not sys.stdin.isatty():
         raise UsageError(otherwise)
     try:

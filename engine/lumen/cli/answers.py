@@ -1,4 +1,4 @@
-"""Answers to `why` and `why-not`, as lines that people read."""
+"""The answers to `lumen why` and `lumen why-not`, as lines of text for people."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -16,18 +16,23 @@ BECAUSE = {
     "inactive": "its state was not active",
 }
 LEADS = {"activity": "by", "event": "for", "timer": "for", "message": "from", "person": "from", "file": "from"}
-"""The word before a link; `because` before the others."""
+"""The word before a link of the chain, by the kind of the link; other kinds get `because`."""
 WIDTH = 100
 INDENT = " " * 10
 MAX_INACTIVE = 3
-"""Ways from states that were not active that are shown; of the others only how many there are."""
+"""The number of ways from inactive states that are shown; the rest are only counted."""
 
 
 MAX_NEEDS = 5
 
 
 def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
-    """What happened, then a link each, what it rests on beneath it; a time where it is another one."""
+    """Yield the lines of an answer to `why`: what happened, one link of the chain after the other, then what it depends
+    on.
+
+    A time is printed only if it differs from the time of the link before. Each link is followed by the values that its
+    guard read, and by its place in the files.
+    """
     at = ""
     for number, link in enumerate(answer["chain"]):
         new = link["at"] != at and link["kind"] != "activity"
@@ -46,7 +51,11 @@ def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
 
 
 def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:
-    """What came nearest first: the way, what was against it, and what would have helped."""
+    """Yield the lines of an answer to `why-not`: each reason, its guard's values, and the change that would have
+    helped.
+
+    The reasons come nearest first, as they are in the answer; at most MAX_INACTIVE of them are about inactive states.
+    """
     yield f"{_time(answer['at'])}  not {answer['what']}"
     if not answer["reasons"]:
         yield f"{INDENT}no transition leads there"
@@ -69,7 +78,7 @@ def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _block(time: str, text: str, deeper: str) -> Iterator[str]:
-    """A text in lines that are not too long, the time before the first of them."""
+    """Yield a text wrapped to WIDTH columns, with the time in front of its first line."""
     lead = text[: len(text) - len(text.lstrip())]
     lines = wrap(text.strip(), WIDTH - len(INDENT) - len(lead), subsequent_indent=deeper[len(lead) :] or "  ")
     for number, line in enumerate(lines):
@@ -77,7 +86,7 @@ def _block(time: str, text: str, deeper: str) -> Iterator[str]:
 
 
 def _change(change: Mapping[str, Any]) -> str:
-    """`it had been in offer and heard had come with event.data.result "dance"`."""
+    """Return a change as a clause: `it had been in offer and heard had come with event.data.result "dance"`."""
     values = [(name, _json(value)) for name, value in change.items() if "." in name]
     said = [f"it had been in {change['state']}"] if "state" in change else []
     said += [f"nothing else had happened for {change['wait']:g} s"] if "wait" in change else []

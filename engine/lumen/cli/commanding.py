@@ -1,4 +1,4 @@
-"""A command to the robot of a running exhibition, as any module would send it."""
+"""Send a command to the robot of a running exhibition, on the same route as any module does."""
 
 import argparse
 import sys
@@ -14,7 +14,10 @@ COMMAND_TIMEOUT = 30.0
 
 
 def command(options: argparse.Namespace, body: Any, done: str) -> int:
-    """Send it and wait for the answer: prints `done` and gives 0, or says why not and gives 1."""
+    """Send a command and wait for the answer: print `done` and return 0, or print why it was refused and return 1.
+
+    Raises BusError if no answer arrives within COMMAND_TIMEOUT [s].
+    """
     reached = reach(options)
     try:
         answer = answered(reached.bus, reached.command, body, COMMAND_TIMEOUT)
@@ -24,12 +27,12 @@ def command(options: argparse.Namespace, body: Any, done: str) -> int:
 
 
 def answered(bus: Bus, key: str, body: Any, timeout: float) -> Any:
-    """What the robot says to it. Raises BusError where it says nothing within the timeout [s]."""
+    """Send a request and return the robot's answer. Raises BusError if none arrives within the timeout [s]."""
     return next(send_request(bus, key, body, OPERATOR_ANSWERS, first=timeout))
 
 
 def told(options: argparse.Namespace, answer: Any, done: str) -> int:
-    """Print that it is `done`, or the answer that says why not; the exit code."""
+    """Print `done` if the robot accepted the command, else its answer; return the exit code, 0 or 1."""
     well = answer == TAKEN
     if options.format == "json":
         print_object({"ok": well, "answer": done if well else answer})

@@ -1,4 +1,4 @@
-"""What may be written next on a command line, by the parser that will read it."""
+"""Completion of a command line, derived from the parser that will read it."""
 
 import argparse
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -8,20 +8,20 @@ from lumen.cli.suggesting import Suggesting
 
 
 class Candidate(NamedTuple):
-    """A word that may stand here, and what it means."""
+    """A word that can come next, and its help text."""
 
     word: str
     says: str = ""
 
 
 Names = Callable[[str], Sequence[str]]
-"""The names that a project has for a placeholder such as `STORY`; none for what is typed freely, or is a file."""
+"""The names that a project has for a placeholder such as `STORY`; empty for free text and for files."""
 
 
 def candidates(parser: Suggesting, words: Sequence[str], names: Names) -> list[Candidate]:
-    """What the last of these words, which may be empty, can become; none where files are meant, or nothing is known.
+    """Return the completions of the last of these words, which may be empty; none for files and for unknown verbs.
 
-    `words` are those behind `lumen`. The verb among them has to be configured in `parser`.
+    `words` are the words after `lumen`. The verb among them must be configured in `parser`.
     """
     *before, begun = words or [""]
     if not before:
@@ -62,7 +62,7 @@ def _by_option(parser: Suggesting) -> Mapping[str, argparse.Action]:
 
 
 def _options(parser: Suggesting, given: Sequence[str]) -> Iterator[Candidate]:
-    """Those that are not there yet; the short ones only where there is no long one."""
+    """Yield the options that are not given yet, each by its long form if it has one."""
     for action in parser._actions:
         once = not isinstance(action, argparse._AppendAction)
         if action.help is argparse.SUPPRESS or (once and not set(action.option_strings).isdisjoint(given)):
@@ -75,13 +75,13 @@ def _options(parser: Suggesting, given: Sequence[str]) -> Iterator[Candidate]:
 def _values(action: argparse.Action, names: Names) -> Iterator[Candidate]:
     if action.choices is not None:
         yield from (Candidate(str(choice)) for choice in action.choices)
-    else:  # `--state NAME` is a state
+    else:  # the metavar names the placeholder: `--state NAME` is a state
         said = action.metavar if isinstance(action.metavar, str) else ""
         yield from map(Candidate, names(said) or names(action.dest.upper()))
 
 
 def _positional(parser: Suggesting, number: int) -> argparse.Action | None:
-    """What the word of that number stands for; the last one takes what is left where it takes many."""
+    """Return the positional argument that gets the word at this index; a last one with `*` or `+` gets all the rest."""
     found = [action for action in parser._actions if not action.option_strings and action.nargs != 0]
     if number < len(found):
         return found[number]

@@ -1,4 +1,4 @@
-"""`lumen completion SHELL`: what has a shell complete verbs, options and names of the project."""
+"""`lumen completion SHELL`: print the script that makes a shell complete verbs, options and names of the project."""
 
 import argparse
 from importlib.resources import files
@@ -13,6 +13,7 @@ WORDS = "words"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen completion` to its parser."""
     parser.description = (
         "Print a script that lets a shell complete verbs, options, and the names of stories, motions, states and codes."
     )
@@ -22,7 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0."""
+    """Print the script of a shell, or the completions of the given words; return 0."""
     if options.shell == WORDS:
         typed = [word.removeprefix(".") for word in options.words]
         for word, says in candidates(command_line(typed[:1]), typed, names_of):

@@ -1,4 +1,4 @@
-"""`lumen diff`: what a reload from one version of a project to another would change, and where it would lead."""
+"""`lumen diff`: list what a reload from one version of a project to another would change, and its outcome."""
 
 import argparse
 import json
@@ -21,6 +21,7 @@ COLOURS = {"refused": "red", "waits": "yellow", "moved": "blue", "kept": "green"
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen diff` to its parser."""
     which = f"a folder, a revision of this project (HEAD~1), or `{LIVE}`: the files that are running now"
     parser.add_argument("old", metavar="OLD", help=which)
     parser.add_argument(
@@ -37,7 +38,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """1 where a reload would be refused somewhere, else 0, whatever differs."""
+    """Print the differences; return 1 if the reload would be refused in some configuration or in the running one, else
+    0.
+    """
     old, new = version(options.old), version(options.new)
     found = changes(old.project, new.project)
     visits = _visits(new) if options.visits else None
@@ -55,7 +58,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _visits(new: Version) -> ReplayReport:
-    """What the new files would have done in the visits of the project here."""
+    """Replay the recorded visits of the project in this folder with the new files, and compare."""
     root = Path(new.project.root)
     robot = new.project.one_of_several
     return against(chosen(root, None, all=True, robot=robot).entries(), KeptBundles(root, robot), new.project)

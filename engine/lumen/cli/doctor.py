@@ -1,4 +1,4 @@
-"""`lumen doctor`: whether an exhibition's bus can be used, and what is missing on it."""
+"""`lumen doctor`: check whether an exhibition's bus can be used, and what is missing on it."""
 
 import argparse
 import json
@@ -34,19 +34,23 @@ from lumen.run.setup import robot_options
 
 LISTENING = 2.0
 SKEW = 1.0
-"""How far two clocks may be apart [s] before it is worth a word."""
+"""The difference between two clocks [s] above which it is a warning."""
 SIGNS = {"ok": ("ok", "green"), "note": ("--", "dim"), "warning": ("??", "yellow"), "error": ("!!", "red")}
 
 
 class Finding(NamedTuple):
-    """What was looked at, how bad it is (`ok`, `note`, `warning`, `error`), and what was found."""
+    """The result of one check."""
 
     what: str
+    """The subject of the check, such as `broker` or `clocks`."""
     severity: str
+    """`ok`, `note`, `warning` or `error`: a key of SIGNS."""
     text: str
+    """The result, in words."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen doctor` to its parser."""
     parser.description = (
         "Check the bus of an exhibition: whether the broker is running, is new enough and lets Lumen read and send,"
         " whether the clocks agree, and which routes no process serves."
@@ -67,7 +71,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 all well, 1 something is wrong; raises BusError where there is nothing to look at."""
+    """Print the findings; return 1 if one is a warning or an error, else 0.
+
+    Raises BusError if there is no bus to check.
+    """
     if options.robot:
         return _told(options, [Finding(*found) for found in _robot(options)])
     root = own_project(options.project)
@@ -87,7 +94,7 @@ def _robot(options: argparse.Namespace) -> Iterable[tuple[str, str, str]]:
 
 
 def _told(options: argparse.Namespace, findings: list[Finding]) -> int:
-    """Print the findings; 1 if something is wrong."""
+    """Print the findings; return 1 if one is a warning or an error, else 0."""
     bad = any(finding.severity in ("warning", "error") for finding in findings)
     if options.format == "json":
         print(json.dumps({"ok": not bad, "findings": [finding._asdict() for finding in findings]}))
@@ -149,7 +156,10 @@ def _permissions(probe: Probe, project: Project) -> Iterator[Finding]:
 
 
 def _life(bus: Bus, project: Project) -> Iterator[Finding]:
-    """What is heard in two seconds: the senses, and how late it is for who sends them."""
+    """Listen to the senses for LISTENING [s]; yield which of them arrive, and how far the robot's clock is off.
+
+    A sense is a route with a period of at most half of that time.
+    """
     routes, heard, skews = by_key(project), set[str](), list[float]()
     complete = threading.Event()
 
@@ -162,7 +172,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
 
     senses = {key: route for key, route in routes.items() if route.every and route.every <= LISTENING / 2}
     for key in senses:
-        with suppress(BusError):  # what we may not read is nothing that we hear
+        with suppress(BusError):  # a route that this user may not read is reported by _permissions
             bus.subscribe(key, listen)
     complete.wait(LISTENING)
     silent = [route.name for key, route in senses.items() if key not in heard]
@@ -180,7 +190,7 @@ def _life(bus: Bus, project: Project) -> Iterator[Finding]:
 
 
 def _obeying(probe: Probe, attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
-    """Whether who takes the robot's commands is alive."""
+    """Yield whether the robot that receives the commands is alive; nothing if no process receives them."""
     route = project.routes.get(COMMAND_ROUTE)
     if route is None or not probe.served(project.key_of(COMMAND_ROUTE), route).readers:
         return
@@ -193,7 +203,7 @@ def _obeying(probe: Probe, attendance: RobotAttendance, project: Project) -> Ite
 
 
 def _modules(attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
-    """Whether the project's own modules show signs of life, and can be started."""
+    """Yield for each of the project's own modules whether it shows signs of life, else whether its program exists."""
     own = own_modules(project.modules)
     lacking = attendance.lacking(own) if own else set[str]()
     for name, module in own.items():
@@ -215,7 +225,10 @@ def _found(program: str, project: Project) -> bool:
 
 
 def _served(probe: Probe, project: Project) -> Iterator[Finding]:
-    """Which routes that must arrive somebody takes; only a motion module may be missing."""
+    """Yield which routes that must arrive have a reader.
+
+    A missing motion module is only a note: the brain replaces it.
+    """
     taken: list[str] = []
     for key, route in by_key(project).items():
         if not route.must_arrive or route.direction is not Direction.IN:
@@ -233,7 +246,9 @@ def _served(probe: Probe, project: Project) -> Iterator[Finding]:
 
 
 def _skew(body: Any) -> float | None:
-    """How far ahead this machine's clock is of the date in a body [s]."""
+    """Return how far this machine's clock is ahead of the `datePublished` of a body [s]; None if it has no valid
+    date.
+    """
     date = body.get("datePublished") if isinstance(body, dict) else None
     if not isinstance(date, str):
         return None

@@ -1,4 +1,4 @@
-"""`lumen explain`: what a code means, why it matters, an example of what is wrong and of what is right."""
+"""`lumen explain`: print what a code means, why it matters, and a wrong and a right example."""
 
 import argparse
 import json
@@ -15,6 +15,7 @@ from lumen.project.formats.conversion_findings import CODE_MEANINGS
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen explain` to its parser."""
     parser.add_argument(
         "code",
         nargs="?",
@@ -25,7 +26,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Show the page of a code, or list those that the word stands for; without one all."""
+    """Print the page of a code, or the list of the codes that begin with the word; without a word list all.
+
+    Return 0.
+    """
     word = (options.code or "").strip("[]`")
     json_wanted = options.format == "json"
     if word in codes():
@@ -83,7 +87,7 @@ def _text(found: Page, on: bool) -> str:
 
 
 def _sheet(sheet: Example, on: bool) -> Iterator[str]:
-    """The lines of an example, the wrong word underlined."""
+    """Yield the lines of an example, with the wrong word underlined."""
     yield f"  {paint(sheet.file, 'bold', on=on)}" + (f" ({_NOTES[sheet.note]})" if sheet.note else "")
     for number, line in enumerate(lines_of(sheet.text.rstrip("\n")), 1):
         yield f"  {paint(f'{number:2} |', 'dim', on=on)} {line}".replace("\t", "\u2192").rstrip()

@@ -1,4 +1,4 @@
-"""`lumen export`: a behaviour or a fuzzy controller for another tool."""
+"""`lumen export`: write a behaviour or a fuzzy controller in the format of another tool."""
 
 import argparse
 import sys
@@ -23,6 +23,7 @@ from lumen.run.linting.findings import Findings
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen export` to its parser."""
     parser.description = (
         "Write a behaviour as SCXML, as an XState configuration, or as a diagram for Mermaid or Graphviz; a fuzzy"
         " controller in FuzzyLite Language; or all routes and bodies as an AsyncAPI document. Parts"
@@ -47,7 +48,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where everything could be said, 1 where something is left out."""
+    """Write the export; return 0 if it is complete, 1 if parts that the format can't express were left out."""
     root = shown_project(options.project)
     project = lumen.load(root)
     row: Exporter = table("exporters")[options.target]
@@ -70,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _reported(feature: Feature, where: str, *arguments: Any) -> tuple[str, list[Diagnostic]]:
-    """Return the text of an exporter, and the diagnostics of what it left out."""
+    """Return the text of an exporter, and a diagnostic for each part that it left out."""
     match called(feature, where, *arguments):
         case (str() as text, [*left_out]) if all(isinstance(each, Diagnostic) for each in left_out):
             return text, left_out
@@ -96,7 +97,7 @@ def _written(text: str, diagnostics: list[Diagnostic], document: Document, optio
 
 
 def _document(root: Path, file: str) -> Document:
-    """The file, for the lines of what is listed."""
+    """Return a file of the project, parsed: the list of omissions refers to its lines."""
     document = parse(file, on_disk(root, file).read_bytes())[0]
     assert document is not None  # it was loaded a moment ago
     return document

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from lumen.feature import rows
 from lumen.project.broken_features import called
 
-if TYPE_CHECKING:  # `lumen lint` of unchanged files loads none of them
+if TYPE_CHECKING:  # # not at run time: `lumen lint` of unchanged files loads none of them
     from lumen.language.projects import Project
     from lumen.language.stories import Story
     from lumen.run.linting.findings import Findings
@@ -15,23 +15,24 @@ if TYPE_CHECKING:  # `lumen lint` of unchanged files loads none of them
 
 
 class RunExtra(Protocol):
-    """Options of `lumen run`, and what they want of an exhibition."""
+    """Options of `lumen run`, and what they change in an exhibition."""
 
     def configure(self, parser: argparse.ArgumentParser) -> None:
         """Add the options."""
         ...
 
     def check(self, options: argparse.Namespace, parts: Sequence[str], robots: int) -> None:
-        """Raise UsageError if the options do not go with these parts of an exhibition, or with so many robots."""
+        """Raise UsageError if the options don't fit these parts of an exhibition, or this number of robots."""
         ...
 
     def wishes(
         self, options: argparse.Namespace, project: "Project", story: "Story | None", period: float | None
     ) -> Mapping[str, Any]:
-        """Return options of the plan of one robot that acts for `period` [s], None for until it ends.
+        """Return options of the plan of one robot that runs for `period` [s]; None runs until the story or the user
+        ends it.
 
-        Of these names the core knows two: `track`, an `AudioTrack` that gets whatever is heard, and `video`, the path
-        of a file that is written. Raises UsageError.
+        The core itself reads two names: `track`, an `AudioTrack` that receives all the robot's sound, and `video`, the
+        path of the film that is written. Raises UsageError.
         """
         ...
 
@@ -44,11 +45,11 @@ class LintExtra(Protocol):
         ...
 
     def check(self, options: argparse.Namespace) -> None:
-        """Raise UsageError if the options do not go together."""
+        """Raise UsageError if the options contradict each other."""
         ...
 
     def more(self, found: Sequence["Findings"], wanted: "Wanted", options: argparse.Namespace) -> list["Findings"]:
-        """Return the findings of each project, with those that the options ask for."""
+        """Return the findings of each project, with those that the options add."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""`lumen lint --fix` and `--diff`: what can be repaired without asking."""
+"""`lumen lint --fix` and `--diff`: repairs that need no decision."""
 
 import difflib
 import sys
@@ -17,14 +17,14 @@ from lumen.upkeep.replacing import replace_file
 
 
 def repair(what: LintTarget, wanted: Wanted) -> tuple[Mapping[str, bytes], Mapping[str, bytes], list[Repair]]:
-    """The files of a project as they are, as they would be, and what was repaired."""
+    """Return the files of a project before and after the repair, and the repairs that were made."""
     before = what.files()
     after, done = repaired(before, lambda files: checked(what.root, files), lambda d: wanted(d) and what.shown(d))
     return before, after, done
 
 
 def diff(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes], on: bool) -> Iterator[str]:
-    """The lines of a unified diff of what a repair changes."""
+    """Yield the lines of a unified diff between the files before and after a repair."""
     for file in (file for file in after if after[file] != before[file]):
         name = Findings((), {}, str(root)).name(file)
         old, new = (lines_of(files[file].decode("utf-8", "replace").rstrip("\r\n")) for files in (before, after))
@@ -39,9 +39,9 @@ def _style(line: str) -> tuple[str, ...]:
 
 
 def write(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -> None:
-    """Put the files that changed in place of the old ones, each at once and with its old rights.
+    """Replace the files that changed, each atomically and with its old permissions.
 
-    Raises UsageError where one can't be written, or was saved by somebody else meanwhile.
+    Raises UsageError if a file can't be written, or has changed on disk since it was read.
     """
     for file in (file for file in after if after[file] != before[file]):
         path = on_disk(root, file).resolve()
@@ -54,7 +54,7 @@ def write(root: Path, before: Mapping[str, bytes], after: Mapping[str, bytes]) -
 
 
 def tell(done: Sequence[Repair], names: Findings) -> None:
-    """Say on standard error what was repaired."""
+    """Print on standard error which findings were repaired."""
     for diagnostic, fix in done:
         where = f"{names.name(diagnostic.place.file)}:{diagnostic.place.line}"
         print(clean(f"fixed {where} [{diagnostic.code}] {fix.title}"), file=sys.stderr)

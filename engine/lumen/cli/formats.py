@@ -1,4 +1,4 @@
-"""`--format json`: what a verb reports as one object, for programs."""
+"""`--format json`: the output of a subcommand as one JSON object, for programs."""
 
 import argparse
 import json
@@ -9,18 +9,21 @@ from typing import Any
 
 
 def configure_format(parser: argparse.ArgumentParser) -> None:
+    """Add `--format` with the choices `text` and `json`."""
     parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def print_object(data: Any) -> None:
-    """Print one object on one line."""
+    """Print a value as JSON on one line, and flush."""
     print(json.dumps(data, ensure_ascii=False), flush=True)
 
 
 @contextmanager
 def one_object(format: str) -> Iterator[Callable[[Any], None]]:
-    """What takes the object that is printed at the end, where it is wanted: then what is told meanwhile goes to
-    standard error.
+    """Yield a function that receives the object to print; with `json` it is printed when the block ends.
+
+    With `json` everything else that the block prints goes to standard error. With any other format the object is
+    ignored.
     """
     found: list[Any] = []
     if format != "json":

@@ -1,4 +1,4 @@
-"""`lumen goto STATE`: a running exhibition enters a state, as if a transition led there."""
+"""`lumen goto STATE`: make a running exhibition enter a state, as if a transition led there."""
 
 import argparse
 import sys
@@ -16,6 +16,7 @@ from lumen.run.reaching import Reached
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen goto` to its parser."""
     parser.add_argument("state", metavar="STATE", help="a state's id, or its path such as guide.talking")
     parser.add_argument("-y", "--yes", action="store_true", help="do not ask for confirmation")
     configure_reach(parser)
@@ -23,7 +24,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 once it is there, 1 where it could not or nobody wants it."""
+    """Ask for confirmation and send the request; return 0 if the state was entered, 1 if it was refused or not
+    confirmed.
+    """
     if options.format == "json" and not options.yes:
         raise UsageError("--format json can't ask for confirmation: add --yes")
     reached = reach(options)
@@ -55,7 +58,7 @@ def _request(reached: Reached, state: str, **more: str) -> dict[str, Any]:
 
 
 def _sure(state: str, way: dict[str, Any]) -> bool:
-    """Whether whoever is asked says yes; what it leaves and enters is said before."""
+    """Print which states are left and entered, and return whether the person at the terminal confirms."""
     left = f"leaves {', '.join(way['exited'])} and " if way["exited"] else ""
     print(f"This {left}enters {', '.join(way['entered'])}; guards are not checked.")
     return agrees(f"Go to {state}?", "goto asks for confirmation, but this is not a terminal: add --yes")

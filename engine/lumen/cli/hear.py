@@ -1,4 +1,4 @@
-"""`lumen hear TEXT`: what a sentence does in a state, row by row."""
+"""`lumen hear TEXT`: show what a sentence does in a state, row by row."""
 
 import argparse
 import sys
@@ -28,6 +28,7 @@ HEAD = ("", "state", "row", "found", "words", "alone", "negated", "asked", "guar
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen hear` to its parser."""
     parser.description = (
         "Explain which row of `hears` is taken for a sentence, and why the others are not: which phrase was found, how"
         " many of its words count, whether it is a whole clause, negated or part of a question, and whether the"
@@ -51,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 if a row takes the sentence in one of the states, 1 if none does."""
+    """Print the rows; return 0 if a row matches the sentence in one of the states, else 1."""
     project = lumen.load(shown_project(options.project))
     machine = _machine(project, options.behavior)
     language = options.language or project.languages[0]
@@ -81,7 +82,7 @@ def _machine(project: Project, name: str | None) -> MachineDefinition:
 
 
 def _paths(machine: MachineDefinition, state: str | None) -> list[str]:
-    """The paths of the states that are asked about."""
+    """Return the path of the chosen state, or of all states that hear. Raises UsageError if the state hears nothing."""
     hearing = hearing_states(machine)
     if state is None:
         return [one.path for one in hearing]
@@ -102,7 +103,7 @@ def _without_a_state(machine: MachineDefinition, count: int) -> str:
 
 
 def _lines(machine: MachineDefinition, path: str, sentence: ExplainedSentence, whole: bool) -> Iterator[str]:
-    """The rows in columns; unless the `whole` is wanted, only those that something was found for."""
+    """Yield the rows as a table: all if `whole`, else those with a phrase found in the sentence."""
     shown = [row for row in sentence.rows if whole or row.taken or row.found]
     yield machine.states[path].name
     if shown:

@@ -1,4 +1,4 @@
-"""`lumen run` of several robots: those of `robots:` that are asked for, in one process."""
+"""`lumen run` of several robots of `robots:` in one process."""
 
 import argparse
 import os
@@ -28,7 +28,10 @@ from lumen.run.setup import Setup, robot_options, set_up_house
 
 
 class HouseRun:
-    """The robots of a house as a terminal runs them; `parts` are those of each that this process is, all without."""
+    """The robots of a house, run from one terminal.
+
+    `parts` are the parts that this process runs of each; empty means all.
+    """
 
     def __init__(self, options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> None:
         self._options, self._start, self._parts = options, start, parts
@@ -54,7 +57,9 @@ class HouseRun:
         self.house = House(self.made, self._lose, together=self.story is not None)
 
     def run(self) -> RunVerdict:
-        """Until the story ends, the period is over, or somebody ends it."""
+        """Run until the story ends, the period is over, or the operator ends it; print the summary and return the
+        verdict.
+        """
         options, house = self._options, self.house
         heed_signals([*self.made.values()])
         project = next(iter(self.projects.values()))
@@ -116,19 +121,19 @@ class HouseRun:
         return plan_of(self._options, one, self._parts, self._url, setup, clock, transcript, greeting=typed)
 
     def _failure(self) -> str:
-        """The reason why the story failed; empty if it did not, or without a story."""
+        """Return why the story failed; empty if it did not, or if there is no story."""
         visitor = self.made[self._first].get(VisitorPart)
         return visitor.player.failure if visitor and visitor.player else ""
 
     def _lose(self, name: str, error: LumenError) -> None:
-        """An error ended one robot; the others go on."""
+        """Record the error that ended one robot; the other robots continue."""
         self._lost[name] = error
         self.transcripts[name].line("trouble", str(error))
         self._start.failures.report(error, [name])
 
 
 def check_house(options: argparse.Namespace, parts: Sequence[str]) -> None:
-    """Raises UsageError for what is about one robot, or does not go with processes."""
+    """Raise UsageError for options that work with only one robot, or that don't fit several processes."""
     own = (option.destination for option in robot_options() if not option.several)
     for name in ("model", *own, "record", "sound"):
         if vars(options)[name]:

@@ -1,4 +1,4 @@
-"""`lumen import`: a statechart, a motion, a fuzzy controller or a robot of another tool as a file of ours."""
+"""`lumen import`: convert a statechart, a motion, a fuzzy controller or a robot of another tool to a file of Lumen."""
 
 import argparse
 import re
@@ -38,12 +38,13 @@ from lumen.run.linting.findings import Findings
 from lumen.upkeep.garbage import gc_paused
 
 BEGINNINGS = {b"<": ".scxml", b"{": ".json"}
-"""The ending that a file without a known one should have, by its first sign."""
+"""The ending to assume for a file without a known one, by its first byte."""
 READ, WRITTEN = 20, 50
-"""How much of the time [%] a large chart takes until it is read, and from there until it is written."""
+"""The share of the time [%] that a large chart takes to be read, and from there to be written."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen import` to its parser."""
     parser.description = (
         "Turn a statechart (SCXML, XState's JSON) into a behaviour file, a motion (Webots, Choregraphe, NAOqi's"
         " Python) into a motion file, a fuzzy controller (FuzzyLite's FLL, FCL of IEC 61131-7, MATLAB's .fis) into a"
@@ -80,7 +81,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where everything was carried over, 1 where something is left out, 2 where nothing can be written."""
+    """Convert the file; return 0 if everything was carried over, 1 if parts were left out.
+
+    Raises UsageError (exit code 2) if nothing can be written.
+    """
     content = foreign_content(options.file)
     title = _title(options.output or options.file)
     row, convert = recognised(content) or (importer(options.file.suffix), None)
@@ -92,7 +96,7 @@ def run(options: argparse.Namespace) -> int:
     body = _body(options.project) if kind == "motion" else None
     if body:
         read = partial(_gesture, body, options)
-    with progress() as tell, gc_paused():  # else it looks through a large chart again and again
+    with progress() as tell, gc_paused():  # else the garbage collector traverses a large chart again and again
         tell(0, 100, f"% of {options.file}: reading")
         try:
             data, diagnostics = read(str(options.file), content, title)
@@ -111,7 +115,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _robot(options: argparse.Namespace, read: RobotReader, content: bytes, title: str) -> int:
-    """A body file, and the MJCF that goes with it."""
+    """Write a body file, and the MJCF and meshes that belong to it; return the exit code."""
     try:
         text, diagnostics, beside = read(options.file, content, options.output, title)
     except ForeignFileError as error:
@@ -128,7 +132,7 @@ def _robot(options: argparse.Namespace, read: RobotReader, content: bytes, title
 
 
 def _told(options: argparse.Namespace, content: bytes, diagnostics: list[Diagnostic]) -> int:
-    """List them on standard error; the exit code."""
+    """Print the findings on standard error; return the exit code, 1 if one is an error."""
     if diagnostics or options.format != "text":
         files = {str(options.file): content}
         print(render(options.format, [Findings(diagnostics, files)], coloured=coloured(sys.stderr)), file=sys.stderr)
@@ -136,7 +140,7 @@ def _told(options: argparse.Namespace, content: bytes, diagnostics: list[Diagnos
 
 
 def _body(project: str | None) -> Body:
-    """The robot of a project, whatever is wrong with its other files: who imports may be mending them."""
+    """Return the body of a project, even if its other files have errors: an import may be part of repairing them."""
     return body_of(motion_parts(read_files(find_project(project))))
 
 
@@ -151,7 +155,7 @@ def _title(path: Path) -> str:
 
 
 def _added() -> dict[str, list[str]]:
-    """Return the endings of files that packages installed beside Lumen read, by package."""
+    """Return the endings of files that features of other installed packages import, by the package's name."""
     found: dict[str, list[str]] = {}
     for feature, (ending, _) in rows("importers"):
         if distribution := distribution_of(feature):
@@ -160,7 +164,10 @@ def _added() -> dict[str, list[str]]:
 
 
 def _reader(path: Path, content: bytes) -> tuple[str, FileReader]:
-    """Return the kind of our file, and the function that reads the other tool's: by its ending, else its first sign."""
+    """Return the kind of file of Lumen to write, and the reader of the other tool's file.
+
+    They are chosen by the file's ending, else by its first byte. Raises UsageError if neither is known.
+    """
     ending = path.suffix
     row = importer(ending)
     if row is None or row.kind == "hint":
@@ -175,7 +182,7 @@ def _reader(path: Path, content: bytes) -> tuple[str, FileReader]:
 
 
 def _refusal(file: Path, text: str, fault: Diagnostic, said: list[Diagnostic]) -> str:
-    """Why nothing is written: what our loader has against the result, and what of the file may have led to it."""
+    """Return why nothing is written: the loader's error in the result, and the omission that may have caused it."""
     line = lines_of(text)[fault.place.line - 1].strip() if fault.place.line else ""
     near = f" at `{line[:80]}`" if line else ""
     lost = next((d for d in said if d.severity is Severity.ERROR), None)
@@ -185,7 +192,7 @@ def _refusal(file: Path, text: str, fault: Diagnostic, said: list[Diagnostic]) -
 
 
 def result_faults(file: str, text: str, kind: str, body: Body | None = None) -> list[Diagnostic]:
-    """What the loader has against the result."""
+    """Return what the loader reports about the result: errors, and for a motion whether it exceeds the speed limits."""
     document, found = parse(file, text.encode())
     if document is None:
         return found
@@ -205,7 +212,7 @@ def result_faults(file: str, text: str, kind: str, body: Body | None = None) -> 
 
 
 def _too_fast(file: str, fast: list[Excess]) -> Diagnostic:
-    """The warning that a motion is one which lint refuses, and what would mend it."""
+    """Return the warning that lint would refuse this motion, with the hint to use --retime."""
     worst = max(fast, key=lambda excess: excess.value / excess.limit)
     others = len({excess.joint for excess in fast}) - 1
     joints = f"`{worst.joint}`" + (f" and {others} other joint{'s' if others > 1 else ''}" if others else "")

@@ -1,4 +1,4 @@
-"""Options before, between and after the other words of a command: `export scxml --project here tour`; and help."""
+"""A parser that allows options before, between and after other words: `export scxml --project here tour`; and help."""
 
 import argparse
 import os
@@ -10,7 +10,9 @@ from lumen.cli.suggesting import Suggesting
 
 
 class Help(argparse.HelpFormatter):
-    """Python's help, without `shutil` for the width of the terminal: it takes as long as reading ten files."""
+    """Python's help formatter, without importing `shutil` for the terminal's width: that takes as long as reading ten
+    files.
+    """
 
     def __init__(self, prog: str) -> None:
         super().__init__(prog, width=_columns() - 2)
@@ -28,7 +30,7 @@ def _columns() -> int:
 
 
 class Intermixed(Suggesting):
-    """Reads the options first. Python's parser takes `[NAME]` for missing where an option stands before it.
+    """A parser that reads the options first, because argparse treats `[NAME]` as missing if an option precedes it.
 
     Its help ends with examples.
     """
@@ -38,7 +40,8 @@ class Intermixed(Suggesting):
     def parse_known_args(  # type: ignore[override]
         self, args: Sequence[str] | None = None, namespace: Any = None
     ) -> tuple[Any, list[str]]:
-        if self._mixing or "--" in (sys.argv[1:] if args is None else args):  # behind `--` is no option, and no mixing
+        """Parse as argparse does, but allow options between the positional arguments, unless there is a `--`."""
+        if self._mixing or "--" in (sys.argv[1:] if args is None else args):  # after `--` everything is positional
             return super().parse_known_args(args, namespace)
         self._mixing = True
         try:
@@ -47,7 +50,8 @@ class Intermixed(Suggesting):
             self._mixing = False
 
     def format_help(self) -> str:
-        from lumen.cli.pages import page  # only who asks for help waits for it
+        """Return Python's help, followed by the examples of the verb's page."""
+        from lumen.cli.pages import page  # only --help needs it
 
         shown = "\n".join(f"  {one.command}\n      {one.says}" for one in page(self.prog.split()[-1]).examples)
         return super().format_help() + (f"\nexamples:\n{shown}\n" if shown else "")

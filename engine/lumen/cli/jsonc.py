@@ -1,4 +1,4 @@
-"""JSON with comments, as VS Code's settings are: something is put into it, and all else stays as it is written."""
+"""JSON with comments, such as VS Code's settings: add members and leave the rest of the text unchanged."""
 
 import json
 import re
@@ -10,7 +10,7 @@ _BLANKS = " \t\r\n"
 
 
 class _Item(NamedTuple):
-    """A member of a map, or an entry of a list, whose key is empty: where its value begins and ends."""
+    """The span of a value, and the key of a member of a map; the key is empty for an entry of a list."""
 
     key: str
     begin: int
@@ -18,15 +18,15 @@ class _Item(NamedTuple):
 
 
 def plain(text: str) -> str:
-    """The text with blanks in place of comments and of commas behind which nothing comes; all else where it was."""
+    """Return the text with comments and trailing commas replaced by spaces, so that all positions stay the same."""
     return _PIECE.sub(lambda found: found[0] if found[0][0] == '"' else re.sub(r"[^\n]", " ", found[0]), text)
 
 
 def added(text: str, more: dict[str, Any]) -> str:
-    """The text of a map with these members in it.
+    """Return the text of a map with these members added.
 
-    Of a value that is a map, too, the members are added, of a list those entries that it does not have yet; any other
-    is replaced. Raises ValueError where the text is no such JSON.
+    A value that is a map is merged, a list gets the entries that it lacks, and any other value is replaced. Raises
+    ValueError if the text is not JSON with comments, or its top level is not a map.
     """
     data = json.loads(plain(text)) if plain(text).strip() else None
     if data is None:
@@ -39,7 +39,7 @@ def added(text: str, more: dict[str, Any]) -> str:
 
 
 def _put(text: str, begin: int, key: str, value: Any, depth: int) -> str:
-    """The text with a member in the map that begins there."""
+    """Return the text with a member added to the map that begins at `begin`, at this depth of indentation."""
     items, close = _items(plain(text), begin)
     old = next((item for item in reversed(items) if item.key == key), None)
     if old is None:
@@ -58,7 +58,7 @@ def _put(text: str, begin: int, key: str, value: Any, depth: int) -> str:
 
 
 def _items(blank: str, begin: int) -> tuple[list[_Item], int]:
-    """What the map or list that begins there holds, and where it is closed."""
+    """Return the items of the map or list that begins at `begin`, and the position of its closing bracket."""
     found, at = [], _next(blank, begin + 1)
     while blank[at] not in "}]":
         key = ""
@@ -73,7 +73,9 @@ def _items(blank: str, begin: int) -> tuple[list[_Item], int]:
 
 
 def _insert(text: str, items: list[_Item], close: int, row: str, depth: int) -> str:
-    """The text with a further row in what is closed there, behind the comments that stand at its end."""
+    """Return the text with a row added before the bracket at `close`, after the comments at the end of the list or
+    map.
+    """
     head = text[:close].rstrip(_BLANKS)
     if items and "," not in _commented(text[items[-1].end : close]):
         at = items[-1].end
@@ -82,7 +84,7 @@ def _insert(text: str, items: list[_Item], close: int, row: str, depth: int) -> 
 
 
 def _commented(text: str) -> str:
-    """The text without its comments."""
+    """Return the text without its comments."""
     return re.sub(r"//[^\n]*|/\*.*?\*/", "", text, flags=re.DOTALL)
 
 

@@ -1,4 +1,4 @@
-"""JUnit XML, which continuous integration reads: suites of cases, each of which passed or failed."""
+"""JUnit XML for continuous integration: suites of test cases, each of which passed or failed."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -9,7 +9,7 @@ _FORBIDDEN = re.compile("[^\t\n\u0020-\u007e\u00a0-\ud7ff\ue000-\ufffd\U00010000
 
 
 class JunitFailure(NamedTuple):
-    """Why a case failed: in a line, and at length."""
+    """Why a case failed: one line, and the details."""
 
     message: str
     details: str
@@ -17,7 +17,7 @@ class JunitFailure(NamedTuple):
 
 
 class JunitCase(NamedTuple):
-    """A test; `attributes` are its `time` [s], `file` and `line`, as far as they are known."""
+    """A test; `attributes` are its `time` [s], `file` and `line` if they are known."""
 
     name: str
     classname: str
@@ -27,7 +27,7 @@ class JunitCase(NamedTuple):
 
 
 class JunitSuite(NamedTuple):
-    """Tests that belong together; `took` [s] where they were run."""
+    """Tests that belong together; `took` is the time that they ran [s], None if they were not run."""
 
     name: str
     cases: Sequence[JunitCase]
@@ -36,7 +36,7 @@ class JunitSuite(NamedTuple):
 
 
 def junit_xml(name: str, suites: Sequence[JunitSuite], took: float | None = None) -> str:
-    """The document of a run that `took` so long [s]; what XML has not, or moves a cursor, is replaced."""
+    """Return the document of a run that `took` this long [s]; characters that XML forbids are replaced."""
     root = ET.Element("testsuites", name=_clean(name))
     for suite in suites:
         _add_suite(root, suite)

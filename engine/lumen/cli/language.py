@@ -1,4 +1,4 @@
-"""`lumen language`: begin another language, and see what is missing in one."""
+"""`lumen language`: add a language to a project, and list what is not translated."""
 
 import argparse
 import json
@@ -33,6 +33,7 @@ VERBS = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen language` to its parser."""
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = "\n".join(["what to do:", *(f"  {verb:15} {what}" for verb, what in VERBS.items())])
     parser.add_argument("what", metavar="WHAT", choices=[verb.split()[0] for verb in VERBS], help="see below")
@@ -45,7 +46,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0, or for `check` 1 where anything is missing."""
+    """Run `list`, `add` or `check`; return 0, or 1 if `check` finds anything missing."""
     root = own_project(options.project)
     files = read_files(root)
     _, diagnostics = check_files(root, files)

@@ -1,4 +1,4 @@
-"""`lumen lint`: what is wrong in a project, and where."""
+"""`lumen lint`: print what is wrong in a project, and where."""
 
 import argparse
 from collections.abc import Mapping, Sequence
@@ -16,6 +16,7 @@ from lumen.upkeep.garbage import gc_paused
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen lint` to its parser."""
     add = parser.add_argument
     add("paths", nargs="*", metavar="PATH", help="projects, or files of a project (default: this folder or one above)")
     add("--format", choices=finding_formats(), default="text", help="output format (default: text)")
@@ -39,7 +40,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where nothing is wrong, 1 where something is, or where --diff would change something."""
+    """Lint the projects; return 1 if there are errors (with --strict also warnings) or --diff has changes, else 0."""
     wanted = _wanted(options)
     _consistent(options)
     projects = lint_targets(options.paths, options.stdin_filename, whole=options.whole)
@@ -61,9 +62,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _judge(against: str | None, wanted: Wanted, *, kept: bool) -> FindingsOf:
-    """What finds what is wanted in a project, what a reload from `against` would refuse, move or forget included.
+    """Return the function that lints a project, including what a reload from `against` would refuse, move or lose.
 
-    With `kept` also from what was found before in files that are the same; who watches them has them in memory.
+    If `kept`, results of earlier runs are reused for files that have not changed; --watch keeps them in memory instead.
     """
 
     def judge(what: LintTarget, files: Mapping[str, bytes] | None = None) -> Findings:
@@ -79,10 +80,10 @@ def _judge(against: str | None, wanted: Wanted, *, kept: bool) -> FindingsOf:
 
 
 def _wanted(options: argparse.Namespace) -> Wanted:
-    """Which findings --select and --ignore leave."""
+    """Return the filter of findings that --select and --ignore describe."""
     if options.select is None and not options.ignore:
         return lambda diagnostic: True
-    from lumen.lint.selection import selected  # which knows all codes, and so all rules
+    from lumen.lint.selection import selected  # not at the top: it imports all codes, and so all rules
 
     chosen = selected(options.select) if options.select is not None else None
     left_out = selected(options.ignore or ())

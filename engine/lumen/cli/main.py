@@ -21,11 +21,11 @@ from lumen.upkeep.garbage import gc_paused
 
 STARTED = time.monotonic()
 
-atexit.register(gc.freeze)  # what is left is freed with the process: a last search for garbage would take a tenth of it
+atexit.register(gc.freeze)  # the process frees what is left; a last garbage collection takes a tenth of a short run
 
 
 def ready() -> float:
-    """How long ago this process began [s]."""
+    """Return how long ago this process began [s]."""
     return time.monotonic() - STARTED
 
 
@@ -39,10 +39,10 @@ def subcommands() -> dict[str, Subcommand]:
 
 
 def command_line(wanted: Collection[str]) -> Suggesting:
-    """Return the parser of the command line. Only the wanted verbs have their options: each is imported for that.
+    """Return the parser of the command line. Only the wanted verbs get their options: each is imported for that.
 
     The others share a parser without options, because making one for each takes as long as all the rest. Raises
-    LumenError if a wanted one was installed beside Lumen and can't be imported.
+    LumenError if a wanted verb belongs to another installed package and can't be imported.
     """
     bare = Intermixed(prog="lumen", formatter_class=Help)
 
@@ -56,7 +56,7 @@ def command_line(wanted: Collection[str]) -> Suggesting:
         formatter_class=Help,
     )
     parser.add_argument("--version", action="version", version=f"lumen {lumen.__version__}")
-    made: Any = parser_of  # argparse calls it; its types name a class
+    made: Any = parser_of  # argparse calls it, but the annotation of argparse requires a class
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True, parser_class=made, prog="lumen")
     for verb, row in subcommands().items():
         command = verbs.add_parser(
@@ -87,7 +87,9 @@ def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run `lumen` with these arguments: 0 all well, 1 findings or a failed story, 2 could not run."""
+    """Run `lumen` with these arguments; return 0 if all is well, 1 for findings or a failed story, 2 if it could not
+    run.
+    """
     open_streams()
     arguments = sys.argv[1:] if argv is None else list(argv)
     if not arguments:
@@ -163,7 +165,7 @@ def _reason(error: BaseException) -> str:
 
 
 def _somewhere() -> bool:
-    """Whether the working directory is there: somebody may have deleted it."""
+    """Return whether the working directory still exists: another process may have deleted it."""
     try:
         return bool(os.getcwd())
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""`lumen model on|off`: whether the language model of a running exhibition may speak."""
+"""`lumen model on|off`: switch the language model of a running exhibition."""
 
 import argparse
 
@@ -12,6 +12,7 @@ from lumen.run.resting import TAKEN
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen model` to its parser."""
     parser.add_argument(
         "state", metavar="STATE", choices=("on", "off"), help="`on` or `off`; it stays off until you switch it on again"
     )
@@ -20,7 +21,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 once it is so, 1 where it could not be."""
+    """Switch the model of each robot; return 0, or 1 if a robot refused."""
     return for_each_robot(options, _switch)
 
 

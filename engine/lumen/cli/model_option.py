@@ -1,4 +1,4 @@
-"""`--model NAME`: another body than the one that lumen.yaml names."""
+"""`--model NAME`: use another body than the one in lumen.yaml."""
 
 import argparse
 from collections.abc import Iterable
@@ -12,15 +12,19 @@ from lumen.project.project_folders import MODELS
 
 
 def configure_model(parser: argparse.ArgumentParser) -> None:
+    """Add `--model`."""
     what = "use the body models/NAME.yaml instead of the one in lumen.yaml"
     parser.add_argument("--model", metavar="NAME", default="", help=what)
 
 
 def use_model(name: str, roots: Iterable[Path]) -> None:
-    """Take that body from now on, none where it is empty. Raises UsageError where a project has no such one."""
+    """Use that body from now on; an empty name changes nothing.
+
+    Raises UsageError if one of the projects has no such body.
+    """
     if not name:
         return
-    from lumen.project.lending import shipped_models  # only who asks for one waits for it
+    from lumen.project.lending import shipped_models  # only needed if the option is given
 
     for root in roots:
         known = {*shipped_models(), *(composed(file.stem) for file in (root / MODELS).glob("*.yaml"))}

@@ -1,4 +1,4 @@
-"""`lumen new DIR`: a project to be made one's own; `lumen new KIND NAME`: an addition to a project."""
+"""`lumen new DIR`: create a project; `lumen new KIND NAME`: add files to a project."""
 
 import argparse
 from pathlib import Path
@@ -15,10 +15,11 @@ from lumen.run.starting import STARTERS, start_project
 from lumen.run.templates import TEMPLATES, write_template
 
 ACTION = "OWNER/lumen@COMMIT"
-"""Stands where the address of this repository and a commit of it are to be."""
+"""A placeholder for the address of this repository and a commit of it."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen new` to its parser."""
     kinds = ", ".join(_kinds())
     what = f"the new folder, which must be empty or not exist yet; or what to add to a project: {kinds}"
     parser.add_argument("folder", metavar="DIR|KIND", help=what)
@@ -45,6 +46,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    """Create a project in a new folder, or add to one if DIR is a kind of addition; return 0.
+
+    Raises UsageError if the folder is not empty, the robot is unknown, or a file can't be written.
+    """
     if options.name or options.folder in _kinds():
         return _add(options, options.folder)
     folder = Path(options.folder)
@@ -71,7 +76,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _add(options: argparse.Namespace, kind: str) -> int:
-    """Add files to a project: of a template here, or of a row of a feature."""
+    """Add files to a project, from a template of Lumen or of a feature; print them and return 0."""
     kinds = _kinds()
     if kind not in kinds:
         raise UsageError(f"can't add a `{kind}` to a project: {did_you_mean(kind, kinds, 'choose one of')}")
@@ -102,5 +107,5 @@ def _add(options: argparse.Namespace, kind: str) -> int:
 
 
 def _kinds() -> tuple[str, ...]:
-    """Return what a project can be given: the templates here, and those of features."""
+    """Return what can be added to a project: the templates of Lumen, and those of features."""
     return (*TEMPLATES, *table("new_files"))

@@ -1,4 +1,4 @@
-"""An exhibition as it runs on a terminal: introduced, told line by line, summed up."""
+"""An exhibition that runs on a terminal: its introduction, transcript and summary."""
 
 import math
 import time
@@ -26,14 +26,16 @@ GREETING = (
 
 
 class Performance:
-    """What a terminal shows of a whole exhibition."""
+    """The output on a terminal of a whole exhibition that runs in one process."""
 
     def __init__(self, setup: Setup, project: Project, made: Sequence[Services]) -> None:
         self.transcript = _VisitorsTranscript(setup, project, made)
         self._setup, self._took, self._lived = setup, 0.0, 0.0
 
     def introduce(self, services: Services, speed: str) -> None:
-        """Say what begins."""
+        """Print the project, robot, behaviour, speed and story, and warn of another process or missing camera
+        images.
+        """
         project, story = services.project, services.plan.story
         run_directory: RunDirectory = services.plan.options["directory"]
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")
@@ -49,13 +51,13 @@ class Performance:
             print(f"The story is “{story.title}”.\n")
 
     def run(self, services: Services, period: float | None) -> None:
-        """Until the story ends, the period [s] is over, the visitor has left or the operator ends it."""
+        """Run until the story ends, the period [s] is over, the visitor has left or the operator ends it."""
         began = time.monotonic()
         self._lived = services.node.run(period)
         self._took = time.monotonic() - began
 
     def summary(self, services: Services, video: Path | None) -> RunVerdict:
-        """Say how it went, and return it."""
+        """Print how the run went, and return its verdict; `video` is the file of the film, if one was made."""
         node, robot, visitor = services.node, services[RobotPart], services.get(VisitorPart)
         player, story = visitor.player if visitor else None, services.plan.story
         failure = player.failure if player else ""
@@ -90,7 +92,7 @@ class Performance:
 
 
 class _VisitorsTranscript(Transcript):
-    """A transcript that remembers how the robot looked at the visitor who left."""
+    """A transcript that records where the visitor's face was in the camera image when the visitor left."""
 
     distance: float | None = None
 

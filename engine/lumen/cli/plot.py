@@ -1,4 +1,4 @@
-"""`lumen plot`: a controller or a motion as a picture."""
+"""`lumen plot`: draw a controller or a motion."""
 
 import argparse
 from pathlib import Path
@@ -16,6 +16,7 @@ from lumen.project.formats.plots import PLOT_ENDINGS, PlotSheet, controller_shee
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen plot` to its parser."""
     parser.description = (
         "Draw a fuzzy controller: the membership functions of its variables, and its outputs over its inputs; with"
         " --at, how its rules fire for these inputs, and the result. Or draw a motion: each joint over time, within its"
@@ -30,6 +31,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
+    """Draw the file to a .png or .svg and print its path; return 0.
+
+    Raises UsageError if it can't be read or written.
+    """
     path = _found(options.file)
     output = options.output or Path(f"{path.stem}.png")
     if (ending := output.suffix.lower()) not in PLOT_ENDINGS:
@@ -47,7 +52,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _found(name: str) -> Path:
-    """The file, here or in the project around us."""
+    """Return the path of a file in this folder, or else in the project around it.
+
+    Raises UsageError if neither has it.
+    """
     if Path(name).is_file():
         return Path(name)
     root = shown_project(None)

@@ -1,4 +1,4 @@
-"""Findings on standard output, and whether they count."""
+"""Findings on standard output, and the exit code that they lead to."""
 
 import sys
 from collections.abc import Sequence
@@ -10,12 +10,15 @@ from lumen.run.linting.findings import Findings
 
 
 def verdict(found: Sequence[Findings], *, strict: bool = False) -> int:
-    """1 where something is shown that counts, else 0."""
+    """Return 1 if there is an error, or with `strict` a warning, else 0."""
     return int(any(each.count(Severity.ERROR) or (strict and each.count(Severity.WARNING)) for each in found))
 
 
 def show(text: str) -> None:
-    """Print it; where nobody reads on (`lumen lint | head`), the verdict still counts."""
+    """Print a text. If the reader has gone (`lumen lint | head`), return anyway, so that the verdict still counts.
+
+    Raises UsageError if it can't be printed for another reason.
+    """
     try:
         print(text.encode("utf-8", "replace").decode(), flush=True)
     except OSError as error:
@@ -25,6 +28,6 @@ def show(text: str) -> None:
 
 
 def clock_time(now: float) -> str:
-    """`3:07` for 187 [s], which the sum of many ticks may fall short of."""
+    """Return a time [s] as `3:07` for 187; rounded first, because a sum of many ticks may be slightly too small."""
     minutes, seconds = divmod(int(round(now, 6)), 60)
     return f"{minutes}:{seconds:02d}"

@@ -1,4 +1,4 @@
-"""How far something long is, and about how long it still takes: on a terminal only, and after two seconds."""
+"""A progress bar with the estimated time that is left: on a terminal only, and after two seconds."""
 
 import sys
 import threading
@@ -11,29 +11,36 @@ from lumen.cli.printing import clock_time
 from lumen.upkeep.threads import WatchedThread
 
 PATIENCE = 2.0
-"""How long nothing is shown [s]."""
+"""The time [s] before the bar appears."""
 REDRAWING = 0.25
-"""How often the line is drawn anew [s], so that one sees that it lives."""
+"""The time between two drawings of the line [s], short enough that it visibly changes."""
 WIDTH = 24
 
 
 class ProgressListener(Protocol):
-    """Told how much is done, of how much (0 where nobody knows), and of what."""
+    """A function that is called with the amount done, the whole amount (0 if unknown), and the name of the work."""
 
     def __call__(self, done: float, whole: float, name: str) -> None: ...
 
 
 class ProgressState(NamedTuple):
-    """What was told last, and when, counted from the beginning [s]."""
+    """The last report of progress."""
 
     done: float = 0.0
+    """The amount done."""
     whole: float = 0.0
+    """The whole amount, or an upper bound of it; 0 if unknown."""
     name: str = ""
+    """The name of the work; nothing is shown while it is empty."""
     at: float = 0.0
+    """The time of the report since the beginning [s]."""
 
 
 def progress_line(state: ProgressState, now: float, *, at_most: bool = False) -> str:
-    """What is shown `now` [s]: the estimate takes what is left to go on as what is done did, and counts down."""
+    """Return the line to show at `now` [s].
+
+    The estimate assumes a constant speed, and counts down between two reports.
+    """
     if state.whole <= 0.0:
         return f"{state.name} ({clock_time(now)} so far)"
     share = min(state.done / state.whole, 1.0)
@@ -42,14 +49,17 @@ def progress_line(state: ProgressState, now: float, *, at_most: bool = False) ->
     if share <= 0.0:
         return line
     left = state.at / share - now
-    if left <= 0.0:  # the estimate was wrong: no other one is made up
+    if left <= 0.0:  # the estimate was wrong: don't make up another one
         return f"{line}, {clock_time(now)} so far"
     return f"{line}, {'at most' if at_most else 'about'} {clock_time(round(left))} more"
 
 
 @contextmanager
 def progress(*, at_most: bool = False, clock: Callable[[], float] = time.monotonic) -> Iterator[ProgressListener]:
-    """What takes how far it is; of the line nothing is left at the end. `at_most`: the whole is a bound."""
+    """Yield a function to report progress to; erase the line at the end.
+
+    `at_most`: the whole amount is an upper bound.
+    """
     if not sys.stderr.isatty():
         yield lambda done, whole, name: None
         return

@@ -1,4 +1,6 @@
-"""The names of the project around us, for who completes a command line: as many as can be had in a moment."""
+"""The names of the project around the working directory, for completion on a command line, if they are quick to
+read.
+"""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
@@ -11,7 +13,7 @@ from lumen.project.running_project import running_project
 
 
 def names_of(placeholder: str) -> Sequence[str]:
-    """Return what the project that a command would show has for the placeholder of an argument; none if unknown."""
+    """Return the names that the project has for the placeholder of an argument; empty for an unknown placeholder."""
     found = PLACEHOLDERS.get(placeholder)
     return sorted(found(running_project())) if found else ()
 
@@ -21,7 +23,7 @@ def _files(folder: str) -> Callable[[Path], Iterable[str]]:
 
 
 def _codes(root: Path) -> Iterable[str]:
-    from lumen.lint.codes import codes, families  # with all rules: only for who asks for codes
+    from lumen.lint.codes import codes, families  # imports all rules, so only when codes are completed
 
     return [*codes(), *families()]
 
@@ -57,4 +59,7 @@ PLACEHOLDERS: Mapping[str, Callable[[Path], Iterable[str]]] = {
     "ROUTE": _routes,
     "OLD": lambda root: ("live", "HEAD"),
 }
-"""By the word that stands for an argument in `--help`, else by what it is called; others are files, or typed freely."""
+"""By the placeholder of an argument in `--help`, else by its destination.
+
+All other arguments are files or free text.
+"""

@@ -1,4 +1,4 @@
-"""Which project a command is about that shows something, or that asks a run: the same one for all of them."""
+"""The project that a command shows, chosen by the same rule for every command."""
 
 import sys
 from pathlib import Path
@@ -8,7 +8,7 @@ from lumen.project.running_project import is_substituted, running_project
 
 
 def shown_project(path: str | None) -> Path:
-    """Return the folder of a project; without one here or above, the copy that `lumen run` plays, else the shipped one.
+    """Return the folder of a project; if none is here or above, the copy that `lumen run` plays, else the shipped one.
 
     In the latter two cases print a line on standard error. Raises UsageError if there is no such folder.
     """

@@ -1,4 +1,4 @@
-"""What `lumen why` and `lumen why-not` have in common: whom they ask, and what they do with the answer."""
+"""The common part of `lumen why` and `lumen why-not`: who answers, and how the answer is printed."""
 
 import argparse
 import sys
@@ -16,10 +16,10 @@ from lumen.run.recalling import answer_from_journal
 
 
 def moment(text: str, now: datetime) -> str:
-    """The end of the minute `14:03`, or of the second `14:03:20`, the last time that a clock here showed it.
+    """Return the moment that a time on the command line means, as ISO 8601 in UTC.
 
-    `now` is the time here. What is written with a date is that moment. ISO 8601 in UTC; raises UsageError for what is
-    no time.
+    A time of day is in the last 24 hours before `now`, the local time: `14:03` is the end of that minute, `14:03:20`
+    the end of that second. A time with a date is that moment itself. Raises UsageError for anything else.
     """
     try:
         if "-" in text:
@@ -35,6 +35,7 @@ def moment(text: str, now: datetime) -> str:
 
 
 def configure_question(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a question about the past."""
     configure_reach(parser)
     parser.add_argument("--at", metavar="T", help="the time to ask about, such as 14:03 or 14:03:20 (default: now)")
     configure_format(parser)
@@ -43,7 +44,10 @@ def configure_question(parser: argparse.ArgumentParser) -> None:
 def put(
     options: argparse.Namespace, question: OperatorRequest, shown: Callable[[dict[str, Any]], Iterator[str]]
 ) -> int:
-    """Ask a running exhibition, else the journal of the project, and print what it says; 1 where that is no answer."""
+    """Put a question to a running exhibition, or else to the project's journal, and print the answer.
+
+    Return 0, or 1 if the question was refused.
+    """
     at = moment(options.at, datetime.now().astimezone()) if options.at else None
     try:
         found = _asked(options, question, at)

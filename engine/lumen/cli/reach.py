@@ -1,4 +1,4 @@
-"""Which exhibition a verb is about."""
+"""Options that choose the exhibition and the robot that a subcommand is about."""
 
 import argparse
 from collections.abc import Callable
@@ -8,6 +8,7 @@ from lumen.run.reaching import Reached, reach_exhibition, robots_meant
 
 
 def configure_reach(parser: argparse.ArgumentParser) -> None:
+    """Add the options that choose an exhibition and a robot of it."""
     parser.add_argument(
         "project", nargs="?", metavar="PROJECT", help="the exhibition's folder (default: this folder or one above)"
     )
@@ -16,12 +17,13 @@ def configure_reach(parser: argparse.ArgumentParser) -> None:
 
 
 def configure_robot_name(parser: argparse.ArgumentParser) -> None:
+    """Add the option that chooses one of several robots."""
     what = "a robot in `robots:` (default: all for status, stop, resume and model, else the first that is running)"
     parser.add_argument("--robot-name", metavar="NAME", default="", help=what)
 
 
 def for_each_robot(options: argparse.Namespace, do: Callable[[argparse.Namespace], int]) -> int:
-    """Do it for each robot that is meant, which is `robot_name` then; the highest code of them."""
+    """Call `do` for each chosen robot, with its name in `options.robot_name`; return the highest exit code."""
     codes = []
     for name in names_meant(options):
         options.robot_name = name
@@ -30,11 +32,11 @@ def for_each_robot(options: argparse.Namespace, do: Callable[[argparse.Namespace
 
 
 def names_meant(options: argparse.Namespace) -> list[str]:
-    """The robot that is named, else all of the house; one empty name where lumen.yaml has one `robot:`."""
+    """Return the robot of --robot-name, else all in `robots:`; one empty name if lumen.yaml has a single `robot:`."""
     return [options.robot_name] if options.robot_name else robots_meant(options.project) or [""]
 
 
 def reach(options: argparse.Namespace) -> Reached:
-    """The bus of the exhibition that is meant. Raises BusError, saying what to do, where none is found."""
+    """Return the bus of the chosen exhibition. Raises BusError, with a hint, if no exhibition is running."""
     shown_project(options.project)
     return reach_exhibition(options.project, options.bus, getattr(options, "robot_name", ""))

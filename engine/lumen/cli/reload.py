@@ -1,4 +1,4 @@
-"""`lumen reload`: let a running exhibition read its files again, or say which files run."""
+"""`lumen reload`: make a running exhibition read its files again, or show which files are active."""
 
 import argparse
 import json
@@ -19,6 +19,7 @@ REQUESTS = {
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen reload` to its parser."""
     configure_reach(parser)
     which = parser.add_mutually_exclusive_group()
     for verb, summary in REQUESTS.items():
@@ -28,7 +29,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where the files are active or staged, 1 where they were refused; while they wait, so does this."""
+    """Send the request and print each answer until the final one, even while the files wait to be activated.
+
+    Return 0 if the files are active or staged, 1 if they were refused.
+    """
     body = {"command": options.command or "reload", "now": options.now}
     reached = reach(options)
     try:
@@ -42,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _node(answer: Any, format: str) -> None:
-    """One object for each verdict; a person reads its lines."""
+    """Print a verdict: as a JSON object, or its lines for people."""
     if format == "json" or not isinstance(answer, dict):
         shown = {key: value for key, value in answer.items() if key != "lines"} if isinstance(answer, dict) else answer
         print(json.dumps(shown, ensure_ascii=False), flush=True)
@@ -52,5 +56,5 @@ def _node(answer: Any, format: str) -> None:
 
 
 def _clean(text: str) -> str:
-    """A text from elsewhere: no signs that would steer the terminal."""
+    """Return a text from elsewhere without characters that could control the terminal."""
     return "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)

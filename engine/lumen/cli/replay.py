@@ -1,4 +1,4 @@
-"""`lumen replay`: what happened, taken again with the files that ran then, or with others."""
+"""`lumen replay`: run what happened again, with the files that ran then or with others, and compare."""
 
 import argparse
 from collections.abc import Callable, Iterable
@@ -27,10 +27,11 @@ from lumen.run.versions import version
 from lumen.run.workers.workers import workers_of
 
 SMALL = 1_000_000
-"""A journal of fewer bytes is replayed before other processes have begun."""
+"""A journal of fewer bytes is replayed in this process: worker processes would take longer to start."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen replay` to its parser."""
     add = parser.add_argument
     add(
         "what",
@@ -51,7 +52,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """1 where anything differs."""
+    """Replay visits and print the differences; return 1 if there are any, else 0."""
     root = shown_project(options.project)
     robot = one_robot(root, options.robot_name)
     if options.list:
@@ -79,7 +80,10 @@ def _report(
     options: argparse.Namespace,
     tell: Callable[[int], None],
 ) -> ReplayReport:
-    """What came of the entries with the files that ran then, or with others; of many by several workers."""
+    """Return the result of replaying the entries with the original files, or with those of --bundle.
+
+    A long journal is divided among several workers.
+    """
     new = version(options.bundle, journal.root, bundles.robot) if options.bundle is not None else None
     workers = workers_of(options.workers)
     size = sum(file.stat().st_size for file in journal.files)
@@ -90,7 +94,7 @@ def _report(
 
 
 def _show(root: Path, entries: Iterable[RecordedEntry], bundles: KeptBundles, options: argparse.Namespace) -> int:
-    """A robot does again what was done."""
+    """Perform the recorded entries again on a robot; return 0."""
     project = lumen.load(root, robot=one_robot(root, options.robot_name))
     setup = set_up(options.robot, project, options.speed)
     try:

@@ -1,4 +1,4 @@
-"""What came of a replay, as a person reads it."""
+"""The result of a replay, as text for people."""
 
 from collections.abc import Iterator
 
@@ -7,11 +7,11 @@ from lumen.language.iso_time import local_time
 from lumen.run.replaying.replay_report import ReplayReport
 
 SHOWN = 10
-"""How many differences are shown."""
+"""The number of differences that are listed."""
 
 
 def replay_lines(report: ReplayReport, *, other: bool) -> Iterator[str]:
-    """What a person reads."""
+    """Yield the lines of a report: the counts, the first differences, and what could not be compared."""
     counts = [f"{report.same} the same"]
     for how in ("differs", "says something else", "ends elsewhere"):
         count = sum(row.how == how and row.visit > 0 for row in report.differ)

@@ -1,4 +1,4 @@
-"""Diagnostics on a terminal, as `lumen lint` shows them."""
+"""Diagnostics on a terminal, in the form of `lumen lint`."""
 
 import sys
 from collections.abc import Iterable
@@ -7,7 +7,7 @@ from lumen.language.diagnostics import Diagnostic, has_errors
 
 
 def report(diagnostics: Iterable[Diagnostic]) -> int:
-    """Print them to standard error; 1 where one is an error, else 0."""
+    """Print the diagnostics to standard error; return 1 if one is an error, else 0."""
     found = list(diagnostics)
     for diagnostic in found:
         print(diagnostic, file=sys.stderr)

@@ -1,4 +1,4 @@
-"""`lumen resume`: a robot that a person stopped may move again."""
+"""`lumen resume`: let a robot that a person stopped move again."""
 
 import argparse
 from typing import Any
@@ -16,13 +16,16 @@ RESUME_TIMEOUT = 10.0
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen resume` to its parser."""
     parser.add_argument("-y", "--yes", action="store_true", help="do not ask whether there is room around the robot")
     configure_reach(parser)
     configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 once it may move, 1 where it could not or nobody wants it."""
+    """Ask for confirmation and send the request to each robot; return 0, or 1 if a robot refused or the person
+    declined.
+    """
     if options.format == "json" and not options.yes:
         raise UsageError("--format json can't ask for confirmation: add --yes")
     return for_each_robot(options, _resume)
@@ -43,7 +46,7 @@ def _resume(options: argparse.Namespace) -> int:
 
 
 def _here(since: object) -> str:
-    """A time as the clocks here show it."""
+    """Return a time in the local time zone; a text that is no time is returned unchanged."""
     try:
         return local_time(time_of(str(since)))
     except ValueError:
@@ -51,7 +54,7 @@ def _here(since: object) -> str:
 
 
 def _sure(stopped: Any, robot: str) -> bool:
-    """Print who stopped it and why a person is asked; return whether that person confirms."""
+    """Print who stopped the robot and why confirmation is needed; return whether the person confirms."""
     by, since = (stopped.get(key) for key in ("stopped_by", "since")) if isinstance(stopped, dict) else ("", "")
     print(f"{by} stopped {robot} at {_here(since)}." if by else f"{robot[0].upper()}{robot[1:]} is not stopped.")
     otherwise = "resume asks for confirmation, but this is not a terminal: add --yes if there is room around the robot"

@@ -1,4 +1,4 @@
-"""`lumen run`: an exhibition, in one process or in several."""
+"""`lumen run`: run an exhibition, in one process or in several."""
 
 import argparse
 import os
@@ -45,10 +45,14 @@ from lumen.upkeep.heap import give_back
 
 PROCESS_GREETING = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
 PRIORITY = -10
-"""Of an exhibition in real time, as `nice` counts: that takes root, or a right such as systemd's `LimitNICE=-10`."""
+"""The niceness of an exhibition in real time.
+
+To set it takes root, or a permission such as `LimitNICE=-10` in systemd.
+"""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen run` to its parser."""
     add = parser.add_argument
     add(
         "project",
@@ -95,7 +99,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def _configure_files(parser: argparse.ArgumentParser) -> None:
-    """Add the options about saved files, and about the run before."""
+    """Add the options about saved files, and about continuing the previous run."""
     add = parser.add_argument
     add(
         "--reload",
@@ -108,7 +112,7 @@ def _configure_files(parser: argparse.ArgumentParser) -> None:
 
 
 class _OfferedRobots(tuple[str, ...]):
-    """The names that are offered; the drivers of a project are names too, and are known only with the project."""
+    """The robots that `--help` lists. Any name is accepted: a project's own drivers are known only once it is read."""
 
     __slots__ = ()
 
@@ -117,6 +121,10 @@ class _OfferedRobots(tuple[str, ...]):
 
 
 def run(options: argparse.Namespace) -> int:
+    """Run the robots that the options choose, and print the verdict; return its exit code.
+
+    Raises UsageError for options that contradict each other, and other LumenErrors if the run can't start.
+    """
     give_back()
     named = () if options.story is None else (options.story,)
     path = options.project or project_of(named)
@@ -135,7 +143,7 @@ def run(options: argparse.Namespace) -> int:
     for extra in run_extras():
         extra.check(options, parts, len(robots))
     if len(robots) > 1:
-        from lumen.cli.house_run import check_house  # nobody else needs it
+        from lumen.cli.house_run import check_house  # only a run of several robots needs it
 
         check_house(options, parts)
     with (
@@ -150,7 +158,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _house(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> RunVerdict:
     """Run several robots in this process."""
-    from lumen.cli.house_run import HouseRun  # nobody else needs it
+    from lumen.cli.house_run import HouseRun  # only a run of several robots needs it
 
     return HouseRun(options, start, parts).run()
 
@@ -189,7 +197,7 @@ def _whole(options: argparse.Namespace, one: RobotRun, url: str, period: float |
 def _processes(
     options: argparse.Namespace, one: RobotRun, parts: tuple[str, ...], url: str, period: float | None
 ) -> RunVerdict:
-    """Run these parts of an exhibition. Raises UsageError for options that do not go with that."""
+    """Run these parts of an exhibition. Raises UsageError for options that several processes can't have."""
     project, story, made = one.project, one.story, list[Services]()
     _check_processes(options, story, parts, url)
     setup = robot_of(options, project, story) if ROBOT_PART in parts else None
@@ -208,7 +216,7 @@ def _processes(
 
 
 def _summed_up(node: Node, lived: float, *, judged: bool) -> RunVerdict:
-    """Print how a process of several went, and return it; its story, if it has one, `judged` the behaviour."""
+    """Print how the run of these parts went, and return its verdict; `judged` if a story has judged the behaviour."""
     of_parts, troubles = node.summary(), troubles_of(node, judged=judged)
     with_trouble = "Ended with trouble" if troubles else "Ended"
     print(f"\n{'The story failed' if node.failed else with_trouble}: {clock_time(lived)}.")
@@ -221,7 +229,7 @@ def _summed_up(node: Node, lived: float, *, judged: bool) -> RunVerdict:
 
 @contextmanager
 def _composed(plan: Plan, made: list[Services], hint: str = "") -> Iterator[Services]:
-    """Compose an exhibition that claims what it is, ends at its end, and obeys signals; it is put into `made`."""
+    """Compose an exhibition, put it into `made`, claim its roles and handle signals; close it when the block ends."""
     services = compose_or_hint(plan, hint)
     made.append(services)
     heed_signals(made)
@@ -233,14 +241,14 @@ def _composed(plan: Plan, made: list[Services], hint: str = "") -> Iterator[Serv
 
 
 def _ended(one: RobotRun, services: Services) -> None:
-    """Note in its home that a run ended as it should."""
+    """Record in the run's directory that the run ended normally."""
     one.directory.ended(services.project)
     one.directory.close(forget=not services.node.leaving)
 
 
 @contextmanager
 def _going_first() -> Iterator[None]:
-    """Go before other programs where the system lets us: on a crowded machine a stop waits for none of them."""
+    """Raise this process's priority if the system allows it, so that a stop is not delayed on a busy machine."""
     usual = None
     with suppress(AttributeError, OSError):
         usual = os.getpriority(os.PRIO_PROCESS, 0)
@@ -272,7 +280,7 @@ def _check_processes(options: argparse.Namespace, story: Story | None, parts: Se
 def _heard(
     options: argparse.Namespace, one: RobotRun, setup: Setup | None, track: AudioTrack | None = None
 ) -> Iterator[None]:
-    """Let a simulated robot be heard: its voice if the flags ask for one, and its sound files, here and in the film.
+    """Connect a simulated robot to its voice, if the options ask for one, and to sounds, here and in the film.
 
     Raises UsageError or ModuleError.
     """

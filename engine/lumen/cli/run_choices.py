@@ -1,4 +1,4 @@
-"""The story, the language and the length of a run, as the options of `lumen run` choose them."""
+"""The story, the language and the length of a run, from the options of `lumen run`."""
 
 import argparse
 from typing import Any
@@ -14,6 +14,7 @@ from lumen.run.setup import Setup, robot_options, set_up
 
 
 def chosen_story(project: Project, name: str | None) -> Story | None:
+    """Return the story of this name, None without a name. Raises UsageError if no story or several match."""
     if name is None:
         return None
     found = list(stories_of(project, name))
@@ -25,6 +26,10 @@ def chosen_story(project: Project, name: str | None) -> Story | None:
 
 
 def period_of(text: str | None) -> float | None:
+    """Return the length of a run [s] from a text such as `2min`, None without one.
+
+    Raises UsageError if it is no duration.
+    """
     if text is None:
         return None
     period = seconds(text)
@@ -34,6 +39,7 @@ def period_of(text: str | None) -> float | None:
 
 
 def language_of(project: Project, language: str | None) -> str:
+    """Return the language, empty without one. Raises UsageError if the project does not have it."""
     if language is not None and language not in project.languages:
         hint = did_you_mean(language, project.languages, "it has")
         raise UsageError(f"the project has no language `{language}`: {hint}")
@@ -41,7 +47,7 @@ def language_of(project: Project, language: str | None) -> str:
 
 
 def robot_of(options: argparse.Namespace, project: Project, story: Story | None) -> Setup:
-    """Return the robot that the options ask for. Raises UsageError if they do not go together."""
+    """Return the robot that the options choose. Raises UsageError if they contradict each other."""
     return set_up(options.robot, project, options.speed, story, robot_wishes(options))
 
 
@@ -52,7 +58,7 @@ def robot_wishes(options: argparse.Namespace) -> dict[str, str]:
 
 
 def wishes(options: argparse.Namespace, project: Project, story: Story | None, period: float | None) -> dict[str, Any]:
-    """Return what the options that features add want of the plan of one robot. Raises UsageError."""
+    """Return the options of the plan of one robot that the extra options of features set. Raises UsageError."""
     found: dict[str, Any] = {}
     for extra in run_extras():
         found |= extra.wishes(options, project, story, period)

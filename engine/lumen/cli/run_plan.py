@@ -1,4 +1,4 @@
-"""The plan of one robot's exhibition, as the options of `lumen run` want it."""
+"""The plan of one robot's exhibition, from the options of `lumen run`."""
 
 import argparse
 import signal
@@ -29,22 +29,22 @@ class RobotRun:
     directory: RunDirectory
     story: Story | None
     first: bool = True
-    """Whether it is the robot whose visitor is typed, and whose console is served."""
+    """Whether the person at the terminal plays this robot's visitor, and this robot serves the console."""
 
 
 def running(made: Sequence[Services], project: Project) -> Project:
-    """Return the bundle that the only exhibition in a list runs; before there is one, `project`."""
+    """Return the bundle that the only exhibition in a list runs; `project` if the list is still empty."""
     return made[0].project if made else project
 
 
 def leave(made: Iterable[Services]) -> None:
-    """End these exhibitions, and let the next run continue from there."""
+    """End these exhibitions so that the next run continues from there."""
     for one in made:
         one.node.interrupt(2, leave=True)
 
 
 def heed_signals(made: Sequence[Services]) -> None:
-    """Let Ctrl-C and SIGTERM interrupt these exhibitions, whichever they are then."""
+    """Make Ctrl-C interrupt these exhibitions, and SIGTERM end them; `made` may grow later."""
 
     def interrupt() -> None:
         for one in made:
@@ -55,7 +55,7 @@ def heed_signals(made: Sequence[Services]) -> None:
 
 
 def bus_hint(options: argparse.Namespace) -> str:
-    """Return the end of the message if a bus can't be reached that is only needed for a remote robot."""
+    """Return the hint for a bus that can't be reached, if only a remote robot needs it; else empty."""
     return "" if options.only else ", or use --bus memory://"
 
 

@@ -1,4 +1,4 @@
-"""How a run went, as `lumen run --format json` says it."""
+"""How a run went, in the form of `lumen run --format json`."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -11,20 +11,27 @@ MAX_TROUBLES = 5
 
 
 class RunVerdict(NamedTuple):
-    """How it `ended`: well, failed, troubled, early (before its story did), interrupted; `lived` and `took` in [s].
+    """How a run went.
 
     A run with troubles (`troubles_of`) is `troubled`, and `failure` is the first of them, unless its story failed.
     """
 
     ended: str
+    """`well`, `failed`, `troubled`, `early` (before the end of its story) or `interrupted`."""
     lived: float
+    """The time in the exhibition [s]."""
     took: float | None = None
+    """The time that the run took [s]; None if several processes share the exhibition."""
     failure: str = ""
+    """Why the story failed, else the first trouble; empty if there is neither."""
     summary: tuple[str, ...] = ()
+    """The lines of the summary."""
     film: str = ""
+    """The path of the film; empty if none was made."""
 
     @property
     def code(self) -> int:
+        """The exit code: 1 for a failed, troubled or early end, else 0."""
         return int(self.ended in (FAILED, TROUBLED, EARLY))
 
     @staticmethod
@@ -34,6 +41,7 @@ class RunVerdict(NamedTuple):
         return [*troubles[:MAX_TROUBLES], *([f"… and {more} more"] if more > 0 else [])]
 
     def to_json(self, project: str, story: str | None) -> dict[str, Any]:
+        """Return the object of `--format json`; times in [s], rounded to milliseconds."""
         took = None if self.took is None else round(self.took, 3)
         return {
             "ended": self.ended,

@@ -1,4 +1,4 @@
-"""`lumen say TEXT`: the robot of a running exhibition says something."""
+"""`lumen say TEXT`: make the robot of a running exhibition say something."""
 
 import argparse
 
@@ -9,6 +9,7 @@ from lumen.errors import UsageError
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen say` to its parser."""
     parser.add_argument("text", metavar="TEXT", help="the text to say")
     parser.add_argument(
         "--language",
@@ -21,7 +22,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 once it has said it, 1 where it could not."""
+    """Send the text; return 0 once the robot has said it, 1 if it refused. Raises UsageError for an empty text."""
     if not options.text.strip():
         raise UsageError("the text is empty: write it in quotes")
     parameter = {"text": options.text, "language": options.language}

@@ -1,4 +1,4 @@
-"""`lumen schema`: the JSON Schemas of the YAML files, and the settings that make an editor use them."""
+"""`lumen schema`: print the JSON Schemas of the YAML files, or the settings that make an editor use them."""
 
 import argparse
 import json
@@ -25,10 +25,11 @@ FILES: Mapping[str, tuple[str, ...]] = {
     or (f"{kind}.yaml",)
     for kind in FILE_KINDS
 }
-"""Which files of a project are of which kind."""
+"""The file patterns of a project for each kind of file."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen schema` to its parser."""
     add = parser.add_argument
     add(
         "kind",
@@ -50,7 +51,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0. Raises UsageError where something can't be written, or both a kind and settings are asked for."""
+    """Print a schema, the editor's settings, or the list of kinds; return 0.
+
+    Raises UsageError if the file can't be written, or if the options contradict each other.
+    """
     if options.project and not options.kind:
         raise UsageError("--project is for the schema of one kind: write KIND, such as `behavior`")
     if options.vscode and options.kind:
@@ -83,7 +87,7 @@ def _list() -> str:
 
 
 def settings(root: Path) -> dict[str, Any]:
-    """The settings for the project in that folder: its own schemas where it has them, else those of this Lumen."""
+    """Return VS Code's settings for a project: with its own schemas if it has any, else with those of this Lumen."""
     found: dict[str, dict[str, Any]] = {"yaml.schemas": {}}
     for kind, files in FILES.items():
         own = f"schemas/{kind}.schema.json"
@@ -96,7 +100,10 @@ def settings(root: Path) -> dict[str, Any]:
 
 
 def _added(file: Path, ours: dict[str, Any]) -> str:
-    """What stands in a file, with ours in it and its comments kept. Raises UsageError where it can't be read."""
+    """Return the content of a settings file with ours added and its comments kept.
+
+    Raises UsageError if it can't be read.
+    """
     try:
         there = read_regular(file, MAX_FILE_BYTES).decode("utf-8-sig")
         return added(there, ours)

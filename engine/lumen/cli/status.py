@@ -1,4 +1,4 @@
-"""`lumen status`: how a running exhibition is."""
+"""`lumen status`: print the state of a running exhibition."""
 
 import argparse
 import json
@@ -18,7 +18,7 @@ from lumen.run.reaching import reach_exhibition
 from lumen.run.recovery.last_run import last_run
 
 AMONG_OTHERS = 5.0
-"""How long the answer of one robot of several may take [s]."""
+"""The time limit for the answer of one of several robots [s]."""
 EARS = {
     "always": "listen",
     "face": "listen: a face is near and looks at the robot",
@@ -26,16 +26,21 @@ EARS = {
     "speaks": "hear only interruptions: the robot speaks",
     "nobody": "hear only interruptions: no visitor looks at the robot from nearby or touches it",
 }
-"""How the ears are, by why (the route `listening`)."""
+"""The state of the ears, by the reason on the route `listening`."""
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen status` to its parser."""
     configure_reach(parser)
     parser.add_argument("--format", choices=("text", "json"), default="text", help="output format (default: text)")
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where one runs and says how it is; of the others of its house it is said what is known here."""
+    """Print the status of each robot; return 0.
+
+    For a robot of a house that does not answer, print what is recorded of its last run. Raises BusError if no robot
+    answers.
+    """
     root = shown_project(options.project)
     names = [options.robot_name] if options.robot_name else list(robots_of(root, None)) or [""]
     answers = [_status(options, name, AMONG_OTHERS if names[1:] else FIRST_ANSWER_TIMEOUT) for name in names]
@@ -54,7 +59,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _status(options: argparse.Namespace, name: str, patience: float) -> dict[str, Any] | BusError:
-    """What the exhibition of that robot says of itself, or why it does not."""
+    """Return the status that a robot reports, or the error if it does not answer within `patience` [s]."""
     try:
         reached = reach_exhibition(options.project, options.bus, name)
     except BusError as error:
@@ -80,7 +85,7 @@ def _print(found: Sequence[dict[str, Any]]) -> None:
 
 
 def _absent(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
-    """What a person reads of a robot that does not answer."""
+    """Yield the lines, a name and a text each, about a robot that does not answer."""
     name = status["robot"] or "robot"
     if status["held"]:
         yield name, "does not answer, although its process on this machine is alive"
@@ -94,7 +99,7 @@ def _absent(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
 
 
 def _lines(status: dict[str, Any], now: datetime) -> Iterator[tuple[str, str]]:
-    """What a person reads, a name and a text each; what is as it should be is left out."""
+    """Yield the lines, a name and a text each, about a running robot; normal conditions are omitted."""
     yield str(status["robot"]), f"in {', '.join(status['configuration'])}"
     yield "since", _ago(status["since"], now)
     yield "visitor", f"{status['visitor'] or 'no name known'}, spoken to in {status['language']}"

@@ -1,4 +1,4 @@
-"""`lumen stop`: the robot of a running exhibition rests, at once, and moves for nobody until a person lets it."""
+"""`lumen stop`: make the robot of a running exhibition rest at once, and stay so until a person resumes it."""
 
 import argparse
 
@@ -11,12 +11,16 @@ from lumen.run.resting import STOP_TIMEOUT, no_robot, rest_body, stop_behavior
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen stop` to its parser."""
     configure_reach(parser)
     configure_format(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 once all that are meant rest, 1 where one could not; the others rest all the same."""
+    """Stop every chosen robot, even if one can't be reached; return 0, or 1 if one refused.
+
+    Then raise the first BusError.
+    """
     troubles, codes = list[BusError](), list[int]()
     for name in names_meant(options):
         options.robot_name = name
@@ -30,7 +34,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _stop(options: argparse.Namespace) -> int:
-    """It has a way of its own, and the robot tells the behaviour. Raises BusError where no robot answers."""
+    """Send the stop on its own route; the robot informs the behaviour. Raises BusUnreachableError if no robot answers.
+
+    In that case the behaviour is stopped directly.
+    """
     reached = reach(options)
     try:
         answer = answered(reached.bus, reached.stop, rest_body(person()), STOP_TIMEOUT)

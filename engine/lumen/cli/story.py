@@ -1,4 +1,4 @@
-"""`lumen story`: a recorded visit as a story, to be kept as a test."""
+"""`lumen story`: write a recorded visit as a story, to keep it as a test."""
 
 import argparse
 from pathlib import Path
@@ -18,6 +18,7 @@ from lumen.run.storytelling.visit_story import renaming, visit_story
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen story` to its parser."""
     add = parser.add_argument
     add(
         "what",
@@ -36,7 +37,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where the robot does in the story what it did then, 1 where it does something else with the files here."""
+    """Write the story; return 0 if the robot does the same in it as in the visit, 1 if today's files make a difference.
+
+    Raises UsageError if the journal lacks the whole visit or its files, or if the output file already exists.
+    """
     output: Path | None = options.output
     if output and output.exists() and not options.force:
         raise UsageError(f"{output} already exists: name another file, or add --force")

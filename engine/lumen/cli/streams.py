@@ -1,4 +1,4 @@
-"""Standard output and error: closed by the shell, full, or a pipe that nobody reads any more (`lumen run | head`)."""
+"""Standard output and error that are closed by the shell, full, or a pipe without a reader (`lumen run | head`)."""
 
 import os
 import sys
@@ -8,7 +8,7 @@ from typing import TextIO
 
 
 def open_streams() -> None:
-    """Let prints go nowhere where the shell has closed a stream (`>&-`), and signs that it can't show be replaced."""
+    """Redirect a closed stream (`>&-`) to the null device, and replace characters that a stream can't encode."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - until the program ends
@@ -17,7 +17,7 @@ def open_streams() -> None:
 
 
 def hush(stream: TextIO) -> None:
-    """Let what is printed there from now on, and what waits there, go nowhere."""
+    """Redirect a stream to the null device, and discard what is buffered."""
     with suppress(OSError, ValueError):
         number, nowhere = stream.fileno(), os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, number)
@@ -26,7 +26,7 @@ def hush(stream: TextIO) -> None:
 
 
 def complain(text: str) -> None:
-    """Print a line to standard error, if anybody reads it."""
+    """Print a line to standard error; ignore it if the stream is closed."""
     try:
         print(text, file=sys.stderr, flush=True)
     except OSError:
@@ -34,9 +34,9 @@ def complain(text: str) -> None:
 
 
 def finish() -> str:
-    """Print what still waits; why that can't be printed, empty where it could or where nobody reads it."""
+    """Flush standard output. Return the reason if that fails; empty if it succeeds or the reader of a pipe has gone."""
     try:
-        if not sys.stdout.closed:  # as the language server leaves it
+        if not sys.stdout.closed:  # the language server closes it
             sys.stdout.flush()
     except BrokenPipeError:
         hush(sys.stdout)

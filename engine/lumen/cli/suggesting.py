@@ -1,4 +1,4 @@
-"""A word of the command line that is unknown is answered with the one that was probably meant."""
+"""A parser that answers an unknown word of the command line with the nearest known one."""
 
 import argparse
 from collections.abc import Sequence
@@ -6,21 +6,21 @@ from typing import Any
 
 
 class Suggesting(argparse.ArgumentParser):
-    """Python's parser, which knows what comes near to a verb, an option or a choice that is none."""
+    """Python's parser, with a suggestion for an unknown verb, option or choice."""
 
     @property
     def options(self) -> list[str]:
-        """`--strict`, `-o` and all others that one can write."""
+        """All options, such as `--strict` and `-o`."""
         return [word for action in self._actions for word in action.option_strings]
 
     @property
     def verbs(self) -> dict[str, "Suggesting"]:
-        """The parsers of the words that may come first, where there are such."""
+        """The parsers of the verbs, by name; empty if the parser has none."""
         found = (action for action in self._actions if isinstance(action, argparse._SubParsersAction))
         return {name: parser for action in found for name, parser in action.choices.items()}
 
     def refuse(self, words: Sequence[str]) -> None:
-        """End with 2 and say of the first of these words, which nobody understood, what may have been meant."""
+        """Print an error with a suggestion for the first of these unrecognised words, and exit with 2."""
         word = next((word for word in words if word.startswith("-")), words[0])
         if not word.startswith("-"):
             self.error(f"unexpected word `{word}`")
@@ -32,7 +32,7 @@ class Suggesting(argparse.ArgumentParser):
             return
         if isinstance(action, argparse._SubParsersAction):
             raise argparse.ArgumentError(None, f"no verb `{value}`{_meant(value, action.choices)}")
-        from lumen.language.diagnostics import did_you_mean  # only who mistyped waits for it
+        from lumen.language.diagnostics import did_you_mean  # only needed for a wrong choice
 
         hint = did_you_mean(value, map(str, action.choices), "choose one of")
         name = action.option_strings[-1] if action.option_strings else action.metavar or action.dest
@@ -42,7 +42,7 @@ class Suggesting(argparse.ArgumentParser):
 
 
 def parse(parser: Suggesting, arguments: Sequence[str]) -> argparse.Namespace:
-    """What the words say; ends the program with 2 where they say nothing, with 0 after `--help`."""
+    """Return the parsed options. Exits with 2 if they are invalid, and with 0 after `--help`."""
     options, left = parser.parse_known_args(arguments)
     if left:
         parser.verbs[options.verb].refuse(left)

@@ -4,7 +4,9 @@ from collections.abc import Sequence
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """The rows under their head, each column as wide as its widest; numbers to the right."""
+    """Return the rows below their head, each column as wide as its widest cell; columns of numbers are aligned
+    right.
+    """
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
     right = [bool(rows) and all(_number(row[i]) for row in rows) for i in range(len(head))]
     lines = []

@@ -1,4 +1,4 @@
-"""Colours where there is a terminal, plain text elsewhere."""
+"""Colours on a terminal, plain text elsewhere."""
 
 import os
 import sys
@@ -17,12 +17,12 @@ CODES = {
 
 
 def coloured(stream: TextIO | None = None) -> bool:
-    """Whether to colour what goes to `stream`: a terminal, and nobody said NO_COLOR."""
+    """Return whether to use colours on a stream: on a terminal, unless NO_COLOR is set or TERM is `dumb`."""
     return (stream or sys.stdout).isatty() and "NO_COLOR" not in os.environ and os.environ.get("TERM") != "dumb"
 
 
 def paint(text: str, *styles: str, on: bool) -> str:
-    """The text in these styles, where `on`."""
+    """Return the text in these styles if `on`, else unchanged."""
     if not on or not styles:
         return text
     return f"\x1b[{';'.join(CODES[s] for s in styles)}m{text}\x1b[0m"

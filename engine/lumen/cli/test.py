@@ -1,4 +1,4 @@
-"""`lumen test`: the stories of a project, played on the recording robot, its sayings, and examples of functions."""
+"""`lumen test`: play a project's stories on the recording robot, and check its sayings and examples of functions."""
 
 import argparse
 import sys
@@ -32,6 +32,7 @@ from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen test` to its parser."""
     add = parser.add_argument
     add(
         "words",
@@ -64,7 +65,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 if all is well, 1 if a story or a saying failed or something was found."""
+    """Run the tests and print the verdict; return 0 if all is well, 1 if anything failed or was found."""
     folder, names = _words(options.words)
     _check(options)
     root = own_project(folder)
@@ -77,7 +78,7 @@ def run(options: argparse.Namespace) -> int:
     sayings: list[SayingSet] = []
     if names or coverage or not options.explore:
         stories, sayings = _chosen(project, names)
-        with nullcontext(_untold) if live else progress() as tell:  # people see each story as it ends
+        with nullcontext(_untold) if live else progress() as tell:  # on a terminal each story is printed as it ends
             for story in stories:
                 tell(len(rehearsals), len(stories), f"stories, {story.name}")
                 observers = [coverage.of(story.behavior or project.behavior)] if coverage else []
@@ -104,7 +105,10 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _words(words: list[str]) -> tuple[str | None, list[str]]:
-    """The project's folder, where the first word is one or a story's file lies in one; and what names stories."""
+    """Return the project's folder, None for the default, and the names of stories.
+
+    The folder is the first word if it is a folder or lumen.yaml, else the project of the named files.
+    """
     if words and (Path(words[0]).is_dir() or Path(words[0]).name == MAIN_FILE):
         return words[0], words[1:]
     return project_of(words), words
@@ -120,7 +124,7 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _chosen(project: Project, names: list[str]) -> tuple[list[Story], list[SayingSet]]:
-    """The stories and the files of sayings of these names, each once; all if there are no names."""
+    """Return the stories and the files of sayings with these names, each once; all if there are no names."""
     if not (project.stories or project.sayings or any(each.examples for each in project.functions.values())):
         raise UsageError(
             "the project has no stories and no sayings: write a story in behaviors/stories/, as docs/stories.md shows"
@@ -146,8 +150,8 @@ def _examples(project: Project) -> tuple[JudgedExample, ...]:
 
 
 def _tried(project: Project) -> tuple[QuestionTrial, ...]:
-    """What becomes of the exhibition's questions, by language."""
-    from lumen.retrieval.retriever import Retriever  # with numpy
+    """Return the results of the exhibition's test questions, one per language."""
+    from lumen.retrieval.retriever import Retriever  # imports numpy
     from lumen.retrieval.trials import tried
 
     retrievers = (Retriever(project.knowledge.values(), name, robot=project.robot) for name in project.languages)
@@ -175,7 +179,7 @@ def _explore(project: Project, options: argparse.Namespace) -> Explored:
 
 
 def _untold(done: float, whole: float, name: str) -> None:
-    """Nobody is told how far it is."""
+    """Ignore a report of progress."""
 
 
 def _print(shown: str) -> None:

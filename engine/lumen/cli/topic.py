@@ -1,4 +1,4 @@
-"""`lumen topic`: what is said on the bus of a running exhibition, and a word of one's own."""
+"""`lumen topic`: show the messages on the bus of a running exhibition, or send one."""
 
 import argparse
 import json
@@ -35,7 +35,7 @@ TOPIC_VERBS = {
     "hz PATTERN": "measure how often messages arrive, and the longest gap",
     "bw PATTERN": "measure the size of messages, and the bytes per second",
 }
-"""A PATTERN is a key (`*` is one word, `#` any number of them) or a route's name."""
+"""A PATTERN is a key (`*` matches one word, `#` any number of them) or a route's name."""
 LISTENING = 3.0
 SHOWN = 200
 LOOK = 0.5
@@ -44,13 +44,14 @@ BUILT_IN = "comes with Lumen"
 
 
 class Heard(NamedTuple):
-    """A message, and when it came [s]."""
+    """A message, and when it arrived [s]."""
 
     message: Message
     at: float
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen topic` to its parser."""
     parser.description = "Look at the messages of a running exhibition, on a broker or on this machine, or send one."
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = "\n".join(["what to do:", *(f"  {verb:14} {what}" for verb, what in TOPIC_VERBS.items())])
@@ -67,7 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0, or for `pub` 1 where nobody listens, or with `--wait` no answer came."""
+    """Do what the words require; return 0, or for `pub` 1 if no process listens or, with `--wait`, no answer came."""
     _check_words(options)
     project = _project(options)
     reached = reach(options)
@@ -87,7 +88,7 @@ def _check_words(options: argparse.Namespace) -> None:
 
 
 def _check_right(broker: str, key: str) -> None:
-    """Raises BusError where the broker does not let this user send under that key."""
+    """Raise BusError if the broker does not allow this user to send with this key."""
     if (opened := probe_of(broker)) is None:
         return
     with closing(opened) as probe:
@@ -161,7 +162,7 @@ def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
         bus.subscribe(OPERATOR_ANSWERS, lambda message: answers.put(message.body))
     bus.publish(key, body, reply_to=OPERATOR_ANSWERS if patience else "")
     came = _within(answers, patience) if patience else []
-    reached.close()  # from then on it is known whether anybody took it
+    reached.close()  # closing waits for the broker, so afterwards `returned` is complete
     if key in returned:
         print(f"lumen topic: no process listens to `{key}`: {_listeners(key, project)}", file=sys.stderr)
         return 1
@@ -175,7 +176,10 @@ def _pub(options: argparse.Namespace, bus: Bus, project: Project | None) -> int:
 
 
 def _body(text: str) -> Any:
-    """What is sent: JSON, or else a text. Raises UsageError where JSON was begun and is none."""
+    """Return the body to send: JSON, or else the text.
+
+    Raises UsageError for text that begins like JSON but is invalid.
+    """
     try:
         return json.loads(text)
     except (ValueError, RecursionError) as error:
@@ -186,7 +190,7 @@ def _body(text: str) -> Any:
 
 
 def _within(answers: queue.SimpleQueue[Any], patience: float) -> list[Any]:
-    """The first answer that comes within so long [s], if any does."""
+    """Return the first answer within this time [s], as a list of one; empty if none came."""
     try:
         return [answers.get(timeout=patience)]
     except queue.Empty:
@@ -194,7 +198,7 @@ def _within(answers: queue.SimpleQueue[Any], patience: float) -> list[Any]:
 
 
 def _listeners(key: str, project: Project | None) -> str:
-    """Where somebody might listen: what an exhibition hears, the nearest first."""
+    """Return a hint: that the exhibition may not be running, or keys that it listens to, the nearest first."""
     routes = by_key(project) if project else {}
     heard = [each for each, route in routes.items() if route.direction is Direction.IN]
     return (
@@ -239,7 +243,7 @@ def _rows(options: argparse.Namespace, span: float, rows: list[dict[str, Any]], 
 
 
 def _measure(bus: Bus, pattern: str, span: float) -> Iterator[Heard]:
-    """What comes in so long; a terminal sees how long it still takes."""
+    """Yield the messages that arrive in this time [s], and show the time left on a terminal."""
     with progress() as tell:
         yield from _listen(bus, pattern, span, lambda waited: tell(waited, span, "s listened"))
 
@@ -247,7 +251,7 @@ def _measure(bus: Bus, pattern: str, span: float) -> Iterator[Heard]:
 def _listen(
     bus: Bus, pattern: str, span: float | None, tell: Callable[[float], None] = lambda waited: None
 ) -> Iterator[Heard]:
-    """What comes, until the time is over, somebody presses Ctrl-C, or the exhibition is gone."""
+    """Yield messages until the time is over or Ctrl-C is pressed. Raises BusClosedError if the exhibition ends."""
     came: queue.SimpleQueue[Heard] = queue.SimpleQueue()
     undo = bus.subscribe(pattern, lambda message: came.put(Heard(message, time.monotonic())))
     began = time.monotonic()
@@ -268,13 +272,13 @@ def _listen(
 
 
 def _project(options: argparse.Namespace) -> Project | None:
-    """The project, for its routes; None where it has errors: looking on goes without."""
+    """Return the project, for its routes; None if its files have errors, because listening works without them."""
     root = running_project(options.project)
     return check_files(root, read_files(root))[0]
 
 
 def _key(text: str, project: Project | None) -> str:
-    """The key of a route of that name, else the text itself."""
+    """Return the key of the route of this name, else the text itself. Raises UsageError if it is neither."""
     if project and (route := project.routes.get(text)):
         return route.key_for(project.robot)
     if "." not in text and text not in ("#", "*", "lumen", "avatar"):

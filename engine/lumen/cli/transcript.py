@@ -1,4 +1,4 @@
-"""A run as it reads on a terminal: when, who, what, and why."""
+"""A run as text on a terminal: when, who, what, and why."""
 
 import shutil
 import sys
@@ -17,7 +17,7 @@ WHO = {"visitor": "yellow", "robot": "cyan", "state": "green", "reload": "magent
 
 
 class Transcript(Narrator):
-    """Prints what happens, a line each, with simulated time; and whose it is, if a `robot` is named.
+    """Prints one line for each event, with simulated time, and with the robot's name if `robot` is not empty.
 
     `unread` is called when the reader of the lines is gone.
     """
@@ -39,23 +39,24 @@ class Transcript(Narrator):
         self._colour = coloured(self._stream)
 
     def line(self, who: str, text: str) -> None:
-        """One line: the time, who it is about, and what."""
+        """Print a line: the time, the actor (`who`), and the event."""
         minutes, tenths = divmod(int(self._now() * 10 + 1e-6), 600)
         time = paint(f"{minutes:2d}:{tenths / 10:04.1f}", "dim", on=self._colour)
         name = paint(f"{who:<8}", WHO.get(who, "dim"), on=self._colour)
         self.note(f"{time}  {self._robot}{name} {_wrapped(text, INDENT + len(self._robot))}")
 
     def note(self, text: str) -> None:
+        """Print a text as it is; discard it if the stream can't be written."""
         try:
             print(text, file=self._stream, flush=True)
-        except OSError as error:  # the show goes on where its log is full, and ends in order where nobody reads on
+        except OSError as error:  # the show continues if its log is full, and ends in order if the reader is gone
             hush(self._stream)
             if isinstance(error, BrokenPipeError):
                 self._unread()
 
 
 def _wrapped(text: str, indent: int) -> str:
-    """The text in lines that fit beside time and name; signs that would steer the terminal are replaced."""
+    """Return the text wrapped beside time and name, without characters that could control the terminal."""
     text = "".join(sign if sign.isprintable() else "\N{REPLACEMENT CHARACTER}" for sign in text)
     width = max(shutil.get_terminal_size((120, 24)).columns - indent, 30)
     lines = textwrap.wrap(text, width, break_long_words=False, break_on_hyphens=False)

@@ -1,4 +1,4 @@
-"""What is typed on the terminal is what the visitor says, and after a `/` what they do."""
+"""A visitor played by the person at the terminal: lines are speech, and lines that begin with `/` are commands."""
 
 import queue
 import sys
@@ -15,15 +15,15 @@ from lumen.run.services import Services
 from lumen.upkeep.threads import WatchedThread
 
 FAREWELL = 5.0
-"""How long it goes on after whoever typed has left [s]."""
+"""The time that the exhibition continues after that person has left [s]."""
 MAX_LINE_CHARACTERS = 1_000
-"""Of a line; a longer one is several."""
+"""The length of a line; a longer one is split."""
 MAX_WAITING_LINES = 100
-"""Lines that wait to be said: a program that types faster than visitors speak waits, too."""
+"""The number of lines that wait to be said. When it is reached, reading stops until the visitor has spoken."""
 
 
 def typed_visitor(services: Services) -> "TypedVisitorPart | None":
-    """Make the part that lets whoever types be the visitor, if there is a visitor that no story plays."""
+    """Return the part for a typed visitor; None if there is no visitor, or a story plays it."""
     visitor = services.get(VisitorPart)
     if visitor is None or services.plan.story:
         return None
@@ -31,10 +31,10 @@ def typed_visitor(services: Services) -> "TypedVisitorPart | None":
 
 
 class TypedVisitorPart(Part):
-    """Reads lines on a thread of its own, for a visitor; at the end of input they walk away.
+    """Reads lines on its own thread and makes the visitor say or do them; at the end of input the visitor leaves.
 
-    Where there is no terminal and nothing ever comes, nobody types: the visitor stays, and the exhibition goes on.
-    `greeting` is the first text for the person who types; `wake` is called, on any thread, with each line.
+    If standard input is no terminal and yields no line, the visitor stays and the exhibition continues. `greeting` is
+    printed first; `wake` is called, on any thread, with each line.
     """
 
     patient = True
@@ -50,9 +50,11 @@ class TypedVisitorPart(Part):
 
     @property
     def over(self) -> bool:
+        """Whether the person who typed left more than FAREWELL seconds ago."""
         return self._gone is not None and self._now - self._gone > FAREWELL
 
     def begin(self, now: float) -> None:
+        """Greet the person, let the visitor arrive, and start to read."""
         self._narrator.note(self._greeting)
         self._visitor.arrive(Visitor())
         self._narrator.visitor_action(Arrive(Visitor()))

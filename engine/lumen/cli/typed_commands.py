@@ -16,7 +16,7 @@ from lumen.run.story import StoryEnvironment
 from lumen.run.visitor import VisitorActor
 
 TAP = 0.5
-"""The time for which a hand stays if none is typed [s]."""
+"""The time that a hand stays if none is typed [s]."""
 PLACES = {
     "head": "FrontTactil",
     "chest": "ChestButton",
@@ -25,7 +25,7 @@ PLACES = {
     "left bumper": "LeftBumper",
     "right bumper": "RightBumper",
 }
-"""Where people touch a NAO, in their words."""
+"""The sensors of a NAO, by the everyday names of the places."""
 HELP = """\
 Type what the visitor says. A line that begins with / is a command:
   /touch head       touch the robot's head; also {places}
@@ -38,7 +38,7 @@ Type what the visitor says. A line that begins with / is a command:
 
 
 class TypedCommands:
-    """Does what was typed after a `/`; `tick` takes hands away again when their time is over."""
+    """Runs the commands typed after a `/`; `tick` removes hands whose time is over."""
 
     def __init__(self, visitor: VisitorActor, narrator: Narrator, exhibition: StoryEnvironment) -> None:
         self._visitor, self._narrator, self._exhibition = visitor, narrator, exhibition
@@ -54,7 +54,7 @@ class TypedCommands:
         }
 
     def do(self, line: str, now: float) -> None:
-        """Do it at `now` [s], or say in a line why that can't be."""
+        """Run a command at `now` [s], or print why it is not possible."""
         verb, *words = line.removeprefix("/").split() or [""]
         try:
             if verb not in self._verbs:
@@ -64,6 +64,7 @@ class TypedCommands:
             self._narrator.note(str(error))
 
     def tick(self, now: float) -> None:
+        """Remove the hands whose time is over at `now` [s]."""
         for sensor in [sensor for sensor, until in self._hands.items() if until <= now]:
             del self._hands[sensor]
             self._feel(sensor, pressed=False)
@@ -94,7 +95,7 @@ class TypedCommands:
         self._narrator.visitor_action(Approve(go))
 
     def _send(self, body: dict[str, Any]) -> None:
-        """Send the robot a command on the way of its own that `lumen stop` uses."""
+        """Send the robot a command on the separate route that `lumen stop` uses."""
         try:
             publish_on(self._exhibition.bus, self._exhibition.project, STOP_ROUTE, body)
         except BusError as error:
@@ -105,7 +106,7 @@ class TypedCommands:
         self._narrator.note(HELP.format(places=", ".join(others), tap=f"{TAP * 1000:g}ms"))
 
     def _sensors(self) -> dict[str, str]:
-        """The sensors of this robot, by what people call them and by their names."""
+        """Return the sensors of this robot, by everyday names and by their own names."""
         return {**self._places(), **{sensor.casefold(): sensor for sensor in self._visitor.sensors}}
 
     def _places(self) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""`lumen upgrade`: a project's files, rewritten for the vocabulary that this Lumen reads."""
+"""`lumen upgrade`: rewrite a project's files for the vocabulary that this version of Lumen reads."""
 
 import argparse
 import json
@@ -19,6 +19,7 @@ from lumen.run.linting.targets import checked
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen upgrade` to its parser."""
     parser.add_argument(
         "project", nargs="?", metavar="PROJECT", help="the project's folder (default: this folder or one above)"
     )
@@ -33,7 +34,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where the files say the newest vocabulary now; 1 where errors are left, or with --check where they did not."""
+    """Rewrite the files and list the changes; return 1 if errors are left, else 0.
+
+    With --check write nothing, and return 1 if something must be rewritten. With --diff only print the changes.
+    """
     if options.diff and (options.check or options.format != "text"):
         raise UsageError("--diff can't be combined with --check or --format")
     root = own_project(Path(options.project) if options.project else None)

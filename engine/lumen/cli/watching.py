@@ -1,4 +1,4 @@
-"""`lumen lint --watch`: the findings anew whenever a file is saved."""
+"""`lumen lint --watch`: print the findings again whenever a file is saved."""
 
 import queue
 import sys
@@ -15,7 +15,7 @@ from lumen.run.watcher import FileWatcher, SavedFiles
 from lumen.upkeep.garbage import GcScheduler, gc_paused
 
 QUIET = 0.01
-"""How long files have to be left alone [s]: nothing runs on them, so half a file is a finding for a moment only."""
+"""The time that files must be unchanged before they are read [s]; half a file would only be a brief finding."""
 
 _CLEAR = "\x1b[2J\x1b[H"
 
@@ -23,7 +23,7 @@ _CLEAR = "\x1b[2J\x1b[H"
 def watch(
     projects: Sequence[LintTarget], judge: FindingsOf, format: str, ended: Callable[[], bool] = lambda: False
 ) -> int:
-    """Show what is wrong, and again after every change, until `ended` or Ctrl-C; always 0."""
+    """Print the findings, and again after every change, until `ended` returns True or Ctrl-C is pressed; return 0."""
     changes: queue.SimpleQueue[tuple[int, SavedFiles]] = queue.SimpleQueue()
     found = [judge(what) for what in projects]
     with ExitStack() as stack:
@@ -51,12 +51,12 @@ def watch(
 
 
 def _into(changes: "queue.SimpleQueue[tuple[int, SavedFiles]]", project: int) -> Callable[[SavedFiles], None]:
-    """What a watcher does with the saved files of a project: hand them to the thread that shows."""
+    """Return a watcher's callback that passes the saved files of a project to the thread that prints."""
     return lambda saved: changes.put((project, saved))
 
 
 def _draw(found: Sequence[Findings], format: str, took: float | None = None) -> None:
-    """On a terminal the findings in place of those before, elsewhere below them."""
+    """Print the findings: on a terminal in place of the previous ones, otherwise below them."""
     on = coloured()
     clear = _CLEAR if sys.stdout.isatty() else ""
     answered = f" in {took * 1000:.0f} ms" if took is not None else ""

@@ -1,4 +1,4 @@
-"""`lumen why [WHAT]`: why something happened, back to whoever or whatever caused it."""
+"""`lumen why [WHAT]`: print why something happened, back to its first cause."""
 
 import argparse
 
@@ -8,6 +8,7 @@ from lumen.language.operator_requests import WHY
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen why` to its parser."""
     parser.add_argument(
         "what",
         nargs="?",
@@ -18,5 +19,5 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where it happened."""
+    """Print the causes; return 0, or 1 if it did not happen."""
     return put(options, WHY, why_lines)

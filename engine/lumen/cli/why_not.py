@@ -1,4 +1,4 @@
-"""`lumen why-not WHAT`: why something did not happen, and what would have made it."""
+"""`lumen why-not WHAT`: print why something did not happen, and which change would have caused it."""
 
 import argparse
 
@@ -8,10 +8,11 @@ from lumen.language.operator_requests import WHY_NOT
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `lumen why-not` to its parser."""
     parser.add_argument("what", metavar="WHAT", help="a state, a motion, or words that the robot did not say")
     configure_question(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 where it did not happen, and something could have led there."""
+    """Print the reasons; return 0, or 1 if it did happen or can't."""
     return put(options, WHY_NOT, why_not_lines)

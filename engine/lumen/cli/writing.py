@@ -1,4 +1,4 @@
-"""A result: into a file where one is named, else to the terminal."""
+"""Results that are written to a file if one is named, else printed."""
 
 from pathlib import Path
 
@@ -7,7 +7,10 @@ from lumen.upkeep.replacing import replace_file
 
 
 def write_result(text: str, output: Path | None, *, folders: bool = False) -> None:
-    """Write or print the text; `folders` makes those that are missing. Raises UsageError where it can't be written."""
+    """Write the text to `output`, or print it if that is None; `folders` creates missing folders.
+
+    Raises UsageError if the file can't be written.
+    """
     if output is None:
         print(text, end="")
         return
@@ -16,7 +19,7 @@ def write_result(text: str, output: Path | None, *, folders: bool = False) -> No
 
 
 def write_file(content: bytes, output: Path, *, folders: bool = False) -> None:
-    """Write a file as a whole. If that fails, raise UsageError and leave an existing file unchanged."""
+    """Write a file atomically. If that fails, raise UsageError and leave an existing file unchanged."""
     try:
         if folders:
             output.parent.mkdir(parents=True, exist_ok=True)

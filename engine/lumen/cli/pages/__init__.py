@@ -1,8 +1,8 @@
-"""What is to be read of a verb beside its options: `VERB.md` here, with examples first.
+"""The help page of each verb, apart from its options: `VERB.md` in this folder.
 
-The indented lines on top are examples: a command, two spaces or more, what it does. What follows them stands in
-`docs/commands/VERB.md` as it is; `## JSON` there says what `--format json` prints. `scripts/command_pages.py` writes
-those pages, and `--help` shows the examples.
+The indented lines at the top are examples: a command, two or more spaces, and its effect. The text after them is copied
+to `docs/commands/VERB.md`; its section `## JSON` describes the output of `--format json`. `scripts/command_pages.py`
+writes those pages, and `--help` shows the examples.
 """
 
 import re
@@ -13,21 +13,21 @@ _EXAMPLE = re.compile(r"(?m)^    (lumen .*?)  +(\S.*)\n")
 
 
 class CommandExample(NamedTuple):
-    """A command as it is typed, and what it does."""
+    """A command as it is typed, and its effect."""
 
     command: str
     says: str
 
 
 class VerbPage(NamedTuple):
-    """The examples of a verb, and what else is to be said in Markdown."""
+    """The examples of a verb, and the rest of its page in Markdown."""
 
     examples: tuple[CommandExample, ...]
     text: str
 
 
 def page(verb: str) -> VerbPage:
-    """The page of a verb; an empty one where nobody has written any."""
+    """Return the page of a verb; it is empty if there is no `VERB.md`."""
     file = files(__name__).joinpath(f"{verb}.md")
     text = file.read_text(encoding="utf-8") if file.is_file() else ""
     examples = tuple(CommandExample(*found) for found in _EXAMPLE.findall(text))

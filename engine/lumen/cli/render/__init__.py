@@ -1,4 +1,4 @@
-"""Findings for people and for machines: each format a small function from findings to text."""
+"""Formats of findings, for people and for programs: each is a function from findings to text."""
 
 from collections.abc import Sequence
 from typing import Protocol
@@ -9,7 +9,7 @@ from lumen.run.linting.findings import Findings
 
 
 class Renderer(Protocol):
-    """`found` has what to show of each project; `coloured` is whether a terminal shows it."""
+    """A function from the findings of each project to text; `coloured` adds the escape sequences of a terminal."""
 
     def __call__(self, found: Sequence[Findings], *, coloured: bool = False) -> str: ...
 
@@ -20,9 +20,9 @@ def finding_formats() -> tuple[str, ...]:
 
 
 def render(format: str, found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """Return the findings in that format; empty if there are none and the format has no summary.
+    """Return the findings in this format; empty if there are none and the format has no summary.
 
-    Raises LumenError with the name of the package if a format is faulty that was installed beside Lumen.
+    Raises LumenError with the name of the package if the format belongs to another package and is faulty.
     """
     where: str = table("finding_formats")[format]
     return called_for_text(owner("finding_formats", format), where, found, coloured=coloured)

@@ -1,4 +1,4 @@
-"""A line for each finding, which editors and `grep` can read."""
+"""One line for each finding, in the form that editors and `grep` can read."""
 
 from collections.abc import Sequence
 
@@ -9,7 +9,7 @@ from lumen.run.linting.findings import Findings
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """`file:line:column: severity[code] message (hint)`, and a line that counts them."""
+    """Return lines `file:line:column: severity[code] message (hint)`, and a line with the counts."""
     lines = [_line(each, diagnostic, coloured) for each in found for diagnostic in each.diagnostics]
     return "\n".join([*lines, summary(found, coloured)])
 

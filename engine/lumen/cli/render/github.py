@@ -15,14 +15,14 @@ from lumen.run.linting.findings import Findings
 _COMMANDS: Mapping[Severity, str] = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO: "notice"}
 
 SHOWN = 10
-"""How many errors, and how many warnings, GitHub shows of a step; the rest it drops without a word."""
+"""The number of errors, and of warnings, that GitHub shows for one step; it drops the rest silently."""
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """A command for each finding, its file as seen from the repository's root, and a line that counts them.
+    """Return a command for each finding, with file paths from the repository's root, and a line with the counts.
 
-    GitHub shows the first ten errors, warnings and notices of a step. Where there are more it is said so, and all of
-    them stand in the log.
+    GitHub shows the first ten errors, warnings and notices of a step. If there are more, a notice reports that, and all
+    findings are in the step's log.
     """
     commands = [_command(each, d) for each in found for d in each.diagnostics]
     return "\n".join([*commands, *_left_out(found), summary(found, False)])

@@ -7,9 +7,9 @@ from lumen.run.linting.findings import Findings
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """`{"diagnostics": […], "files": N}`; lines and columns from 1, files relative to the project.
+    """Return `{"diagnostics": […], "files": N}`; lines and columns count from 1, files are relative to the project.
 
-    Of several projects each diagnostic also has its `project`: the folder.
+    If there are several projects, each diagnostic also has its `project`: the folder.
     """
     several = len(found) > 1
     rows = [

@@ -8,7 +8,7 @@ from lumen.run.linting.findings import Findings
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """A suite for each project; a file without findings is a test that passed."""
+    """Return a suite for each project, in which a file without findings is a passed test."""
     suites = [JunitSuite(each.name("").rstrip("/") or ".", list(_cases(each))) for each in found]
     return junit_xml("lumen lint", suites)
 
@@ -25,7 +25,7 @@ def _cases(found: Findings) -> Iterator[JunitCase]:
 
 
 def _case(file: str, diagnostic: Diagnostic) -> JunitCase:
-    """One finding: a failure, but a note stands in the output of a case that passed."""
+    """Return a finding as a failure; a note is a passed case with the text as its output."""
     place = f"{file}:{diagnostic.place.line}:{diagnostic.place.column}"
     attributes = {"file": file, "line": str(diagnostic.place.line)}
     case = JunitCase(f"{place} {diagnostic.code}", f"lint.{diagnostic.code}", attributes)

@@ -19,7 +19,9 @@ _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sa
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """One run for each project; files are relative to the project, and that to the repository around it."""
+    """Return a log with one run for each project; files are relative to the project, and the project to its
+    repository.
+    """
     log = {"$schema": _SCHEMA, "version": "2.1.0", "runs": [_run(each) for each in found]}
     return json.dumps(log, indent=2)
 
@@ -50,7 +52,7 @@ def _bases(found: Findings) -> dict[str, Any]:
 
 
 def _rule(code: str) -> dict[str, Any]:
-    """What is to be known of a code; of one of another tool no more than its name."""
+    """Return the description of a code; for a code of another tool only its name."""
     if code not in codes():
         return {"id": code}
     known, found = codes()[code], page(code)
@@ -108,7 +110,7 @@ def _artifact(found: Findings, file: str) -> dict[str, str]:
 
 
 def _region(place: Place) -> dict[str, int]:
-    """The place with its end, which lies behind its last character."""
+    """Return the region of a place; as SARIF requires, its end is the column after the last character."""
     end = (place.end_line, place.end_column)
     end_line, end_column = max(end, (place.line, place.column))
     return {"startLine": place.line, "startColumn": place.column, "endLine": end_line, "endColumn": end_column}

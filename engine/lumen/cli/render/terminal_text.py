@@ -1,4 +1,4 @@
-"""Words that the formats for people share."""
+"""Functions that the formats for people share."""
 
 import unicodedata
 from collections.abc import Mapping, Sequence
@@ -11,7 +11,7 @@ SEVERITY_COLOURS: Mapping[Severity, str] = {Severity.ERROR: "red", Severity.WARN
 
 
 def summary(found: Sequence[Findings], coloured: bool) -> str:
-    """How many findings there are, in how many files, and how many files were looked at."""
+    """Return a line with the number of findings by severity, of files with findings, and of files checked."""
     counts = [(sum(each.count(severity) for each in found), severity) for severity in Severity]
     files = {(each.root, d.place.file) for each in found for d in each.diagnostics}
     what = ", ".join(counted(n, {"info": "note"}.get(severity, severity)) for n, severity in counts if n)
@@ -31,16 +31,18 @@ def _looked_at(found: Sequence[Findings]) -> str:
 
 
 def counted(number: int, word: str) -> str:
-    """`1 file`, `2 files`."""
+    """Return a number with its noun: `1 file`, `2 files`."""
     return f"{number:,} {word}" if number == 1 else f"{number:,} {word}s"
 
 
 def clean(text: str) -> str:
-    """The text with control characters, which could move a terminal's cursor, made visible; a tab is one space."""
+    """Return the text with control characters, which could move a terminal's cursor, made visible; a tab becomes a
+    space.
+    """
     return "".join(" " if c == "\t" else c if c.isprintable() else "\ufffd" for c in text)
 
 
 def width(text: str) -> int:
-    """Columns that the text takes on a terminal."""
+    """Return the number of columns that a text occupies on a terminal."""
     wide = sum(unicodedata.east_asian_width(c) in "WF" for c in text)
     return len(text) + wide - sum(unicodedata.combining(c) > 0 for c in text)

@@ -1,4 +1,4 @@
-"""Findings with the line of the file that each is about, and a mark below the very word."""
+"""Findings with the line of the file that each is about, and the word underlined."""
 
 from collections.abc import Iterator, Sequence
 
@@ -10,11 +10,11 @@ from lumen.project.files import Unreadable
 from lumen.run.linting.findings import Findings
 
 MAX_EXCERPT_WIDTH = 140
-"""Characters of a line that are shown; of a longer one those around the word."""
+"""The number of characters shown of a longer line: those around the word."""
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """Every finding with its place, excerpt, related places and hint, and a line that counts them."""
+    """Return every finding with its place, excerpt, related places and hint, and a line with the counts."""
     blocks = []
     for each in found:
         excerpts = _Excerpts(each, coloured)
@@ -23,7 +23,7 @@ def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
 
 
 def _more(found: Sequence[Findings]) -> str:
-    """What to type next, where something was found."""
+    """Return a line that suggests `lumen explain`; empty if there are no findings."""
     codes = [d.code for each in found for d in each.diagnostics]
     if not codes:
         return ""
@@ -47,19 +47,19 @@ def _finding(diagnostic: Diagnostic, excerpts: "_Excerpts") -> Iterator[str]:
 
 
 class _Excerpts:
-    """Lines of a project's files, with a mark below what is meant."""
+    """Lines of a project's files, with a mark below the words of a place."""
 
     def __init__(self, found: Findings, coloured: bool) -> None:
         self.found, self.coloured = found, coloured
         self.texts: dict[str, list[str]] = {}
 
     def where(self, place: Place) -> str:
-        """The place as a terminal can follow it."""
+        """Return the place in the form `file:line:column`, which terminals turn into a link."""
         name = f"{clean(self.found.name(place.file))}:{place.line}:{place.column}"
         return paint(name, "bold", on=self.coloured)
 
     def of(self, place: Place, gutter: int, sign: str, colour: str) -> Iterator[str]:
-        """The line of that place and the mark below it; nothing of a line that holds nothing."""
+        """Yield the line of a place and the mark below it; nothing if the line is blank or does not exist."""
         lines = self.lines(place.file)
         if place.line > len(lines) or not lines[place.line - 1].strip():
             return
@@ -78,7 +78,7 @@ class _Excerpts:
 
 
 def _cut(line: str, place: Place) -> tuple[str, int, int]:
-    """The line, not longer than WIDTH, and from where to where the place is in it."""
+    """Return at most MAX_EXCERPT_WIDTH characters of the line, and the begin and end of the place within them."""
     start = min(place.column - 1, len(line))
     end = place.end_column - 1 if place.end_line == place.line else len(line.rstrip())
     if len(line) <= MAX_EXCERPT_WIDTH:

@@ -1,4 +1,4 @@
-"""Verdicts for people and for machines: each format a small function from a verdict to text."""
+"""Formats of the verdict of `lumen test`, for people and for programs: each is a function from a verdict to text."""
 
 from lumen.feature import owner, table
 from lumen.project.broken_features import called_for_text
@@ -11,8 +11,8 @@ def verdict_formats() -> tuple[str, ...]:
 
 
 def render(format: str, verdict: Verdict) -> str:
-    """Return the verdict in that format.
+    """Return the verdict in this format.
 
-    Raises LumenError with the name of the package if a format is faulty that was installed beside Lumen.
+    Raises LumenError with the name of the package if the format belongs to another package and is faulty.
     """
     return called_for_text(owner("verdict_formats", format), table("verdict_formats")[format], verdict)

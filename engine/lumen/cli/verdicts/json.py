@@ -12,7 +12,9 @@ from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 
 def render(verdict: Verdict) -> str:
-    """`{"stories": […], "failed": N, "took": s}`, and what else there is: `sayings`, `examples`, `questions` …"""
+    """Return `{"stories": […], "failed": N, "took": s}`, and if they were tested `sayings`, `examples`, `questions`
+    …
+    """
     found: dict[str, Any] = {
         "stories": [_story(rehearsal) for rehearsal in verdict.rehearsals],
         "failed": verdict.failed,

@@ -10,7 +10,9 @@ from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 
 def render(verdict: Verdict) -> str:
-    """A suite of the stories, one of the sayings, one of the functions, and one of what exploring found."""
+    """Return a suite for the stories, one for the sayings, one for the functions, and one for the results of
+    exploring.
+    """
     suites = []
     if verdict.rehearsals or not (verdict.explored or verdict.sayings or verdict.examples):
         cases = [*map(_story, verdict.rehearsals), *_uncovered(verdict)]
@@ -58,7 +60,7 @@ def _properties(verdict: Verdict) -> dict[str, str]:
 
 
 def _uncovered(verdict: Verdict) -> Iterator[JunitCase]:
-    """A failure where less is covered than was wanted."""
+    """Yield a failure if less is covered than was required."""
     if verdict.coverage and verdict.uncovered:
         said = f"{verdict.coverage.percent:.1f} % is covered, less than the required {verdict.wanted:g} %"
         details = "\n".join(f"{gap.place}: {gap.what}" for gap in verdict.coverage.gaps())

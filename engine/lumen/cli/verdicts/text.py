@@ -1,4 +1,4 @@
-"""A verdict as it reads on a terminal."""
+"""A verdict as text on a terminal."""
 
 from collections.abc import Iterator
 
@@ -19,13 +19,15 @@ FINDING_KINDS = {
 
 
 def render(verdict: Verdict, *, coloured: bool = False) -> str:
-    """Everything, a line for each story first."""
+    """Return a line for each story, then the conclusion."""
     stories = [story(rehearsal, coloured=coloured) for rehearsal in verdict.rehearsals]
     return "\n".join([*stories, *conclusion(verdict, coloured=coloured)])
 
 
 def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
-    """A line: whether it went well, its name, how long it was, its title; below it what went wrong, and before that."""
+    """Return a line with a story's result, length [min:s], name and title; if it failed, also the failure and last
+    events.
+    """
     failed = rehearsal.failed
     sign = paint("FAILED", "bold", "red", on=coloured) if failed else paint("ok    ", "green", on=coloured)
     length = paint(f"{clock_time(rehearsal.time):>6}", "dim", on=coloured)
@@ -38,7 +40,7 @@ def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
 
 
 def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
-    """The lines after the stories: coverage, exploration, questions, sayings, examples, and the sum of the tests."""
+    """Yield the lines after the stories: coverage, exploration, questions, sayings, examples, and the totals."""
     if verdict.coverage:
         yield from _coverage(verdict, verdict.coverage, coloured)
     if verdict.explored:
@@ -61,9 +63,9 @@ def conclusion(verdict: Verdict, *, coloured: bool = False) -> Iterator[str]:
 
 
 def _sayings(verdict: Verdict, coloured: bool) -> Iterator[str]:
-    """The share of sayings that the right row takes, then the others."""
+    """Yield the share of sayings that the right row matches, then those that fail."""
     right, every = len(verdict.sayings) - len(verdict.misheard), len(verdict.sayings)
-    share = f"sayings: {right:,} of {every:,} ({int(100 * right / every)} %)"  # 100 % is all of them
+    share = f"sayings: {right:,} of {every:,} ({int(100 * right / every)} %)"  # rounded down: 100 % is all
     yield f"\n{paint(share, 'bold', 'red' if verdict.misheard else 'green', on=coloured)}"
     for one in verdict.misheard:
         yield f"  {paint(str(one.place), 'bold', on=coloured)}: {misheard(one)}"
@@ -75,7 +77,7 @@ def misheard(one: JudgedSaying) -> str:
 
 
 def _examples(verdict: Verdict, coloured: bool) -> Iterator[str]:
-    """The share of examples of functions that hold, then the others."""
+    """Yield the share of examples of functions that hold, then those that fail."""
     right, every = len(verdict.examples) - len(verdict.refuted), len(verdict.examples)
     share = f"functions: {right:,} of {count(every, 'example', 'examples')}"
     yield f"\n{paint(share, 'bold', 'red' if verdict.refuted else 'green', on=coloured)}"
@@ -89,7 +91,7 @@ def refuted(one: JudgedExample) -> str:
 
 
 def _tried(trial: QuestionTrial, coloured: bool) -> Iterator[str]:
-    """How many questions of a language are answered, and which get another passage's answer."""
+    """Yield the share of a language's questions that are answered, and those that get the wrong passage's answer."""
     asked = paint(f"{count(trial.asked, 'question', 'questions')} in `{trial.language}`", "bold", on=coloured)
     wrong = f"{trial.rates.wrong:.0%} of all get a wrong answer"
     yield f"\n{asked}: {trial.rates.recall:.0%} of those with an answer get it, and {wrong};"
@@ -106,12 +108,12 @@ def _wanted(each: WrongAnswer) -> str:
 
 
 def count(number: int, one: str, many: str) -> str:
-    """`1 story`, `2 stories`."""
+    """Return a number with its noun: `1 story`, `2 stories`."""
     return f"{number:,} {one if number == 1 else many}"
 
 
 def _joined(parts: list[str]) -> str:
-    """`a`, `a and b`, or `a, b and c`."""
+    """Return the parts as a list in words: `a`, `a and b`, or `a, b and c`."""
     return " and ".join(part for part in (", ".join(parts[:-1]), parts[-1]) if part)
 
 
