@@ -27,8 +27,7 @@ MAX_NEEDS = 5
 
 
 def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the lines of an answer to `why`: what happened, one link of the chain after the other, then what it depends
-    on.
+    """Yield the lines of an answer to `why`: what happened, the links of the chain, then what it depends on.
 
     A time is printed only if it differs from the time of the link before. Each link is followed by the values that its
     guard read, and by its place in the files.
@@ -51,8 +50,7 @@ def why_lines(answer: Mapping[str, Any]) -> Iterator[str]:
 
 
 def why_not_lines(answer: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the lines of an answer to `why-not`: each reason, its guard's values, and the change that would have
-    helped.
+    """Yield the lines of an answer to `why-not`: each reason, its guard's values, and the change that would help.
 
     The reasons come nearest first, as they are in the answer; at most MAX_INACTIVE of them are about inactive states.
     """

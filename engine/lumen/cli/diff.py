@@ -38,9 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print the differences; return 1 if the reload would be refused in some configuration or in the running one, else
-    0.
-    """
+    """Print the differences; return 1 if the reload would be refused in the running or some other configuration."""
     old, new = version(options.old), version(options.new)
     found = changes(old.project, new.project)
     visits = _visits(new) if options.visits else None

@@ -246,9 +246,7 @@ def _served(probe: Probe, project: Project) -> Iterator[Finding]:
 
 
 def _skew(body: Any) -> float | None:
-    """Return how far this machine's clock is ahead of the `datePublished` of a body [s]; None if it has no valid
-    date.
-    """
+    """Return how far this machine's clock is ahead of a body's `datePublished` [s]; None without a valid date."""
     date = body.get("datePublished") if isinstance(body, dict) else None
     if not isinstance(date, str):
         return None

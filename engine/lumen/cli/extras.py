@@ -28,8 +28,7 @@ class RunExtra(Protocol):
     def wishes(
         self, options: argparse.Namespace, project: "Project", story: "Story | None", period: float | None
     ) -> Mapping[str, Any]:
-        """Return options of the plan of one robot that runs for `period` [s]; None runs until the story or the user
-        ends it.
+        """Return options of the plan of one robot that runs for `period` [s], or without a limit if that is None.
 
         The core itself reads two names: `track`, an `AudioTrack` that receives all the robot's sound, and `video`, the
         path of the film that is written. Raises UsageError.

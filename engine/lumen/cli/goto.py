@@ -24,9 +24,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Ask for confirmation and send the request; return 0 if the state was entered, 1 if it was refused or not
-    confirmed.
-    """
+    """Ask for confirmation and send the request; return 0, or 1 if it was refused or not confirmed."""
     if options.format == "json" and not options.yes:
         raise UsageError("--format json can't ask for confirmation: add --yes")
     reached = reach(options)

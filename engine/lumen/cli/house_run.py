@@ -57,9 +57,7 @@ class HouseRun:
         self.house = House(self.made, self._lose, together=self.story is not None)
 
     def run(self) -> RunVerdict:
-        """Run until the story ends, the period is over, or the operator ends it; print the summary and return the
-        verdict.
-        """
+        """Run until the story ends, the period is over, or the operator ends it; print and return how it went."""
         options, house = self._options, self.house
         heed_signals([*self.made.values()])
         project = next(iter(self.projects.values()))

@@ -10,8 +10,9 @@ from lumen.cli.suggesting import Suggesting
 
 
 class Help(argparse.HelpFormatter):
-    """Python's help formatter, without importing `shutil` for the terminal's width: that takes as long as reading ten
-    files.
+    """Python's help formatter, without importing `shutil` for the terminal's width.
+
+    That import takes as long as reading ten files.
     """
 
     def __init__(self, prog: str) -> None:

@@ -73,9 +73,7 @@ def _items(blank: str, begin: int) -> tuple[list[_Item], int]:
 
 
 def _insert(text: str, items: list[_Item], close: int, row: str, depth: int) -> str:
-    """Return the text with a row added before the bracket at `close`, after the comments at the end of the list or
-    map.
-    """
+    """Return the text with a row added before the bracket at `close`, after any comments there."""
     head = text[:close].rstrip(_BLANKS)
     if items and "," not in _commented(text[items[-1].end : close]):
         at = items[-1].end

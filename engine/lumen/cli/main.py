@@ -87,8 +87,9 @@ def _configure(command: Suggesting, verb: str, row: Subcommand) -> None:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run `lumen` with these arguments; return 0 if all is well, 1 for findings or a failed story, 2 if it could not
-    run.
+    """Run `lumen` with these arguments, and return its exit code.
+
+    It is 0 if all is well, 1 for findings or a failed story, 2 if the command could not run.
     """
     open_streams()
     arguments = sys.argv[1:] if argv is None else list(argv)

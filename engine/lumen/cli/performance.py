@@ -33,9 +33,7 @@ class Performance:
         self._setup, self._took, self._lived = setup, 0.0, 0.0
 
     def introduce(self, services: Services, speed: str) -> None:
-        """Print the project, robot, behaviour, speed and story, and warn of another process or missing camera
-        images.
-        """
+        """Print the project, robot, behaviour, speed and story, and warn of another process or of missing images."""
         project, story = services.project, services.plan.story
         run_directory: RunDirectory = services.plan.options["directory"]
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")

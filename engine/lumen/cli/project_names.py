@@ -1,6 +1,4 @@
-"""The names of the project around the working directory, for completion on a command line, if they are quick to
-read.
-"""
+"""The names of the project around the working directory, for completion on a command line."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path

@@ -23,9 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Ask for confirmation and send the request to each robot; return 0, or 1 if a robot refused or the person
-    declined.
-    """
+    """Ask for confirmation and send the request to each robot; return 0, or 1 if it was refused or declined."""
     if options.format == "json" and not options.yes:
         raise UsageError("--format json can't ask for confirmation: add --yes")
     return for_each_robot(options, _resume)

@@ -4,9 +4,7 @@ from collections.abc import Sequence
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return the rows below their head, each column as wide as its widest cell; columns of numbers are aligned
-    right.
-    """
+    """Return the rows below their head, in columns as wide as their widest cell; numbers are aligned right."""
     widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
     right = [bool(rows) and all(_number(row[i]) for row in rows) for i in range(len(head))]
     lines = []

@@ -1,4 +1,4 @@
-"""From a project's files to everything that is wrong with them."""
+"""Lint: from a project's files to all findings in them."""
 
 from collections.abc import Callable, Iterator, Mapping
 from datetime import date
@@ -21,9 +21,9 @@ from lumen.project.packaged import find_project
 
 
 def check(path: str | Path | None = None) -> list[Diagnostic]:
-    """Everything wrong with the project in that folder, by file and line; never raises for what its files say.
+    """Return all findings in the project in that folder, by file and line; errors in its files raise nothing.
 
-    Raises UsageError where there is no folder.
+    Raises UsageError if there is no such folder.
     """
     root = find_project(path)
     return list(check_files(root, read_files(root))[1])
@@ -35,11 +35,11 @@ def check_files(
     between: Callable[[], None] = lambda: None,
     looks: Looks | None = None,
 ) -> tuple[Project | None, tuple[Diagnostic, ...]]:
-    """The project that these files make, None where they have errors, and everything wrong with them.
+    """Return the project that these files make, None if they have errors, and all findings in them.
 
-    Of several robots it is that of the one that is chosen among the files; without a choice all are looked at, and it
-    is that of the first. `between` is called between one rule and the next: whoever does not want to know any more
-    raises what they catch. `looks` is told what was looked at beside the files.
+    If the project has several robots, the files can choose one of them (`as_robot`); without a choice the findings are
+    those of all robots, and the project is that of the first. `between` is called before each rule, so that a caller
+    can stop the check by raising an exception. `looks` records which other paths of the disk were looked at.
     """
     looks = looks or Looks()
     found, diagnostics = _checked(root, files, between, looks)
@@ -54,7 +54,7 @@ def check_files(
 def _checked(
     root: Path, files: Mapping[str, bytes], between: Callable[[], None], looks: Looks
 ) -> tuple[ProjectDraft, tuple[Diagnostic, ...]]:
-    """What these files make, and everything wrong with them, as one robot reads them."""
+    """Return the draft that these files make for one robot, and all findings in them."""
     found = draft(files)
     found.root, found.today, found.looks = root, date.today(), looks
     for feature, rule in chain(rows("rules"), rows("last_rules")):
@@ -65,7 +65,7 @@ def _checked(
 
 
 def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
-    """Report what a rule finds; a faulty rule that was installed beside Lumen is a finding itself."""
+    """Run a rule. If it belongs to another installed package and is faulty, that becomes a finding."""
     returned: object = None
     with faults_reported(feature, f"its rule `{rule}`", found.loose):
         returned = resolve(rule)(found)
@@ -77,7 +77,7 @@ def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
 
 
 def _remove_unsound(found: ProjectDraft) -> Iterator[object]:
-    """Remove what is no finding from those of a draft, and iterate over it."""
+    """Remove values that are not valid findings from a draft, and yield them."""
     for findings in (found.loose, *(report.diagnostics for report in found.reports.values())):
         unsound = [each for each in findings if not _is_sound(each)]
         findings[:] = (each for each in findings if each not in unsound)

@@ -1,4 +1,4 @@
-"""Transitions that wait for the end of the whole behaviour: nothing is heard any more when it has come."""
+"""Transitions that wait for the end of the whole behaviour, after which no event is processed."""
 
 from lumen.language.diagnostics import WARNING, Code
 from lumen.project.draft import ProjectDraft
@@ -7,11 +7,11 @@ AFTER_THE_END = Code("after-the-end", "statecharts", WARNING, "a transition wait
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what waits for `done.state` of the outermost state."""
+    """Report transitions on `done.state` of the outermost state."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         if any(path and state.name == machine.root.name for path, state in machine.states.items()):
-            continue  # that state may be meant
+            continue  # that state may be the one that is meant
         end = f"done.state.{machine.root.name}"
         for state in machine.states.values():
             for transition in state.transitions:

@@ -1,4 +1,4 @@
-"""Controllers that are bound: whether a joint is turned the right way, as far as it can, and not too eagerly."""
+"""Bindings of controllers: whether a joint turns in the right direction, within its range, and with a moderate gain."""
 
 from lumen.language.controllers import ControllerDefinition, OutputBinding, Proposition, Variable
 from lumen.language.diagnostics import WARNING, Code, NodePath
@@ -16,15 +16,15 @@ WRONG_SIGN = Code("wrong-sign", "controllers", WARNING, "the robot turns away fr
 
 
 MAX_GAIN = 2.0
-"""With images and commands 100 to 200 ms on their way a loop of gain 1.5 does not overshoot, and one of 3 by 46 %."""
+"""The largest gain. With a delay of 100 to 200 ms, a loop of gain 1.5 does not overshoot, and one of 3 does by 46 %."""
 
 OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "backward", "backward": "forward"}
 GROWING_ANGLE_TURNS = {"yaw": "left", "pitch": "down"}
-"""Where a joint with such a role turns as its angle grows."""
+"""The direction in which a joint with such a role turns while its angle grows."""
 
 
 def check(controller: ControllerDefinition, report: DocumentReport, draft: ProjectDraft) -> None:
-    """Report gains that overshoot, signs that turn away, and outputs beyond what a joint can do."""
+    """Report gains that overshoot, wrong signs, and outputs beyond the range of a joint."""
     for binding in controller.output_bindings:
         variable = controller.outputs[binding.variable]
         path: NodePath = first(report, (*binding.where, "gain"), binding.where)
@@ -36,7 +36,7 @@ def check(controller: ControllerDefinition, report: DocumentReport, draft: Proje
 
 
 def _sense(controller: ControllerDefinition, output: Variable, report: DocumentReport) -> None:
-    """Report an output whose rules, by the names of their terms, lead away from what its input points at."""
+    """Report an output whose rules lead away from the direction of its input, according to the names of their terms."""
     for name, variable in controller.inputs.items():
         if not (trend := _trend(controller, variable, output)) or not output.direction:
             continue
@@ -54,7 +54,7 @@ def _sense(controller: ControllerDefinition, output: Variable, report: DocumentR
 
 
 def _trend(controller: ControllerDefinition, variable: Variable, output: Variable) -> int:
-    """Whether rules from one to the other go up (1) or down (-1) with the names of the terms; 0 where none tells."""
+    """Return 1 if the rules from `variable` to `output` rise in the order of the terms, -1 if they fall, else 0."""
     asked, said = ranks(tuple(variable.terms)), ranks(tuple(output.terms))
     pairs = [
         (asked[rule.antecedent.term], said[consequent.term])

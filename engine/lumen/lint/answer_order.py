@@ -1,4 +1,4 @@
-"""Rows of answers that are never given: a state asks for a phrase in them first, or a row above has the same phrase."""
+"""Rows of answers that are never given: an earlier guard or an earlier row matches their phrases."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -17,14 +17,14 @@ from lumen.talk.patterns import Form, forms
 
 
 class Asking(NamedTuple):
-    """A transition that looks a table up, and the phrases by name that those before it listen for."""
+    """A transition that looks a table up, and the names of the phrases that transitions before it listen for."""
 
     table: str
     before: tuple[str, ...]
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report rows whose every phrase is taken by a guard before each lookup of their table."""
+    """Report rows each of whose phrases matches an earlier guard, before every lookup of their table."""
     owners = {
         id(row): (t.report, name, i)
         for t in word_tables(draft)
@@ -44,9 +44,9 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _repeated(report: DocumentReport, table: str, rows: int) -> None:
-    """Report phrases of a row that a row above it has, too: of equal ones the upper is taken.
+    """Report phrases of a row that an earlier row also has: the first of equal matches wins.
 
-    A row of which each phrase is taken is reported as one that is never answered.
+    A row that has no other phrases is left to the rule that reports answers which are never given.
     """
     first: dict[tuple[str, Form], tuple[int, NodePath]] = {}
     for i in range(rows):
@@ -81,7 +81,7 @@ def _of(state: State) -> Iterator[Asking]:
 
 
 def _lookups(guard: ExpressionNode) -> Iterator[tuple[ExpressionNode, str]]:
-    """What is looked up where: the text, and the table."""
+    """Yield the text and the table of each `lookup` in a guard."""
     for node, _ in walk(guard):
         match node:
             case Binary(left=FunctionCall(function="lookup", arguments=(text, Literal(value=str() as table)))):
@@ -100,5 +100,5 @@ def _taken(
 
 
 def _taker(machine: MachineDefinition, phrase: str, before: tuple[str, ...]) -> str:
-    """The first of these names whose phrases are heard in that one; empty where none is."""
+    """Return the first of these names one of whose phrases matches `phrase`; empty if none does."""
     return next((name for name in before if is_taken(phrase, machine.phrases.get(name, {}))), "")

@@ -1,4 +1,4 @@
-"""Transitions that wait for approval: whether their event comes from outside, so that it can wait, and may wait."""
+"""Transitions that wait for approval: whether their event comes from outside the behaviour, and may wait."""
 
 from collections.abc import Iterator
 
@@ -14,11 +14,14 @@ from lumen.project.transitions import MISPLACED_APPROVAL
 SAFETY_WAITS = Code("safety-waits", "statecharts", WARNING, "a safety reaction waits until a person approves it")
 
 SAFETY = ("stop", "fallen", "motors.hot", "robot.lost", "brain.lost", "motion.lost")
-"""Events that something has to come of at once."""
+"""Events that need an immediate reaction."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report those whose event a behaviour raises or sends, for nobody waits within a step, and what is urgent."""
+    """Report `approve` on events that a behaviour itself raises or sends, and on urgent events.
+
+    An event from inside is processed within the same step, in which the console can't answer.
+    """
     for name, machine in draft.behaviors.items():
         marked = [t for state in machine.states.values() for t in state.transitions if t.approve]
         own = {*_own(machine), *sent_to(draft, machine)} if marked else set[str]()

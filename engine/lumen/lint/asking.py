@@ -1,4 +1,4 @@
-"""Questions of visitors that nobody can answer, for there is neither knowledge nor a module that finds answers."""
+"""Questions of visitors that can't be answered, because there is neither knowledge nor a module that finds answers."""
 
 from lumen.language.actions import AskQuestion
 from lumen.language.diagnostics import WARNING, Code
@@ -11,7 +11,7 @@ ASKS_NOBODY = Code("asks-nobody", "knowledge", WARNING, "a question is asked, bu
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report an `ask` that neither a passage nor a module can answer, and stories of a module that is not there."""
+    """Report each `ask` that neither a passage nor a module can answer, and stories that use a missing module."""
     if draft.settings is None or ANSWERS in draft.settings.modules:
         return
     for name, story in draft.stories.items():

@@ -1,4 +1,4 @@
-"""Buttons: whether pressing one can lead anywhere, and which has which key."""
+"""Buttons: whether pressing one has an effect, and whether two share a key."""
 
 from collections.abc import Iterator
 
@@ -19,7 +19,7 @@ SHARED_BUTTON_KEY = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report buttons that can lead nowhere, and keys that stand for two."""
+    """Report buttons that no active state reacts to, and keys that belong to two buttons shown together."""
     for name, machine in draft.behaviors.items():
         placed = [(state, button) for state in machine.states.values() for button in state.buttons]
         report = draft.report("behaviors", name)
@@ -52,7 +52,7 @@ def _dead(button: Button, machines: tuple[MachineDefinition, ...], report: Docum
 
 
 def _answered(machine: MachineDefinition, state: State, event: str, others: tuple[MachineDefinition, ...]) -> bool:
-    """Whether some state that can be active together with that one takes the event, or another behaviour does."""
+    """Return whether a state active together with this one, or another behaviour, reacts to the event."""
     if any(hears(d, event) for other in others for d in descriptors(other)):
         return True
     return any(
@@ -65,7 +65,7 @@ def _answered(machine: MachineDefinition, state: State, event: str, others: tupl
 
 
 def _around(draft: ProjectDraft, name: str) -> Iterator[MachineDefinition]:
-    """The behaviours that may run together with one: those that it invokes, and those that invoke it."""
+    """Yield the behaviours that may run together with this one, because one invokes the other, transitively."""
     invoked = {other: set(_invoked(machine)) for other, machine in draft.behaviors.items()}
     found = [name]
     for one in found:
@@ -79,14 +79,14 @@ def _invoked(machine: MachineDefinition) -> Iterator[str]:
 
 
 def together(machine: MachineDefinition, one: State, other: State) -> bool:
-    """Whether two states can be active at once: one lies in the other, or they are in regions of a parallel state."""
+    """Return whether two states can be active at once: one contains the other, or they are in two regions."""
     around, beside = _line(machine, one), _line(machine, other)
     common = next(path for path in around if path in beside)
     return common in (one.path, other.path) or machine.states[common].kind is StateKind.PARALLEL
 
 
 def _line(machine: MachineDefinition, state: State) -> list[str]:
-    """Its path, and those around it."""
+    """Return the path of a state and of its ancestors, from the inside out."""
     found = [state.path]
     while (parent := machine.states[found[-1]].parent) is not None:
         found.append(parent)
@@ -94,7 +94,7 @@ def _line(machine: MachineDefinition, state: State) -> list[str]:
 
 
 def _collide(machine: MachineDefinition, one: tuple[State, Button], other: tuple[State, Button]) -> bool:
-    """Whether both have the same key where neither takes the other's place."""
+    """Return whether two buttons have the same key and are shown together, neither replacing the other."""
     if not one[1].key or one[1].key != other[1].key:
         return False
     inside = one[0].path in _line(machine, other[0]) or other[0].path in _line(machine, one[0])

@@ -1,4 +1,4 @@
-"""The JSON Schema of `heard` in a row of `hears`: the text, and the values that the slots of its phrases catch."""
+"""The JSON Schema of `heard` in a row of `hears`: the text, and the values that its slots catch."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -13,9 +13,9 @@ _TEXT: Mapping[str, Any] = {"type": "string"}
 
 
 def caught_schema(machine: MachineDefinition, row: Hears) -> dict[str, Any]:
-    """The JSON Schema of `heard` in a row; a slot that not every form has is not required.
+    """Return the JSON Schema of `heard` in a row; a slot that only some forms have is not required.
 
-    It is empty for a row with phrases of an entry, and for one with a broken phrase, which is reported there.
+    It is empty for a row with phrases of a list's entry, and for one with a broken phrase, which has its own finding.
     """
     phrases = [phrase for _, phrase in row_phrases(machine, row)]
     if any("." in name for name in row.names) or any(is_broken(machine, phrase) for phrase in phrases):
@@ -32,14 +32,14 @@ def caught_schema(machine: MachineDefinition, row: Hears) -> dict[str, Any]:
 
 
 def row_phrases(machine: MachineDefinition, row: Hears) -> Iterator[tuple[str, str]]:
-    """Every phrase of a row with its language."""
+    """Yield the language and the text of every phrase of a row."""
     for name in row.names:
         tables = [machine.phrases.get(name, {}), *(answer.phrases for answer in machine.answers.get(name, ()))]
         yield from ((language, text) for table in tables for language, texts in table.items() for text in texts)
 
 
 def is_broken(machine: MachineDefinition, phrase: str) -> bool:
-    """Whether a phrase has a slot that can't be read, or that can catch nothing."""
+    """Return whether a phrase has a slot that can't be read, or that can catch nothing."""
     if "{" not in phrase:
         return False
     try:
@@ -50,7 +50,7 @@ def is_broken(machine: MachineDefinition, phrase: str) -> bool:
 
 
 def _slots(phrase: str) -> Iterator[tuple[Slot, ...]]:
-    """The slots of each form of a phrase; one without any counts once."""
+    """Yield the slots of each form of a phrase; a phrase without slots yields one empty tuple."""
     if "{" not in phrase:
         yield ()
     else:
@@ -69,12 +69,12 @@ def _slot_schema(machine: MachineDefinition, slot: Slot) -> Mapping[str, Any]:
 
 
 def _joined(schemas: list[Mapping[str, Any]]) -> Mapping[str, Any]:
-    """The schema of a slot that several forms have; empty if they differ."""
+    """Return the schema of a slot that several forms have; empty if their schemas differ."""
     return schemas[0] if all(schema == schemas[0] for schema in schemas) else {}
 
 
 def _answer_schema(machine: MachineDefinition, row: Hears) -> Mapping[str, Any]:
-    """The schema of `heard.answer`: null if no name of the row is one of `answers`."""
+    """Return the schema of `heard.answer`; it includes null if a name of the row is not one of `answers`."""
     values = [answer.value for name in row.names for answer in machine.answers.get(name, ())]
     kinds = {"string" if is_text_by_language(value) else schema_of(value)["type"] for value in values}
     if any(name not in machine.answers for name in row.names) or not values:

@@ -1,4 +1,4 @@
-"""What `now()`, `weekday()`, `date()`, `hour()` and `minute()` are compared with, and that no clock shows."""
+"""Comparisons of `now()`, `weekday()`, `date()`, `hour()` and `minute()` with values that no clock shows."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -16,17 +16,17 @@ _SHOWN: Mapping[str, tuple[re.Pattern[str], str]] = {
     "weekday": (re.compile(r"mon|tue|wed|thu|fri|sat|sun"), "write a day from `'mon'` to `'sun'`"),
     "date": (re.compile(r"[0-9]{4}-[0-9]{2}-[0-9]{2}"), "write year, month and day, such as `'2026-12-24'`"),
 }
-"""What each of them shows, and the hint to write that."""
+"""The form of each function's result, and the hint to write it."""
 
 
 _COUNTED: Mapping[str, int] = {"hour": 23, "minute": 59}
-"""The greatest that each of them gives."""
+"""The greatest result of each function; the least is 0."""
 
 _ASKED = re.compile("|".join((*_SHOWN, *_COUNTED)))
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report comparisons that never hold, or not when they were meant to."""
+    """Report comparisons of a clock function with an impossible value."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         broken = {d.place.line for d in report.diagnostics}
@@ -42,7 +42,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _beyond(condition: ExpressionNode) -> Iterator[tuple[str, float]]:
-    """The functions that are compared with a number beyond what they give, and that number."""
+    """Yield each function that is compared with a number outside its range, and that number."""
     for node, _ in walk(condition):
         if isinstance(node, Binary) and node.sign in ("==", "!=", "<", "<=", ">", ">="):
             for one, other in ((node.left, node.right), (node.right, node.left)):
@@ -53,7 +53,7 @@ def _beyond(condition: ExpressionNode) -> Iterator[tuple[str, float]]:
 
 
 def _odd(condition: ExpressionNode) -> Iterator[tuple[str, str]]:
-    """The functions that are compared with what they never give, and with what."""
+    """Yield each function that is compared with a text that it never returns, and that text."""
     for node, _ in walk(condition):
         if isinstance(node, Binary) and node.sign in ("==", "!=", "<", "<=", ">", ">=", "in"):
             for one, other in ((node.left, node.right), (node.right, node.left)):

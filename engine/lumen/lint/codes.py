@@ -1,6 +1,6 @@
-"""Every code that a finding can have, gathered from the modules that declare them beside their checks.
+"""All codes of findings, collected from the modules that declare them beside their checks.
 
-`grep -rn '"cut-short"' engine` finds a code's severity, summary and check; `pages/cut-short.md` says the rest.
+`grep -rn '"cut-short"' engine` finds a code's severity, summary and check; `pages/cut-short.md` explains it.
 """
 
 from collections.abc import Iterator, Mapping
@@ -15,12 +15,15 @@ FAMILY_ORDER = (
     "text", "shape", "references", "statecharts", "reload", "expressions", "hearing", "speech", "knowledge",
     "controllers", "motions", "physics", "robot", "routes", "alerts", "fleet", "features", "comments",
 )  # fmt: skip
-"""The families as they are listed: what is wrong with a file first. A family that is not named here comes last."""
+"""The families in the order of lists: faults of a file's form first. A family that is not named here comes last."""
 
 
 @cache
 def codes() -> Mapping[str, Code]:
-    """Return every code by its name, by family and alphabet; of two with the same name, the first declared counts."""
+    """Return every code by its name, sorted by family and name.
+
+    Of two codes with the same name, the first declared counts.
+    """
     declared: dict[str, Code] = {}
     for code in _declared():
         declared.setdefault(code, code)
@@ -37,7 +40,7 @@ def families() -> Mapping[str, Mapping[str, Code]]:
 def _declared() -> Iterator[Code]:
     for feature, where in chain(rows("rules"), rows("last_rules"), rows("codes")):
         found: Mapping[str, object] = {}
-        with faults_reported(feature, where, []):  # lint reports it
+        with faults_reported(feature, where, []):  # lint reports such a fault
             found = vars(resolve(where.partition(":")[0]))
         yield from (value for value in found.values() if isinstance(value, Code) and _is_sound(value))
 

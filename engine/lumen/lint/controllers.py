@@ -1,4 +1,4 @@
-"""Controllers: what they are bound to, and what is said of them where nothing else is wrong."""
+"""Controllers: their bindings to joints, and further checks if nothing else is wrong with them."""
 
 from lumen.language.controllers import ControllerDefinition, OutputBinding
 from lumen.language.diagnostics import NodePath, did_you_mean
@@ -12,11 +12,11 @@ from lumen.project.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
 from lumen.project.roles import RoleNames
 
 LIMIT_TOLERANCE = 2e-3
-"""How far a limit may lie outside the joint's own [rad]: people round."""
+"""The tolerance for a limit outside the joint's own [rad], because people round."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report bindings to joints that are not there, and limits that the joint does not have."""
+    """Report bindings to joints that the robot does not have, and limits beyond those of a joint."""
     for name, controller in draft.controllers.items():
         report = draft.report("fuzzy", name)
         if draft.body and draft.settings:

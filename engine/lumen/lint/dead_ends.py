@@ -1,4 +1,4 @@
-"""Ways through a statechart: where nothing leads on, where nothing leads back, and where one waits for ever."""
+"""Ways through a statechart: states without a way out, without a way back, and without a time limit."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -22,17 +22,20 @@ WAITS_FOR_EVER = Code("waits-for-ever", "statecharts", WARNING, "a state is left
 LEFT_BY_ALARM = Code("left-by-alarm", "statecharts", WARNING, "a state is left only when something is wrong")
 
 TROUBLES = ("fallen", "stop", "battery.low", "motors.hot", "brain.lost", "robot.lost")
-"""Events of the robot by which one knows the states that watch over it: what these raise is an alarm."""
+"""Events about a fault of the robot.
+
+A region that waits for one is a watching region; events that it raises are alarms.
+"""
 
 
 GraphNode = tuple[str, str]
-"""`in` a state, or on the way `to` one (which then begins), or `any` state below one; and its path."""
+"""A node of the graph, with the path of a state: `in` it, on entry (`to`), or in `any` state below it."""
 
 _RESTLESS = (ENDLESS_ALWAYS, ALWAYS_LOOP, ENDLESS_CHAIN)
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what keeps the robot in a state for ever, in files where no transition is missing for another reason."""
+    """Report what keeps the robot in a state forever, in files that were read as a whole and have no endless loops."""
     events = {r.event for r in draft.settings.routes.values() if r.event} if draft.settings else set[str]()
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -42,7 +45,10 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _ended(machine: MachineDefinition, report: DocumentReport) -> None:
-    """Histories that are gone to from where their parent's end leads: they remember that end, and end at once."""
+    """Report transitions to the history of a parent from the target of the parent's end.
+
+    Such a history remembers the final state, so the parent ends again at once.
+    """
     for path, state in machine.states.items():
         parent = machine.states[state.parent] if state.parent is not None else None
         if state.kind is not StateKind.HISTORY or parent is None:
@@ -62,7 +68,7 @@ def _ended(machine: MachineDefinition, report: DocumentReport) -> None:
 
 @dataclass
 class _Graph:
-    """Where one gets from each node in one move, and from where one gets there; guards are taken to hold."""
+    """Which nodes follow each node in one move (`after`), and precede it (`before`); guards are assumed to hold."""
 
     machine: MachineDefinition
     after: dict[GraphNode, list[GraphNode]] = field(default_factory=dict)
@@ -88,7 +94,7 @@ class _Graph:
         self.before.setdefault(other, []).append(one)
 
     def go(self, source: str, target: str) -> None:
-        """A transition: it also leaves what is active beside its source, and begins what is beside its target."""
+        """Add a transition: it also leaves the regions beside its source, and enters those beside its target."""
         self.join(("in", source), ("to", target))
         for path in self.above(source):
             if self.machine.states[path].kind is StateKind.PARALLEL and not within(target, path):
@@ -108,7 +114,7 @@ class _Graph:
 
 
 def spread(begin: Iterable[GraphNode], moves: dict[GraphNode, list[GraphNode]]) -> set[GraphNode]:
-    """All nodes that some row of moves leads to from these, they among them."""
+    """Return all nodes that a sequence of moves reaches from these, including these."""
     found = set(begin)
     waiting = list(found)
     while waiting:
@@ -120,7 +126,10 @@ def spread(begin: Iterable[GraphNode], moves: dict[GraphNode, list[GraphNode]]) 
 
 
 class _Ways:
-    """Looks at one machine: `tracks` are its outermost rows of states, each of which is in one of them at a time."""
+    """Checks one machine.
+
+    Its `tracks` are its outermost compound states, in each of which one state is active at a time.
+    """
 
     def __init__(self, machine: MachineDefinition, report: DocumentReport, events: set[str]) -> None:
         self.machine, self.report, self.events = machine, report, events
@@ -171,22 +180,22 @@ class _Ways:
                 self.waiting(self.machine.states[path])
 
     def watches(self, track: State) -> bool:
-        """Whether some state of a track waits for what goes wrong with the robot."""
+        """Return whether a state of a track waits for a fault of the robot."""
         states = [track, *(self.machine.states[path] for path in self.below(track))]
         return any(t.event in TROUBLES and t.targets for state in states for t in state.transitions)
 
     def raised(self, track: State) -> set[str]:
-        """The events that a track raises by itself."""
+        """Return the events that a track raises itself."""
         inside = {track.path, *self.below(track)}
         sites = (site for site in action_sites(self.machine) if site.state.path in inside)
         return {site.step.action.event for site in sites if isinstance(site.step.action, Raise)}
 
     def is_alarm(self, path: str, transition: Transition) -> bool:
-        """Whether a transition around a state comes of an alarm."""
+        """Return whether a transition of an outer state reacts to an alarm."""
         return transition.source != path and (transition.event in self.alarms or transition.event in TROUBLES)
 
     def ways_out(self, path: str) -> Iterator[Transition]:
-        """The transitions by which one may leave an atomic state: its own and those around it."""
+        """Yield the transitions by which an atomic state can be left: its own and those of its ancestors."""
         state: State | None = self.machine.states[path]
         while state is not None:
             yield from (t for t in state.transitions if any(target != path for target in t.targets))
@@ -195,7 +204,7 @@ class _Ways:
             state = self.machine.states[state.parent] if state.parent is not None else None
 
     def leaving(self, parallel: State) -> list[Transition]:
-        """The transitions below a parallel state that lead out of it: one region leaves it for all."""
+        """Return the transitions below a parallel state that lead out of it: any region can leave it for all."""
         if parallel.path not in self.exits:
             self.exits[parallel.path] = [
                 transition
@@ -206,14 +215,14 @@ class _Ways:
         return self.exits[parallel.path]
 
     def below(self, state: State) -> Iterator[str]:
-        """The paths of all states in a state."""
+        """Yield the paths of all descendants of a state."""
         waiting = list(state.children)
         while waiting:
             yield (path := waiting.pop())
             waiting.extend(self.machine.states[path].children)
 
     def from_where(self, path: str) -> list[tuple[NodePath, str]]:
-        """How one gets there, where there is a single way."""
+        """Return the related place of the only transition that enters a state; empty if there are several."""
         ways = self.entered.get(path, [])
         return [(ways[0].where, "it is entered only from here")] if len(ways) == 1 else []
 
@@ -224,7 +233,7 @@ class _Ways:
         self.report(DEAD_END, state.where, message, hint, key=True, related=self.from_where(path))
 
     def lost(self, track: State, home: State, lost: list[str], dead: Iterable[str]) -> None:
-        """States from which no way leads home; of those that lead to one another only the first is told."""
+        """Report states from which no way leads home; of states that lead to one another only the first."""
         ends = [("in", path) for path in dead]
         ends += [("in", p) for p in track.children if self.machine.states[p].kind is StateKind.FINAL]
         ended = spread(ends, self.graph.before)
@@ -240,7 +249,7 @@ class _Ways:
             self.report(NO_WAY_BACK, state.where, message, hint, key=True, related=self.from_where(path))
 
     def waiting(self, state: State) -> None:
-        """A state that is left only if a visitor does something."""
+        """Report a state that is left only if a visitor does something."""
         steps = nested((*state.entry, *state.do))
         raised = {a.event for step in steps if isinstance(a := step.action, Raise | Send) and not _goes_away(a)}
         names: set[str] = set()
@@ -256,7 +265,7 @@ class _Ways:
             self.report(WAITS_FOR_EVER, state.where, message, hint, key=True)
 
     def in_course(self, transition: Transition) -> bool:
-        """Whether a transition belongs to the ordinary course, not to an alarm around it."""
+        """Return whether a transition is part of the ordinary course of the behaviour, rather than an outer alarm."""
         source = self.machine.states[transition.source]
         return (
             source.kind is StateKind.ATOMIC
@@ -266,11 +275,11 @@ class _Ways:
         )
 
     def late(self, state: State, transition: Transition) -> bool:
-        """Whether a time of day ends what is around a state that comes after others: until then the robot waits."""
+        """Return whether only a time of day ends an outer state, so that a later state within may last for hours."""
         within_others = state.parent is not None and state.path not in self.machine.states[state.parent].initial
         return transition.schedule is not None and transition.source != state.path and within_others
 
 
 def _goes_away(action: Raise | Send) -> bool:
-    """Whether it is for another behaviour."""
+    """Return whether an event is sent to another behaviour."""
     return isinstance(action, Send) and bool(action.to)

@@ -1,4 +1,4 @@
-"""Checks walks from the robot's start against the ground of its hall: beyond the edge the robot falls."""
+"""Walks from the robot's start, against the ground of its hall: beyond the edge the robot falls."""
 
 from collections.abc import Generator, Iterable, Iterator, Mapping, Sequence
 from math import cos, hypot, sin
@@ -16,7 +16,7 @@ from lumen.project.draft import ProjectDraft
 WALK_BEYOND_GROUND = Code("walk-beyond-ground", "robot", WARNING, "a walk leads off the ground of the hall")
 
 MAX_WAYS = 2_000
-"""The most visits to states that are followed: the ways through a behaviour can be very many."""
+"""The greatest number of visits to states that are followed, because a behaviour may have very many ways."""
 
 STEP = 0.02
 """The distance between the points of a walk that are checked [m]."""
@@ -30,6 +30,7 @@ class PlaceOnGround(NamedTuple):
     turned: float = 0.0
 
     def after(self, walk: Walk) -> "PlaceOnGround":
+        """Return the robot's position and turn after a walk from here."""
         c, s = cos(self.turned), sin(self.turned)
         return PlaceOnGround(
             self.x + walk.x * c - walk.y * s, self.y + walk.x * s + walk.y * c, self.turned + walk.theta
@@ -163,7 +164,7 @@ class _Ways:
             at = self._machine.states[at].parent
 
     def _within(self, state: State) -> Iterable[str]:
-        """The states that are entered with a state; none if several of them may walk at the same time."""
+        """Return the states that are entered with a state; none if several of them may walk at the same time."""
         if state.kind is not StateKind.PARALLEL:
             return state.initial
         if state.path not in self._entered:
@@ -171,7 +172,7 @@ class _Ways:
         return self._entered[state.path]
 
     def _walks(self, path: str) -> bool:
-        """Whether anything in a state may make the robot walk."""
+        """Return whether anything in a state may make the robot walk."""
         state = self._machine.states[path]
         blocks = (state.entry, state.do, state.exit, *(t.actions for t in state.transitions))
         return (
@@ -180,5 +181,5 @@ class _Ways:
 
 
 def _moves(steps: Sequence[PlacedAction]) -> Iterator[bool]:
-    """For each action, nested ones included, whether it makes the robot walk."""
+    """Yield for each action, including nested ones, whether it makes the robot walk."""
     return (isinstance(step.action, Walk | GoTo | Move) for step in nested(tuple(steps)))

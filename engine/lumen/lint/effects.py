@@ -1,4 +1,4 @@
-"""What a file may say, and nothing comes of it: whoever wrote it should know."""
+"""Keys that are valid but have no effect, and sounds that can't be played."""
 
 from lumen.language.commands import PlaySound
 from lumen.language.diagnostics import WARNING, Code, NodePath
@@ -22,7 +22,7 @@ _AFTER_ENTRY = ("do", "invoke", "on", "hears", "after", "at", "onDone", "onError
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report keys that are read and have no effect, and sounds that are not there."""
+    """Report keys that have no effect, and sound files that are missing or can't be played."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         _reload(machine, report)
@@ -78,7 +78,7 @@ def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _leaves_at_once(state: State) -> Transition | None:
-    """The `always` without a guard by which a state is left as soon as it is entered."""
+    """Return the `always` without a guard that leaves a state as soon as it is entered; None without one."""
     if state.kind is not StateKind.ATOMIC or state.parent is None:
         return None
     return next(
@@ -93,7 +93,7 @@ def _sounds(motion: MotionDefinition, report: DocumentReport, draft: ProjectDraf
 
 
 def _sound(file: str, path: NodePath, report: DocumentReport, draft: ProjectDraft) -> None:
-    """A sound file that is not in the project's folder, or can't be played."""
+    """Report a sound file that is missing in the project's folder or can't be played."""
     assert draft.root is not None
     draft.looks.at(on_disk(draft.root, file))
     try:

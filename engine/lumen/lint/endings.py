@@ -1,4 +1,4 @@
-"""Events of the engine that speak of one state or invoke, `done.state.talk`: whether there is one that could end so."""
+"""Events of the engine about one state or invoke, such as `done.state.talk`: whether anything can raise them."""
 
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.machines import MachineDefinition, State, StateKind
@@ -9,11 +9,11 @@ _LACKS = {
     "error.do": "it has no `do`",
 }
 _ANSWERS = ("done.command", "error.command", "cancelled.command")
-"""What the robot says of commands: it goes to the `do` that waits for it, or nowhere, and never to a transition."""
+"""The robot's answers to commands: they go to the `do` that waits for them, never to a transition."""
 
 
 def ending_fault(machine: MachineDefinition, descriptor: str) -> str:
-    """Why a descriptor can't be heard: a hint where it names nothing that could end; else empty."""
+    """Return a hint why nothing can raise the event of a descriptor; empty if something can."""
     words = descriptor.removesuffix(".*").split(".")
     family, name = ".".join(words[:2]), ".".join(words[2:])
     if family in _ANSWERS:
@@ -34,7 +34,7 @@ def _begins(descriptor: str, name: str) -> bool:
 
 
 def _able(machine: MachineDefinition, family: str) -> set[str] | None:
-    """The names after that family; None for a family that does not speak of states or invokes."""
+    """Return the names that can follow this family; None if the family is not about states or invokes."""
     states = machine.states.values()
     match family:
         case "done.state":
@@ -47,7 +47,7 @@ def _able(machine: MachineDefinition, family: str) -> set[str] | None:
 
 
 def _ends(machine: MachineDefinition, state: State) -> bool:
-    """Whether a state can come to its end (`isInFinalState`)."""
+    """Return whether a state can come to its end (`isInFinalState` of SCXML)."""
     children = [machine.states[path] for path in state.children]
     if state.kind is StateKind.PARALLEL:
         return all(_ends(machine, child) for child in children if child.kind is not StateKind.HISTORY)

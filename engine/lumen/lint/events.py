@@ -1,4 +1,4 @@
-"""Events: who raises them, and who waits for them."""
+"""Events: which behaviours and routes raise them, and which transitions wait for them."""
 
 from collections.abc import Iterator, Mapping, Set
 from typing import Any
@@ -32,10 +32,10 @@ BUILT_IN_FAMILIES = (
     "done.state.", "done.do.", "done.invoke.", "done.command.", "error.do.", "error.invoke.", "error.command.",
     "cancelled.command.", "error.execution", "error.communication",
 )  # fmt: skip
-"""Events that the engine raises by itself, or the beginnings of their names."""
+"""Events that the engine itself raises, or the beginnings of their names."""
 
 _INSTANT = (Assign, CancelSend, LogText, PublishBody, Raise, Send)
-"""The actions that a `do` does not wait for."""
+"""Actions that a `do` does not wait for."""
 
 _REASON = {"type": "object", "properties": {"reason": {"type": "string"}}, "required": ["reason"]}
 
@@ -51,19 +51,22 @@ def check(draft: ProjectDraft) -> None:
 
 
 def hears(descriptor: str, event: str) -> bool:
-    """Whether a descriptor of `on` takes that event: exactly, as a prefix of whole words, or as `*` (SCXML 3.12.1)."""
+    """Return whether a descriptor of `on` matches an event: exactly, as a prefix of words, or as `*` (SCXML 3.12.1)."""
     prefix = descriptor.removesuffix(".*")
     return descriptor == "*" or event == prefix or event.startswith(f"{prefix}.")
 
 
 def descriptors(machine: MachineDefinition) -> tuple[str, ...]:
-    """What stands under `on` anywhere in the machine, each once."""
+    """Return the descriptors under `on` in the whole machine, each once."""
     found = (t.event for state in machine.states.values() for t in state.transitions if t.event and not t.exact)
     return memoize(("descriptors", machine.id), Same(machine), lambda: tuple(dict.fromkeys(found)))
 
 
 def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
-    """The events that the world can raise in this machine, each with the JSON Schema of its data, None for any."""
+    """Return the events that can come from outside this machine, with the JSON Schema of their data.
+
+    The schema is None for any data.
+    """
     found: dict[str, Any] = {}
     routes = draft.settings.routes.values() if draft.settings else ()
     for route in routes:
@@ -77,9 +80,9 @@ def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
 
 
 def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any] | None:
-    """The event of an `onDone` or `onError` of an invoke, with the schema of its data; None for other transitions.
+    """Return the event of an `onDone` or `onError` of an invoke, with the schema of its data; else None.
 
-    Also that of a `do` which ends with a verb of a feature that has a result.
+    A `do` counts as well, if it ends with a verb of a feature that has a result.
     """
     state = machine.states[transition.source]
     if transition.event == f"done.do.{state.name}" and (result := _result(state.do)):
@@ -94,14 +97,14 @@ def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any
 
 
 def _result(block: tuple[PlacedAction, ...]) -> Mapping[str, Any] | None:
-    """The JSON Schema of what the last action that takes time returns; None if it is no verb with a result."""
+    """Return the JSON Schema of the result of a block's last action that takes time; None if it has no result."""
     last = next((step.action for step in reversed(block) if not isinstance(step.action, _INSTANT)), None)
     row = added_row(last) if isinstance(last, Do) else None
     return result_schema(row) if row and row.result else None
 
 
 def _output(machine: MachineDefinition) -> Mapping[str, Any] | None:
-    """The JSON Schema of what a machine hands on at its end; None where that is no map in all cases."""
+    """Return the JSON Schema of a machine's output at its end; None if some end has no map as output."""
     states = [machine.states[path] for path in machine.root.children]
     outputs = [state.output for state in states if state.kind is StateKind.FINAL]
     maps = [output for output in outputs if isinstance(output, Mapping)]
@@ -113,7 +116,7 @@ def _output(machine: MachineDefinition) -> Mapping[str, Any] | None:
 
 
 def raised(document: Document) -> tuple[str, ...]:
-    """The names of all events that a behaviour raises, or sends to itself; those of broken actions too."""
+    """Return the names of all events that a behaviour raises, or sends to itself; broken actions count as well."""
     data = document.data
     return memoize(("raised", document.file), Same(data), lambda: tuple(dict.fromkeys(_raises(data))))
 
@@ -165,7 +168,7 @@ def _waited(draft: ProjectDraft, machine: MachineDefinition, report: DocumentRep
 
 
 def _named_like_parts(draft: ProjectDraft, machine: MachineDefinition, report: DocumentReport) -> None:
-    """Report each event whose transition also reacts to the loss and the return of the part of that name."""
+    """Report each event whose transition also reacts to the loss and return of the part with the same name."""
     own = {*declared(draft, machine), *raised(report.document), *sent_to(draft, machine)}
     named = {event for event in own if f"{event}.lost" in robot_events()}
     for transition in (t for state in machine.states.values() for t in state.transitions):
@@ -177,7 +180,7 @@ def _named_like_parts(draft: ProjectDraft, machine: MachineDefinition, report: D
 
 
 def _hint(settings: Settings, event: str, known: Set[str], lost: Set[str]) -> str:
-    """The hint at an event that nothing raises; what is `lost` is not proposed."""
+    """Return the hint for an event that nothing raises; names in `lost`, which could not be read, are not suggested."""
     built_in = {route.event: name for name, route in BUILT_IN_ROUTES.items() if route.event}
     if (name := built_in.get(event.removesuffix(".*"))) in settings.removed_routes:
         return f"delete the row `{name}: null` in lumen.yaml, or declare the event under `events:`"
@@ -187,12 +190,12 @@ def _hint(settings: Settings, event: str, known: Set[str], lost: Set[str]) -> st
 
 
 def _prefixes(event: str) -> list[str]:
-    """The event, and the whole words with which it begins."""
+    """Return the event, and its beginnings of whole words."""
     return [event[:at] for at, letter in enumerate(event) if letter == "."] + [event]
 
 
 class _Misspelt:
-    """The transitions of a machine by their event, its raised events, and those of them that nothing waits for."""
+    """The transitions of a machine by their event, its raised events, and those of them without a transition."""
 
     def __init__(self, machine: MachineDefinition) -> None:
         self.waiting: dict[str, list[Transition]] = {}
@@ -208,7 +211,10 @@ class _Misspelt:
 
 
 def _misnamed(event: str, misspelt: _Misspelt, report: DocumentReport) -> bool:
-    """Whether it is rather the `raise` that is misspelt, and told: more transitions wait for the event as it stands."""
+    """Return whether a `raise` is probably misspelt instead of the event that transitions wait for; report it if so.
+
+    That is assumed if fewer actions raise the similar name than transitions wait for this one.
+    """
     waiting = misspelt.waiting[event]
     name = nearest(event, misspelt.lost)
     sites = misspelt.sent.get(name, [])
@@ -222,13 +228,13 @@ def _misnamed(event: str, misspelt: _Misspelt, report: DocumentReport) -> bool:
 
 
 def _of_the_engine(event: str) -> bool:
-    """Whether the engine could raise that: the descriptor begins the name of a family, or goes on from it."""
+    """Return whether the engine could raise an event that matches this descriptor."""
     longer = tuple(family for family in BUILT_IN_FAMILIES if family.endswith("."))
     return event.startswith(longer) or any(hears(event, family.removesuffix(".")) for family in BUILT_IN_FAMILIES)
 
 
 def descriptor_path(transition: Transition) -> NodePath:
-    """The path of the key under `on`, or of the row of `hears`: a candidate may stand in a list below it."""
+    """Return the path of the key under `on`, or of the row of `hears`, even if the transition is in a list below it."""
     key = transition.hears.key if transition.hears else transition.event
     return transition.where if transition.where[-1] == key else transition.where[:-1]
 
@@ -246,7 +252,7 @@ def _raised(draft: ProjectDraft, name: str, report: DocumentReport) -> None:
                 verb = "raise" if isinstance(site.step.action, Raise) else "send"
                 path = first(report, (*site.step.where, verb, "event"), (*site.step.where, verb))
                 if nearest(event, report.missed):
-                    continue  # it was meant there
+                    continue  # reported there as a misspelt `raise`
                 hint = did_you_mean(event, {d for d in waited if "*" not in d})
                 hint = hint if "mean" in hint else "handle it under `on:`, or delete this action"
                 report(UNUSED_EVENT, path, f"nothing waits for the event `{event}`", hint)

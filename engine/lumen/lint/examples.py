@@ -1,4 +1,4 @@
-"""Phrases by example: each form, said alone, must take its own row, and some sentence must take each row."""
+"""Phrases tried as examples: each form of a phrase, said alone, must match its own row."""
 
 from collections.abc import Collection
 from itertools import islice
@@ -20,11 +20,11 @@ NEVER_HEARD = Code("never-heard", "hearing", WARNING, "a row of `hears` never ma
 SHADOWED_PHRASE = Code("shadowed-phrase", "hearing", WARNING, "a phrase matches a different row instead of its own")
 
 MAX_TRIED = 300
-"""Sentences that are tried to find one that takes a row with `not` or `asked`."""
+"""The number of sentences that are tried in search of one that matches a row with `not` or `asked`."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report phrases that take another row than theirs, and rows that nothing takes."""
+    """Report phrases that match a row other than their own, and rows that no sentence matches."""
     hearing = hearing_behaviors(draft)
     looked = looked_up(draft) if hearing else ()
     for name in hearing:
@@ -32,7 +32,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Examples(HeardRows):
-    """Tries the phrases of one behaviour; the tables that are `looked` up by expressions are tried there."""
+    """Tries the phrases of one behaviour. Tables in `looked` are left out: expressions look them up, by other rules."""
 
     def __init__(self, draft: ProjectDraft, behavior: str, looked: Collection[str]) -> None:
         super().__init__(draft, behavior)
@@ -57,9 +57,9 @@ class _Examples(HeardRows):
         self.answers()
 
     def found(self, row: SaidRow) -> None:
-        """Report phrases of a row that take another one; all of them together are the row's own mistake."""
+        """Report the phrases of a row that match another row; if all of them do, report the row instead."""
         if any("." in name for name in row.hears.names):
-            return  # phrases of an entry, which is not known here
+            return  # phrases of a list's entry, which is not known here
         hearing, taken = hearing_of(self.machine), dict[object, tuple[SaidPhrase, Taken]]()
         others = {n for other in self.by_state[row.state.path] for n in other.hears.names} - {*row.hears.names}
         reached = False
@@ -72,7 +72,7 @@ class _Examples(HeardRows):
             order = self.order(row.state.path, example.text)
             both = (*order.first, *order.late)
             if all(one.number not in row.numbers for one in both):
-                continue  # a slot does not catch what was said for it here
+                continue  # a slot does not catch the word that was said for it
             if taker := self.taker(both, row):
                 taken.setdefault(example.written and (example.written.report, example.written.path), (example, taker))
             else:
@@ -91,7 +91,7 @@ class _Examples(HeardRows):
             self.within(row)
 
     def within(self, row: SaidRow) -> None:
-        """Report phrases of a row that take a row of a state within."""
+        """Report phrases of a row that match a row of an inner state."""
         own = set(row.hears.names)
         below = [path for path in self.by_state if within(path, row.state.path) and path != row.state.path]
         rivals = {name for path in below for other in self.by_state[path] for name in other.hears.names} - own
@@ -110,7 +110,7 @@ class _Examples(HeardRows):
 
     def shadowed(self, row: SaidRow, example: SaidPhrase, taken: Taken) -> None:
         if example.written is None or taken.find is None:
-            return  # it comes with Lumen
+            return  # the phrase comes with Lumen
         other, words = self.by_number[taken.number], self.words(example.text, taken.find)
         whole = words == example.text
         inner = other.state.path != row.state.path
@@ -131,7 +131,7 @@ class _Examples(HeardRows):
         report.diagnostics.append(found)
 
     def negated_or_asked(self, row: SaidRow) -> None:
-        """Report a row with `not` or `asked` that no phrase of its names can take."""
+        """Report a row with `not` or `asked` that no sentence made of its phrases can match."""
         tried = list(islice(of_row(self.machine, row.hears, {}), MAX_TRIED))
         orders = (self.order(row.state.path, text) for text in tried)
         if not tried or any(one.number in row.numbers for o in orders for one in (*o.first, *o.late)):
@@ -146,7 +146,7 @@ class _Examples(HeardRows):
         self.never(row, why, f"delete this row: `{'|'.join(row.hears.names)}` already matches these sentences")
 
     def otherwise(self, row: SaidRow) -> None:
-        """Report an `else` for which a state around it, or each state within, leaves nothing."""
+        """Report an `else` that gets no sentence, because an outer state or every inner state handles all of them."""
         outer = row.state.path
         for state in [*self.around(outer)][1:]:
             if found := next((t for t in state.transitions if _takes_all(t)), None):
@@ -158,7 +158,7 @@ class _Examples(HeardRows):
             self.never(row, "every inner state has its own `else`", "delete this `else`, or one of those")
 
     def ends(self, leaf: str, outer: str) -> bool:
-        """Whether an `else` between two states takes whatever is left."""
+        """Return whether an `else` between two states handles the remaining sentences."""
         return any(
             t.hears and t.hears.way == "else" and not t.guard
             for state in self.between(leaf, outer)
@@ -166,7 +166,7 @@ class _Examples(HeardRows):
         )
 
     def hiding(self, outer: str) -> str:
-        """The transition that takes every sentence in each state within, in words; empty if a sentence gets here."""
+        """Describe the transition that handles every sentence in all inner states; empty if there is none."""
         takers = [
             next((t for state in self.between(leaf, outer) for t in state.transitions if _takes_all(t)), None)
             for leaf in self.leaves(outer)
@@ -177,7 +177,7 @@ class _Examples(HeardRows):
         return f"`{first.event}` of {shown(self.machine.states[first.source])}"
 
     def answers(self) -> None:
-        """Report rows of answers each of whose phrases takes another row of their table."""
+        """Report rows of answers each of whose phrases matches another row of their table."""
         for name in dict.fromkeys(name for row in self for name in row.hears.names if name in self.machine.answers):
             home = declaring_report(self.draft, self.behavior, "answers", name)
             for number in range(len(self.machine.answers[name]) if home and name not in self.looked else 0):
@@ -199,7 +199,7 @@ class _Examples(HeardRows):
                     )
 
     def rival(self, name: str, number: int, text: str) -> int | None:
-        """The row of a table whose answer is given to a sentence in place of that one; None if there is no other."""
+        """Return the row of the table that answers a sentence instead of row `number`; None if no other row does."""
         hearing = hearing_of(self.machine)
         find = hearing.best(hearing.read(text), Hears(-1, name, (name,)), set(), {})
         return find.entry.row if find and find.entry.row != number else None
@@ -213,6 +213,6 @@ class _Examples(HeardRows):
 
 
 def _takes_all(transition: Transition) -> bool:
-    """Whether a transition under `on` takes every sentence that comes to it."""
+    """Return whether a transition under `on` handles every sentence that reaches it."""
     heard = not transition.hears and not transition.exact and bool(transition.event) and hears(transition.event, HEARD)
     return heard and transition.guard is None

@@ -1,4 +1,4 @@
-"""Expressions: names and types, against the declared context and the messages' schemas."""
+"""Expressions: their names and types, against the declared context and the messages' schemas."""
 
 import json
 import re
@@ -81,13 +81,13 @@ class _Expressions:
         return self.remembered.of(check, spot.text.shown, site, around)
 
     def expected(self, way: str) -> Mapping[str, Any] | None:
-        """The schema of what `assign` calls so; None where nothing is known of it."""
+        """Return the schema of the context key that `assign` writes; None if it is unknown."""
         key, *within = way.split(".")
         schema = schema_at(self.context.get(key), within)
         return schema if isinstance(schema, Mapping) else None
 
     def variables(self, spot: ExpressionSite) -> dict[str, Any]:
-        """What stands for entries there, and `heard` in a row of `hears`, each with its schema."""
+        """Return the schemas of the variables in scope: entries of `for`, `heard` in rows of `hears`, shared values."""
         where = spot.text.where
         found: dict[str, Any] = {SHARED: self.machine.types[SHARED]} if self.machine.shared else {}
         if spot.transition and spot.transition.hears and HEARD in spot.text.shown:
@@ -102,7 +102,7 @@ class _Expressions:
         return found
 
     def possible(self, transition: Transition | None) -> dict[str, Any] | None:
-        """The events that can arrive where a transition is taken, None where it could be any."""
+        """Return the events that can trigger a transition, with their schemas; None if it could be any event."""
         if transition is None or not transition.event or "*" in transition.event or not self.known:
             return None
         if transition.exact:
@@ -110,7 +110,7 @@ class _Expressions:
         return {name: schema for name, schema in self.events.items() if hears(transition.event, name)} or None
 
     def declared(self, spot: ExpressionSite, part: str, finding: ExpressionFinding) -> Iterator[Related]:
-        """Where the context keys stand whose types don't fit."""
+        """Yield the places of the context keys whose types don't fit."""
         if finding.code == TYPE_MISMATCH:
             keys = [*re.findall(r"\bcontext\.(\w+)", part), *([context_key(spot.key)] if spot.key else [])]
             for key in dict.fromkeys(k for k in keys if k in (self.report.document.data.get("context") or ())):
@@ -121,7 +121,7 @@ class _Expressions:
                 )
 
     def nulls(self, part: str, finding: ExpressionFinding) -> str:
-        """What parts have in common whose one context key begins with nothing, where something was meant."""
+        """Return the common cause of findings about one context key that is null and has no type; else empty."""
         keys = {key for key in re.findall(r"\bcontext\.(\w+)", part) if key in self.machine.context}
         key = keys.pop() if len(keys) == 1 and finding.code == TYPE_MISMATCH else ""
         alone = key and self.machine.context[key] is None and key not in self.machine.types
@@ -138,7 +138,7 @@ class _Expressions:
             self.report.diagnostics.append(found)
 
     def truth(self, spot: ExpressionSite, finding: ExpressionFinding, part: str, place: Place) -> bool:
-        """Whether the types don't fit because the context says `no` for `false`; that is told there, once."""
+        """Return whether the type mismatch comes from `no` for `false` in the context; it is reported there, once."""
         for key in re.findall(r"\bcontext\.(\w+)", part) if "true or false" in finding.message else ():
             there = self.report.document.place(("context", key))
             told = next((d for d in self.report.diagnostics if d.code in _TRUTHS and d.place == there), None)

@@ -1,4 +1,4 @@
-"""Whether somebody answers a fall, and a walk that comes to nothing, where a behaviour moves the robot's legs."""
+"""Falls and failed walks: whether a behaviour that moves the robot's legs reacts to them."""
 
 from lumen.language.actions import PlacedAction, nested
 from lumen.language.commands import GoTo, Move, Play, Walk
@@ -19,14 +19,14 @@ FALLEN = "fallen"
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report the first action that moves the legs where nobody waits for a fall, and walks that may end in nothing."""
+    """Report the first action that moves the legs if nothing waits for a fall, and walks whose failure is unhandled."""
     for name, machine in draft.behaviors.items():
         if (report := draft.report("behaviors", name)).whole:
             _walks(machine, report)
     if any(hears(d, FALLEN) for machine in draft.behaviors.values() for d in descriptors(machine)):
         return
     if draft.names.get("behaviors", frozenset()) > draft.behaviors.keys():
-        return  # one that could not be read may
+        return  # a behaviour that could not be read may wait for it
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         first = next((site.step for site in action_sites(machine) if _legs(draft, site.step)), None)
@@ -38,10 +38,10 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
-    """States that walk and have only `onDone`: where somebody stands in the way, the robot stays there for ever."""
+    """Report states that walk and have only `onDone`: if a visitor is in the way, the robot stays there forever."""
     led: dict[str | None, bool] = {None: False}
-    """Whether something leads on from a state, or from one around it."""
-    for path, state in machine.states.items():  # each after the one around it
+    """Whether a transition leads on from a state, or from a state around it."""
+    for path, state in machine.states.items():  # a parent comes before its children
         led[path] = led[state.parent] or any(map(_leads_on, state.transitions))
         walk = next((step for step in nested(state.do) if isinstance(step.action, GoTo | Walk)), None)
         if walk is None or led[path]:
@@ -53,7 +53,7 @@ def _walks(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _leads_on(transition: Transition) -> bool:
-    """Whether it is taken after an error, or when some time is over, or at once."""
+    """Return whether a transition is taken after an error, after some time, or at once."""
     event = transition.event
     after_error = not event or event == "*" or event.startswith("error")
     return bool(transition.targets) and (transition.delay is not None or after_error)

@@ -1,4 +1,4 @@
-"""Features that were installed beside Lumen and can't be used."""
+"""Features of other installed packages that can't be used."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from lumen.project.draft import ProjectDraft
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report each distribution whose feature, or a row of it, is ignored."""
+    """Report each installed package with a feature, or a row of one, that is ignored."""
     draft.loose += broken_features()
     for feature, where in _imported():
         if distribution_of(feature):
@@ -17,7 +17,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _imported() -> Iterator[tuple[Feature, str]]:
-    """Iterate over the import strings that nothing else of lint imports."""
+    """Yield the import strings of features that the rest of lint does not import."""
     yield from rows("codes")
     yield from rows("forgets")
     yield from ((feature, row.make) for feature, row in rows("parts"))

@@ -1,4 +1,4 @@
-"""Jumps into a state with `for` from outside: no entry was taken of its list."""
+"""Transitions from outside into a state with `for`, at which no entry of its list is selected."""
 
 from lumen.language.diagnostics import ERROR, Code
 from lumen.language.machines import MachineDefinition, StateKind
@@ -15,7 +15,7 @@ JUMP_INTO_FOR = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report transitions that lead from outside of a state with `for` to one within it."""
+    """Report transitions from outside a state with `for` to a state within it."""
     for name, machine in draft.behaviors.items():
         loops = [path for path, state in machine.states.items() if state.for_each]
         if loops:

@@ -1,4 +1,4 @@
-"""Gestures that accompany speech: joints that can't follow, and tags that no text has."""
+"""Gestures that accompany speech: movements that are too fast, and tags that no text has."""
 
 from lumen.language.diagnostics import did_you_mean
 from lumen.language.gestures import GestureLibrary, merged
@@ -13,7 +13,7 @@ from lumen.project.project_folders import GESTURES_FOLDER
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report gestures that are too fast for the robot, or that go with nothing anybody says."""
+    """Report gestures that are too fast for the robot, and tags without phrases."""
     tags = (BEAT, *merged(draft.gestures).phrases)
     for name, library in draft.gestures.items():
         report = draft.report(GESTURES_FOLDER, name)

@@ -1,4 +1,4 @@
-"""The stage against what is under it in the hall: where there is no ground, the robot walks off and falls."""
+"""The stage against the ground below it in the hall: beyond the ground the robot falls."""
 
 from collections.abc import Iterable
 
@@ -10,17 +10,17 @@ from lumen.project.draft import ProjectDraft
 STAGE_BEYOND_GROUND = Code("stage-beyond-ground", "robot", WARNING, "the stage extends beyond the ground of the hall")
 
 POINTS = 9
-"""Points of the stage along each axis that are looked at, its edges among them."""
+"""The number of points of the stage along each axis that are checked, including its edges."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report a stage of which a part has nothing under it, in a hall that says where its ground is."""
+    """Report a stage that extends beyond the ground, in a hall whose ground is known."""
     if draft.settings is None or draft.main is None or draft.settings.stage is None:
         return
     parts = ground_of(draft, draft.settings.hall)
     start = GroundPoint(0.0, 0.0)
     if not covered(parts, start):
-        return  # what is no box, as a field of heights, is not read
+        return  # height fields and other shapes are not read
     if astray := next((point for point in _points(draft.settings.stage) if not covered(parts, point)), None):
         message = f"{draft.settings.hall} has no ground at x {astray.x:.3g}, y {astray.y:.3g} m: the robot would fall"
         hint = f"keep the stage on the ground, which extends {reach(parts)}, or enlarge the ground in the hall"
@@ -28,18 +28,18 @@ def check(draft: ProjectDraft) -> None:
 
 
 def ground_of(draft: ProjectDraft, hall: str) -> tuple[Obstacle, ...]:
-    """The ground of a hall of the project, for the robot's feet; empty if it is unknown."""
+    """Return the ground of a hall of the project; empty if it is unknown."""
     content = draft.files.get(f"models/{hall}") or draft.lent.get(f"models/{hall}")
     return ground(content) if content else ()
 
 
 def covered(parts: Iterable[Obstacle], point: GroundPoint) -> bool:
-    """Whether there is ground at a point."""
+    """Return whether there is ground at a point."""
     return any(part.distance(point) < 1e-6 for part in parts)
 
 
 def reach(parts: Iterable[Obstacle]) -> str:
-    """The extent of the ground under the start, in words."""
+    """Describe the extent of the ground under the start."""
     part = next(part for part in parts if part.distance(GroundPoint(0.0, 0.0)) < 1e-6)
     length, width = part.length + part.round, part.width + part.round
     x, y = (part.x - length, part.x + length), (part.y - width, part.y + width)
@@ -47,7 +47,7 @@ def reach(parts: Iterable[Obstacle]) -> str:
 
 
 def _points(stage: Stage) -> list[GroundPoint]:
-    """Points of the stage, its corners first."""
+    """Return the points of the stage to check, its corners first."""
     shares = sorted((i / (POINTS - 1) for i in range(POINTS)), key=lambda share: -abs(share - 0.5))
     return [
         GroundPoint(stage.x[0] + a * (stage.x[1] - stage.x[0]), stage.y[0] + b * (stage.y[1] - stage.y[0]))

@@ -1,4 +1,4 @@
-"""Guards: those that are always or never true, and transitions that an earlier one leaves nothing for."""
+"""Guards that are always or never true, and transitions that are never taken because of an earlier one."""
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -27,18 +27,18 @@ SHADOWED_TRANSITION = Code(
 )
 
 MAX_COMPARED_CANDIDATES = 60
-"""Candidates of a state that are compared with one another."""
+"""The number of candidates of a state that are compared with one another."""
 
 
 class HeardCall(NamedTuple):
-    """`heard(text, name)` as a whole guard."""
+    """A guard that is a single call `heard(text, name)`."""
 
     text: ExpressionNode
     name: str
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report guards whose answer is known, and candidates that come too late."""
+    """Report constant guards, and candidates that are never or only partly reached."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for guard in dict.fromkeys(spot.text for spot in expression_sites(machine) if spot.guard):
@@ -52,7 +52,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _told(report: DocumentReport, where: NodePath) -> bool:
-    """Whether something else was already said of the text at that path."""
+    """Return whether the text at that path already has a finding."""
     place = report.document.place(where)
     return any(d.place.line == place.line and d.place.column >= place.column for d in report.diagnostics)
 
@@ -90,7 +90,7 @@ def _simple(node: ExpressionNode) -> bool:
 
 
 def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
-    """Candidates that are never taken, or not for all that they name, because an earlier one is."""
+    """Report candidates that are never taken, or not for all their phrases, because of an earlier one."""
     earlier: list[Transition] = []
     heard = any(transition.hears for transition in state.transitions)
     candidates = sorted(state.transitions, key=_turn) if heard else state.transitions
@@ -101,7 +101,7 @@ def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> N
 
 
 def _taken_within(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
-    """Report ends of invoked behaviours that the states within always take first."""
+    """Report ends of invoked behaviours that the inner states always handle first."""
     ends = [t for t in state.transitions if t.where[len(state.where) :][:1] == ("invoke",)]
     inner = list(_below(machine, state)) if ends else []
     leaves = [s for s in inner if s.kind in (StateKind.ATOMIC, StateKind.FINAL)]
@@ -119,26 +119,26 @@ def _taken_within(machine: MachineDefinition, state: State, report: DocumentRepo
 
 
 def _below(machine: MachineDefinition, state: State) -> Iterator[State]:
-    """The states in a state, in document order."""
+    """Yield the descendants of a state, in document order."""
     for path in state.children:
         yield machine.states[path]
         yield from _below(machine, machine.states[path])
 
 
 def _takes(transition: Transition, end: Transition) -> bool:
-    """Whether a transition is always selected by the event of an end."""
+    """Return whether a transition is always taken at the event of an end."""
     return not (transition.guard or transition.hears or transition.approve) and covers(transition, end)
 
 
 def _turn(transition: Transition) -> int:
-    """When a transition of a state is asked: rows of `hears` after `heard` and before `*`, and `else` after that."""
+    """Return the rank of a transition among those of its state: `hears` comes after `heard`, before `*` and `else`."""
     if transition.hears:
         return 3 if transition.hears.way == "else" else 1
     return 2 if transition.event == "*" else 0
 
 
 def covers(earlier: Transition, later: Transition) -> bool:
-    """Whether every event that the later one waits for comes to the earlier one first.
+    """Return whether every event that matches the later transition matches the earlier one first.
 
     Among rows of `hears` the words of their phrases decide, except between candidates of one row. The end of a `do`, of
     nested states and of an invoked behaviour is also an event, which `*` and `done` match; the end of a timer is not.
@@ -155,10 +155,13 @@ def covers(earlier: Transition, later: Transition) -> bool:
 
 
 def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinition, report: DocumentReport) -> bool:
-    """Whether the earlier one leaves nothing for the later one; said, as is where it leaves less than was meant."""
+    """Return whether the earlier transition leaves nothing for the later one.
+
+    That is reported, and so is an earlier transition that leaves only a part.
+    """
     related = [(earlier.where, "the earlier one is here")]
     if earlier.guard is None:
-        if report.broken(earlier.where):  # what was taken out of it may have been its guard
+        if report.broken(earlier.where):  # the part that could not be read may have been its guard
             return False
         line = report.document.place(earlier.where).line
         message = f"this transition is never taken: the one on line {line} is always taken first"
@@ -199,7 +202,7 @@ def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinitio
 
 
 def heard_call(node: ExpressionNode) -> HeardCall | None:
-    """The call of `heard` that a guard is, None where it is another."""
+    """Return the call of `heard` that is the whole guard; None for any other guard."""
     match node:
         case FunctionCall(function="heard", arguments=(text, Literal(value=str() as name))):
             return HeardCall(text, name)
@@ -207,7 +210,7 @@ def heard_call(node: ExpressionNode) -> HeardCall | None:
 
 
 def _taken(first: HeardCall, second: HeardCall, machine: MachineDefinition) -> frozenset[str]:
-    """The phrases of the second in which one of the first is heard."""
+    """Return the phrases of the second call that contain a phrase of the first."""
     if first.text != second.text or first.name not in machine.phrases or second.name not in machine.phrases:
         return frozenset()
     one, other = machine.phrases[first.name], machine.phrases[second.name]
@@ -219,7 +222,7 @@ def _taken(first: HeardCall, second: HeardCall, machine: MachineDefinition) -> f
 
 
 def _alike(one: Transition, other: Transition) -> bool:
-    """Whether it does not matter which of the two is taken."""
+    """Return whether two transitions have the same effect."""
     return one.targets == other.targets and not (one.actions or other.actions)
 
 

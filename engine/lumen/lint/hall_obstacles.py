@@ -1,4 +1,4 @@
-"""What is solid in a hall and as high as the robot, seen from above: read from its MJCF, without MuJoCo."""
+"""Solid objects in a hall, seen from above, up to the robot's height: read from its MJCF, without MuJoCo."""
 
 from collections.abc import Mapping
 from contextlib import suppress
@@ -8,10 +8,10 @@ from typing import NamedTuple
 from lumen.lint.mjcf_elements import ModelElement, mjcf_elements
 
 ROBOT_HEIGHT, TOE_HEIGHT = 0.6, 0.02
-"""What begins above the one over the stage, or ends below the other, is in nobody's way [m]."""
+"""Heights above the stage [m]: objects that begin above the first or end below the second are in no robot's way."""
 
 STAGE_SITE = "stage"
-"""The site on which the robot starts."""
+"""The site at which the robot starts."""
 
 
 class GroundPoint(NamedTuple):
@@ -22,27 +22,33 @@ class GroundPoint(NamedTuple):
 
 
 class Obstacle(NamedTuple):
-    """Something solid: a rectangle that reaches `length` and `width` [m] around a point, turned by `yaw` [rad].
+    """A solid object from above: a rectangle around (`x`, `y`), turned by `yaw` and enlarged by `round` on all sides.
 
-    `round` [m] goes around it; where the others are 0 that is a disc.
+    If `length` and `width` are 0, it is a disc.
     """
 
     x: float
+    """The x of the centre [m]."""
     y: float
+    """The y of the centre [m]."""
     yaw: float
+    """The turn to the left [rad]."""
     length: float
+    """Half the extent along the rectangle's own x axis [m]."""
     width: float
+    """Half the extent along its own y axis [m]."""
     round: float
+    """The radius by which the rectangle is enlarged [m]."""
 
     def distance(self, point: GroundPoint) -> float:
-        """How far it is from that point [m]; 0 within it."""
+        """Return the distance of a point from the object [m]; 0 inside."""
         dx, dy, c, s = point.x - self.x, point.y - self.y, cos(self.yaw), sin(self.yaw)
         along, across = abs(dx * c + dy * s) - self.length, abs(dy * c - dx * s) - self.width
         return max(0.0, hypot(max(along, 0.0), max(across, 0.0)) - self.round)
 
 
 class _Frame(NamedTuple):
-    """Where a body stands; `yaw` is None where it is turned in another way than around the vertical."""
+    """The position of a body [m]; `yaw` [rad] is None if it is also turned about another axis than the vertical."""
 
     x: float = 0.0
     y: float = 0.0
@@ -51,14 +57,14 @@ class _Frame(NamedTuple):
 
 
 def obstacles(content: bytes) -> tuple[Obstacle, ...]:
-    """The solid boxes, cylinders, spheres and capsules of a hall; none where it can't be read or has no stage."""
+    """Return the solid boxes, cylinders, spheres and capsules of a hall; none if it is unreadable or has no stage."""
     stage, found = _solids(content)
     low, high = stage.z + TOE_HEIGHT, stage.z + ROBOT_HEIGHT
     return tuple(_from(stage, shape) for shape, bottom, top in found if top > low and bottom < high)
 
 
 def ground(content: bytes) -> tuple[Obstacle, ...]:
-    """What the robot can stand on in a hall, as high as its stage; none where the hall does not tell."""
+    """Return the surfaces of a hall level with its stage, on which the robot can stand; none if they are unknown."""
     stage, found = _solids(content)
     return tuple(_from(stage, shape) for shape, _, top in found if abs(top - stage.z) < TOE_HEIGHT)
 
@@ -68,7 +74,7 @@ def _from(stage: _Frame, shape: Obstacle) -> Obstacle:
 
 
 def _solids(content: bytes) -> tuple[_Frame, list[tuple[Obstacle, float, float]]]:
-    """The site of the stage, and what is solid with its bottom and top; nothing is where there is no such site."""
+    """Return the frame of the stage, and the solid objects with their bottom and top [m]; none without a stage."""
     elements, fault = mjcf_elements(content)
     if fault:
         return _Frame(), []
@@ -92,7 +98,7 @@ def _solids(content: bytes) -> tuple[_Frame, list[tuple[Obstacle, float, float]]
 
 
 def _defaults(elements: list[ModelElement]) -> dict[str, Mapping[str, str]]:
-    """What geoms of each class have that do not say it themselves; the outermost class has no name."""
+    """Return the default attributes of geoms by class; the outermost class has an empty name."""
     classes: dict[int, str] = {}
     found: dict[str, Mapping[str, str]] = {"": {}}
     for element in elements:
@@ -124,9 +130,9 @@ def _placed(around: _Frame, said: Mapping[str, str], degrees: bool) -> _Frame:
 
 
 def _shape(around: _Frame, said: Mapping[str, str], degrees: bool) -> tuple[Obstacle, float, float] | None:
-    """What a solid geom covers, its bottom and its top; None of one that nothing touches.
+    """Return the outline of a solid geom, its bottom and its top [m]; None if nothing collides with it.
 
-    One that is turned in another way than around the vertical is the ball around it.
+    A geom that is turned about another axis than the vertical becomes the ball around it.
     """
     if said.get("contype", "1") == "0" and said.get("conaffinity", "1") == "0":
         return None
@@ -136,7 +142,7 @@ def _shape(around: _Frame, said: Mapping[str, str], degrees: bool) -> tuple[Obst
         middle = " ".join(str((a + b) / 2) for a, b in zip(ends[:3], ends[3:], strict=True))
         return _ball(_placed(around, {"pos": middle}, degrees), size[0] + dist(ends[:3], ends[3:]) / 2)
     frame = _placed(around, said, degrees)
-    if kind == "plane" and frame.yaw is not None:  # MuJoCo's planes have no end, whatever size is drawn
+    if kind == "plane" and frame.yaw is not None:  # MuJoCo's planes are infinite, whatever their drawn size
         return Obstacle(frame.x, frame.y, frame.yaw, inf, inf, 0.0), -inf, frame.z
     upright = {"box": (3, 2), "cylinder": (2, 1), "capsule": (2, 1), "sphere": (1, 0)}
     if kind not in upright:
@@ -156,7 +162,7 @@ def _ball(frame: _Frame, reach: float) -> tuple[Obstacle, float, float]:
 
 
 def _numbers(text: str) -> list[float]:
-    """Raises ValueError for what is none, or endless."""
+    """Return the numbers in a text. Raises ValueError for other words and for infinite numbers."""
     found = [float(word) for word in text.split()]
     if any(not -inf < number < inf for number in found):
         raise ValueError(text)
@@ -164,7 +170,7 @@ def _numbers(text: str) -> list[float]:
 
 
 def nearest(shapes: tuple[Obstacle, ...], begin: GroundPoint, end: GroundPoint, step: float = 0.02) -> float:
-    """How near the straight way from one point to another comes to something solid [m], to within `step`."""
+    """Return the smallest distance between a straight walk and any object [m], checked every `step` [m]."""
     count = max(1, round(hypot(end.x - begin.x, end.y - begin.y) / step))
     points = [
         GroundPoint(begin.x + (end.x - begin.x) * i / count, begin.y + (end.y - begin.y) * i / count)

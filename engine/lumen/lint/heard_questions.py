@@ -1,4 +1,4 @@
-"""Questions of knowledge/ that a row of `hears` takes, so that they never come to the state that asks."""
+"""Questions of knowledge/ that match a row of `hears`, so that they never reach the state that asks."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
@@ -21,7 +21,7 @@ SHADOWED_QUESTION = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report questions that take another row than one that answers, in each state whose `else` leads to an `ask`."""
+    """Report questions that match a row which does not answer, in each state whose `else` leads to an `ask`."""
     files = [passage.file for passage in draft.knowledge.values()]
     for name in hearing_behaviors(draft) if files else ():
         remembered(draft, ("heard questions", name), name, files, None, _Questions(draft, name).check)
@@ -36,7 +36,7 @@ class _Questions(HeardRows):
 
     @cached_property
     def slots(self) -> set[str]:
-        """The names that have a phrase without words of its own."""
+        """The names that have a phrase made only of slots."""
         return {entry.name for _, entry in hearing_of(self.machine).finder.slots_only}
 
     def check(self) -> None:
@@ -57,15 +57,15 @@ class _Questions(HeardRows):
             yield from written_phrases(self.draft.report(KNOWLEDGE_FOLDER, name), ("questions",))
 
     def active_with(self, state: State) -> list[str]:
-        """The states with rows that may be active with that one: their rows come before its `else`."""
+        """Return the states with rows that may be active with this one: their rows are tried before its `else`."""
         return [path for path in self.by_state if together(self.machine, state, self.machine.states[path])]
 
     def taken(self, text: str, state: State, active: Iterable[str]) -> Iterator[Taken]:
-        """The rows that a sentence takes before the `else` of a state."""
+        """Yield the rows that match a sentence before the `else` of a state."""
         finds = hearing_of(self.machine).read(text).finds
         for path in active:
             if self.names[path].isdisjoint(finds) and not (path == state.path and self.slots & self.names[path]):
-                continue  # most sentences hold none of its phrases
+                continue  # most sentences contain none of its phrases
             order = self.order(path, text)
             if order.first:
                 yield order.first[0]
@@ -73,18 +73,18 @@ class _Questions(HeardRows):
                 yield order.late[0]
 
     def answers(self, row: SaidRow) -> bool:
-        """Whether a sentence that takes a row is answered, or a guard decides that."""
+        """Return whether a sentence that matches this row gets an answer, or may do so depending on a guard."""
         guarded = any(t.guard for t in row.candidates)
         return guarded or self.asks(row) or self.machine.answers.keys() >= set(row.hears.names)
 
     def asks(self, row: SaidRow) -> bool:
-        """Whether a row asks what is known, or leads to a state that does."""
+        """Return whether a row asks the knowledge, or leads to a state that does."""
         states = (state for t in row.candidates for state in self.entered(t.targets))
         blocks = [*(t.actions for t in row.candidates), *((*state.entry, *state.do) for state in states)]
         return any(_asks(block) for block in blocks)
 
     def entered(self, targets: Iterable[str]) -> Iterator[State]:
-        """The states that are entered with these."""
+        """Yield the states that are entered with these targets."""
         for path in targets:
             state = self.machine.states[path]
             yield state
@@ -103,7 +103,7 @@ class _Questions(HeardRows):
         question.report.diagnostics.append(found)
 
     def remedy(self, question: WrittenPhrase, find: Find, row: SaidRow, state: State) -> str:
-        """The hint at a question that takes a row: a row `asked NAME` is missing, or the phrase is too short."""
+        """Return the hint for a question that matches a row: add a row `asked NAME`, or lengthen the phrase."""
         name, words = find.entry.name, self.words(question.text, find)
         asked = hearing_of(self.machine).read(question.text).is_asked(find)
         if asked and (within(row.state.path, state.path) or within(state.path, row.state.path)):

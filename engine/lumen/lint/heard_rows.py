@@ -1,6 +1,6 @@
-"""The rows of `hears` of a behaviour, and which of them a sentence takes, for rules that try sentences.
+"""The rows of `hears` of a behaviour, and which of them a sentence matches, for rules that try sentences.
 
-No statechart runs here: `Hearing` is asked, state by state.
+No statechart runs for that: `Hearing` is used directly, state by state.
 """
 
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -22,7 +22,7 @@ from lumen.talk.hearing import RowOrder, Taken, hearing_of
 from lumen.talk.sample_sentences import of_phrase
 
 MAX_EXAMPLES = 5_000
-"""The most sentences that are tried for a row: a file may have very many phrases."""
+"""The greatest number of sentences that are tried for a row, because a file may have very many phrases."""
 
 
 class SaidRow(NamedTuple):
@@ -33,20 +33,24 @@ class SaidRow(NamedTuple):
 
     @property
     def hears(self) -> Hears:
+        """The row itself, as each of its candidates has it."""
         found = self.candidates[0].hears
         assert found is not None  # they are candidates of a row
         return found
 
     @property
     def numbers(self) -> frozenset[int]:
+        """The numbers of its candidates in the machine."""
         return frozenset(t.hears.number for t in self.candidates if t.hears)
 
     @property
     def path(self) -> NodePath:
+        """The path of its key in the file."""
         return descriptor_path(self.candidates[0])
 
     @property
     def shown(self) -> str:
+        """The row in the words of a message."""
         return f"`{self.hears.key}` of {shown(self.state)}"
 
 
@@ -59,7 +63,7 @@ class SaidPhrase(NamedTuple):
 
 
 class HeardRows:
-    """The rows of one behaviour by the paths of their states; those that could not be read are left out."""
+    """The rows of one behaviour by the paths of their states; unreadable rows are left out."""
 
     def __init__(self, draft: ProjectDraft, behavior: str) -> None:
         self.draft, self.behavior = draft, behavior
@@ -72,11 +76,11 @@ class HeardRows:
         return (row for rows in self.by_state.values() for row in rows)
 
     def order(self, path: str, text: str) -> RowOrder:
-        """The rows of the state at that path that a sentence may take."""
+        """Return the rows of the state at that path that a sentence can match, in the order in which they are tried."""
         return hearing_of(self.machine).order(min(self.by_state[path][0].numbers), text, {})
 
     def taker(self, taken: Sequence[Taken], row: SaidRow) -> Taken | None:
-        """The first of the rows that are taken, if it is another than this one; None if a guard decides."""
+        """Return the first match if it is certain and not `row`; None if it is `row`, or if a guard decides."""
         for one in taken:
             other = self.by_number[one.number]
             if one.number in row.numbers or any(t.guard for t in other.candidates) or _alike(other, row):
@@ -85,11 +89,11 @@ class HeardRows:
         return None
 
     def words(self, text: str, find: Find) -> str:
-        """The words of a sentence in which a phrase was found."""
+        """Return the words of a sentence in which a phrase was found."""
         return hearing_of(self.machine).read(text).said(find.start, find.end)
 
     def examples(self, names: Iterable[str]) -> Iterator[SaidPhrase]:
-        """Every form of the phrases of these names as a sentence, those of Lumen last; at most MAX_EXAMPLES."""
+        """Yield every form of the phrases of these names as a sentence, Lumen's own last; at most MAX_EXAMPLES."""
         return islice(self._examples(names), MAX_EXAMPLES)
 
     def _examples(self, names: Iterable[str]) -> Iterator[SaidPhrase]:
@@ -109,30 +113,30 @@ class HeardRows:
             yield from (SaidPhrase(text, name, None) for text in said)
 
     def written(self, home: DocumentReport, name: str, path: NodePath) -> Iterator[SaidPhrase]:
-        """Every form of the phrases at a path of a file."""
+        """Yield every form of the phrases at a path of a file."""
         for written in written_phrases(home, path):
             said = (sentence.text for sentence in of_phrase(written.text, self.machine.lists))
             yield from (SaidPhrase(text, name, written) for text in said)
 
     def around(self, path: str) -> Iterator[State]:
-        """The state at a path and those around it, from the inside out."""
+        """Yield the state at a path and its ancestors, from the inside out."""
         at: str | None = path
         while at is not None:
             yield self.machine.states[at]
             at = self.machine.states[at].parent
 
     def between(self, leaf: str, outer: str) -> list[State]:
-        """A state and those around it that lie in another one."""
+        """Return a state and its ancestors up to, but without, the state `outer`."""
         return [state for state in self.around(leaf) if within(state.path, outer) and state.path != outer]
 
     def leaves(self, outer: str) -> list[str]:
-        """The atomic states in a state; itself if it is one."""
+        """Return the paths of the atomic states in a state; only itself if it is atomic."""
         states = self.machine.states.values()
         return [state.path for state in states if state.kind is StateKind.ATOMIC and within(state.path, outer)]
 
 
 def hearing_behaviors(draft: ProjectDraft) -> list[str]:
-    """The behaviours with rows of `hears` whose files, and words files, are read as a whole."""
+    """Return the behaviours that have rows of `hears` and whose files, including those of words, are free of errors."""
     found = []
     for name, machine in draft.behaviors.items():
         words = [word for word in machine.words if word in draft.own_words]
@@ -146,8 +150,9 @@ def hearing_behaviors(draft: ProjectDraft) -> list[str]:
 def remembered(
     draft: ProjectDraft, slot: Hashable, behavior: str, other: Collection[str], given: object, find: Callable[[], None]
 ) -> None:
-    """Report what `find` reports in the files of a behaviour's phrases and in the `other` ones, or did when it was run
-    last, if all of these files are the same, and so is what else is `given`.
+    """Add the findings of `find` in the files of a behaviour's phrases and in the `other` files.
+
+    If all these files and `given` are the same as in the last call with this `slot`, its findings are reused.
     """
     machine = draft.behaviors[behavior]
     words = [f"{WORDS_FOLDER}/{name}.yaml" for name in machine.words if name in draft.own_words]
@@ -167,7 +172,7 @@ def remembered(
 
 
 def shown(state: State) -> str:
-    """A state in the words of a message."""
+    """Return the name of a state for a message."""
     return f"`{state.name}`" if state.path else "the behaviour"
 
 
@@ -180,6 +185,6 @@ def _rows(state: State) -> tuple[SaidRow, ...]:
 
 
 def _alike(one: SaidRow, other: SaidRow) -> bool:
-    """Whether it makes no difference which of two rows is taken."""
+    """Return whether two rows have the same effect."""
     done, instead = ([(t.guard, t.targets, t.actions) for t in row.candidates] for row in (one, other))
     return done == instead

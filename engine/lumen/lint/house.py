@@ -1,4 +1,4 @@
-"""Several robots in one house: whether their names and their places keep them apart."""
+"""Several robots in one house: whether their names and places differ enough."""
 
 from itertools import combinations
 from math import hypot
@@ -11,11 +11,11 @@ CLASHING_NAMES = Code("clashing-names", "robot", ERROR, "two robots of a house w
 SAME_PLACE = Code("same-place", "robot", WARNING, "two robots start too close to each other")
 
 ROOM = 0.5
-"""How far two robots have to be apart so that their arms do not meet [m]."""
+"""The least distance between two robots [m], so that their arms do not touch."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report robots whose names or places are too much alike."""
+    """Report robots with clashing names, or that start too close to each other."""
     settings, report = draft.settings, draft.main
     if settings is None or report is None or not settings.told_apart:
         return

@@ -1,7 +1,7 @@
-"""Findings that somebody has looked at and wants no more: `# lumen: ignore[CODE] reason` in the YAML.
+"""Findings that the author has reviewed and does not want to see again: `# lumen: ignore[CODE] reason` in the YAML.
 
-At the end of a line the comment is about that line; on a line of its own about the next one that holds something. Only
-warnings can be ignored: what is an error keeps the exhibition from starting, whoever looks away.
+A comment at the end of a line is about that line; a comment on its own line is about the next line with content. Only
+warnings can be ignored: errors keep the exhibition from starting in any case.
 """
 
 import re
@@ -23,18 +23,22 @@ _WORD = re.compile(r"[^,\s]+")
 
 
 class Ignore(NamedTuple):
-    """A comment: its place, the line that it is about, the codes and where each stands, and the reason."""
+    """An ignore comment."""
 
     place: Place
+    """The place of the comment."""
     line: int
+    """The number of the line that it is about."""
     codes: tuple[tuple[str, Place], ...]
+    """The codes that it names, each with its place."""
     reason: str
+    """The reason; empty if it gives none."""
 
 
 def obey(
     diagnostics: Iterable[Diagnostic], documents: Mapping[str, Document], codes: Mapping[str, Code]
 ) -> tuple[Diagnostic, ...]:
-    """The findings without those that are ignored, and what is wrong with the comments, by file and line."""
+    """Return the findings without the ignored ones, and with faults of the ignore comments, by file and line."""
     found = list(diagnostics)
     comments = [c for d in documents.values() if "ignore" in d.text for c in comments_of(d)]
     if not comments:
@@ -48,7 +52,7 @@ def obey(
 
 
 def comments_of(document: Document) -> Iterator[Ignore]:
-    """The comments of a document; what looks like one inside a text is none."""
+    """Yield the ignore comments of a document; similar text inside a value is not one."""
     lines = lines_of(document.text)
     for number, line in enumerate(lines, 1):
         if (match := _COMMENT.search(line)) and not _in_text(document, number, match.start() + 1):
@@ -72,7 +76,7 @@ def _codes(place: Place, match: re.Match[str]) -> tuple[tuple[str, Place], ...]:
 
 
 def _in_text(document: Document, line: int, column: int) -> bool:
-    """Whether a place lies inside a key, or inside a value that is a text; a map goes on behind the comments in it."""
+    """Return whether a place is inside a key or a text value; comments between the keys of a map are not."""
     here = (line, column)
     return any(
         _holds(span.key, here) or (_holds(span.value, here) and isinstance(document.find(path), str))
@@ -91,7 +95,7 @@ def _spot(diagnostic: Diagnostic) -> tuple[str, int, str]:
 def _faults(
     comment: Ignore, gone: set[tuple[str, int, str]], codes: Mapping[str, Code], *, whole: bool
 ) -> Iterator[Diagnostic]:
-    """What is wrong with a comment; what it does not hide can be told where the whole project was looked at."""
+    """Yield the faults of a comment; that it hides nothing is certain only if the `whole` project was checked."""
     if not comment.codes:
         yield _fault(UNKNOWN_CODE, comment.place, "this comment names no code", "write `ignore[CODE] reason`")
     elif not comment.reason:

@@ -1,4 +1,4 @@
-"""Passages: questions that two claim, answers that are too long or past their day, robots that are not there."""
+"""Passages: questions in two passages, long answers, dates that have passed, unknown robots."""
 
 from datetime import date
 
@@ -16,11 +16,11 @@ LONG_ANSWER = Code("long-answer", "knowledge", WARNING, "an answer is too long f
 UNKNOWN_ROBOT = Code("unknown-robot", "references", ERROR, "a name refers to a robot that is not in lumen.yaml")
 
 MAX_ANSWER = 400
-"""Characters that a robot should say at once: about half a minute."""
+"""The greatest number of characters that a robot should say at once: about half a minute."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what is wrong with passages by themselves, with one another, and by lumen.yaml."""
+    """Report faults of single passages, questions that two passages share, and robots that are not in lumen.yaml."""
     claims: dict[tuple[str, str], tuple[Passage, Place]] = {}
     for name, passage in draft.knowledge.items():
         report = draft.report(KNOWLEDGE_FOLDER, name)
@@ -40,7 +40,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _claims(passage: Passage, report: DocumentReport, claims: dict[tuple[str, str], tuple[Passage, Place]]) -> None:
-    """Questions that this passage or one before has: the same words in the same order."""
+    """Report questions that an earlier passage for the same robots has: the same words in the same order."""
     for language, questions in passage.questions.items():
         for i, question in enumerate(questions):
             here = report.document.place(first(report, ("questions", language, i), ("questions", language)))
@@ -60,5 +60,5 @@ def _days(passage: Passage, report: DocumentReport, today: date | None) -> None:
 
 
 def words_of(question: str) -> str:
-    """Its words, whatever the signs between them, and however they are written."""
+    """Return the words of a question, without punctuation and differences of spelling that hearing ignores."""
     return " ".join(folded(question))

@@ -1,4 +1,4 @@
-"""Styles of life: the states that name one, and what these ask of the robot's joints."""
+"""Styles of life: the states that name one, and the demands of each style on the robot's joints."""
 
 from collections.abc import Iterator
 
@@ -15,16 +15,16 @@ LIFE_TOO_FAR = Code("life-too-far", "motions", ERROR, "a style of life moves a j
 LIFE_TOO_FAST = Code("life-too-fast", "motions", ERROR, "a style of life moves a joint too fast")
 
 POSTURE = "Stand"
-"""The posture around which a robot lives."""
+"""The posture around which the style moves."""
 
 MAX_LEG_SWAY = 0.05
-"""How far a joint of the legs may sway [rad]: the weight stays within the soles, whatever the others do."""
+"""The greatest sway of a leg joint [rad], at which the weight stays over the soles whatever the other joints do."""
 
 _Fault = tuple[Code, NodePath, str, str]
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report styles that no file has, and sways that a joint can't follow, or that could tip the robot."""
+    """Report unknown styles, and movements of a style that a joint can't follow or that could tip the robot."""
     references = References(draft)
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -42,7 +42,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Judge:
-    """Looks at one style; `units` are those of its file."""
+    """Checks one style; `units` are those of its file."""
 
     def __init__(self, style: LifeStyle, body: Body, units: JointUnits) -> None:
         self._style, self._body, self._units = style, body, units
@@ -105,7 +105,7 @@ class _Judge:
             yield from self._reach(turn.joint, angle + self._style.amplitudes.get(turn.joint, 0.0), path)
 
     def _reach(self, joint: str, angle: float, path: NodePath) -> Iterator[_Fault]:
-        """Whether it can go so far to either side of where it stands."""
+        """Yield a fault if a joint can't turn by `angle` [rad] to both sides of its angle in the posture."""
         limits, stands = self._body.joints[joint], self._body.postures.get(POSTURE, {}).get(joint, 0.0)
         room = max(0.0, min(stands - limits.minimum, limits.maximum - stands))
         if angle > room:

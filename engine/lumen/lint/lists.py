@@ -1,4 +1,4 @@
-"""Lists of entries: every entry of one has the same keys."""
+"""Lists of entries, in which every entry has the same keys."""
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -19,7 +19,7 @@ Entries = Sequence[Mapping[str, Any]]
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report entries that lack a key, or have one that no other has."""
+    """Report entries that lack a key, or have a key that no other entry has."""
     for tables in word_tables(draft):
         for name, entries in tables.lists.items():
             _even(tables.report, name, entries)
@@ -28,7 +28,7 @@ def check(draft: ProjectDraft) -> None:
 def listed_texts(
     tables: Iterable[WordTables], languages: Collection[str]
 ) -> Iterator[tuple[DocumentReport, NodePath, Mapping[str, Any]]]:
-    """Yield each text or list of phrases in an entry that is given by language: it has one of these languages."""
+    """Yield each text or list of phrases in an entry that is given by language, in at least one of these languages."""
     for table in tables:
         for name, entries in table.lists.items():
             for i, entry in enumerate(entries):
@@ -41,10 +41,10 @@ def listed_texts(
 
 
 def is_torn(report: DocumentReport, path: NodePath, value: Mapping[str, Any], entries: Entries) -> bool:
-    """Whether a map is a text by language whose other keys are parts of its texts, and no map of data.
+    """Return whether a map is a text by language with parts of its texts as other keys, rather than a map of data.
 
-    Without a colon such a key is certain. With one it counts if it can be no name, or if other entries have a text by
-    language in this place, and none has a map with the same key.
+    Such a key without a colon is certain. With a colon it counts if it can't be a name, or if other entries have a text
+    by language in this place and none has a map with the same key.
     """
     name = str(path[-1])
     others = [entry[name] for entry in entries if name in entry and entry[name] is not value]
@@ -59,18 +59,21 @@ def is_torn(report: DocumentReport, path: NodePath, value: Mapping[str, Any], en
 
 
 def entry_schema(entries: Entries) -> dict[str, Any]:
-    """The JSON Schema of what stands in a list; that an entry lacks a key is told of the entry."""
+    """Return the JSON Schema of an entry of a list, in which every key is required.
+
+    Entries that lack a key have their own finding.
+    """
     fields = {key: _field([e[key] for e in entries if key in e]) for entry in entries for key in entry}
     return {"type": "object", "properties": fields, "required": sorted(fields)}
 
 
 def list_schema(entries: Entries) -> dict[str, Any]:
-    """The JSON Schema of a whole list."""
+    """Return the JSON Schema of a whole list."""
     return {"type": "array", "items": entry_schema(entries) if entries else {}}
 
 
 def _field(values: list[Any]) -> dict[str, Any]:
-    """The schema of what expressions find under a key, a text by language being a text."""
+    """Return the schema of the values under a key as expressions see them: a text by language is a string."""
     kinds = {"string" if is_text_by_language(value) else schema_of(value)["type"] for value in values}
     return {"type": sorted(kinds)}
 

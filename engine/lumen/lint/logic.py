@@ -1,8 +1,8 @@
-"""What can be told of a condition without running it: that it is never true, always true, or follows from another.
+"""Static evaluation of conditions: whether one is never true, always true, or implied by another.
 
-A condition is spread into alternatives, each a set of claims about one value: that it is true, equal to something, or
-below a number. An alternative whose claims about some value can't hold together never comes true. What is not
-understood claims nothing, so that an answer of yes is certain.
+A condition is expanded to alternatives, each a set of claims about single values: that a value is true, equal to
+something, or less than a number. An alternative with contradicting claims is impossible. Parts that are not understood
+make no claim, so an answer of True is certain.
 """
 
 from collections.abc import Iterable, Iterator
@@ -15,16 +15,19 @@ from lumen.expressions.tree import Binary, ExpressionNode, FunctionCall, ListLit
 from lumen.language.numbers import is_number
 
 MAX_ALTERNATIVES = 24
-"""Alternatives of a condition that are looked at; of one with more, nothing is told."""
+"""The greatest number of alternatives of a condition; if it has more, nothing is concluded."""
 
 _OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
 _TURNED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
 _COUNTS = {"hour": (0, 23), "minute": (0, 59), "size": (0, inf)}
-"""Functions whose values are whole numbers from one bound to the other."""
+"""Functions that return whole numbers between two bounds."""
 
 
 class Claim(NamedTuple):
-    """`subject` is a value as the expression writes it; `sign` a comparison with `value`, or `is` true or false."""
+    """A claim about `subject`, a value as the expression writes it: `sign` is a comparison with `value`, or `is`.
+
+    With `is` the `value` is True or False.
+    """
 
     subject: str
     sign: str
@@ -35,12 +38,12 @@ Alternative = frozenset[Claim]
 
 
 def tree(source: str) -> ExpressionNode:
-    """The tree of an expression that is known to be sound."""
+    """Return the tree of an expression that is known to be valid."""
     return parse_expression(source)
 
 
 def never(*conditions: ExpressionNode) -> bool:
-    """Whether these conditions can't all be true at once."""
+    """Return whether these conditions can't all be true at once."""
     spread = [_alternatives(condition, True) for condition in conditions]
     if any(s is None for s in spread):
         return False
@@ -51,12 +54,12 @@ def never(*conditions: ExpressionNode) -> bool:
 
 
 def always(condition: ExpressionNode) -> bool:
-    """Whether a condition can't be false (where it does not fail)."""
+    """Return whether a condition can't be false, unless it raises an error."""
     return never(Unary("!", condition))
 
 
 def implies(condition: ExpressionNode, other: ExpressionNode) -> bool:
-    """Whether the other condition is true wherever the first one is."""
+    """Return whether the other condition is true whenever the first one is."""
     return never(condition, Unary("!", other))
 
 
@@ -68,7 +71,7 @@ def _size(ways: Iterable[list[Alternative]]) -> int:
 
 
 def _alternatives(node: ExpressionNode, value: bool) -> list[Alternative] | None:
-    """The ways in which a condition can have that value; None where there are too many."""
+    """Return the alternatives in which a condition has that value; None if there are too many."""
     match node:
         case Literal(value=bool() as given):
             return [frozenset()] if given == value else []
@@ -95,7 +98,7 @@ def _alternatives(node: ExpressionNode, value: bool) -> list[Alternative] | None
 
 
 def _compared(left: ExpressionNode, sign: str, right: ExpressionNode) -> list[Alternative] | None:
-    """The one way in which a comparison holds; none where it is one of literals that does not."""
+    """Return the single alternative in which a comparison holds; none if it compares literals and is false."""
     if isinstance(left, Literal) and isinstance(right, Literal):
         claim = Claim("", sign, right.value)
         return [frozenset()] if _holds(left.value, claim) else []
@@ -109,7 +112,7 @@ def _compared(left: ExpressionNode, sign: str, right: ExpressionNode) -> list[Al
 
 
 def _counted(node: ExpressionNode) -> Iterator[Claim]:
-    """What is known of a value before anything is asked."""
+    """Yield the bounds of a function's result."""
     if isinstance(node, FunctionCall) and node.function in _COUNTS:
         low, high = _COUNTS[node.function]
         yield Claim(unparse(node), ">=", low)
@@ -117,7 +120,7 @@ def _counted(node: ExpressionNode) -> Iterator[Claim]:
 
 
 def _possible(alternative: Alternative) -> bool:
-    """Whether the claims about each value can hold together."""
+    """Return whether the claims about each value can hold together."""
     about: dict[str, list[Claim]] = {}
     for claim in alternative:
         about.setdefault(claim.subject, []).append(claim)
@@ -138,7 +141,7 @@ def _agree(claims: list[Claim]) -> bool:
 
 
 def _bound(claims: list[Claim], strict: str, loose: str, start: float) -> tuple[float, bool]:
-    """The tightest bound on one side, and whether it can be reached."""
+    """Return the tightest bound on one side, and whether the bound itself is allowed."""
     bounds = [(c.value, c.sign == loose) for c in claims if c.sign in (strict, loose) and is_number(c.value)]
     values = [start, *(value for value, _ in bounds if isinstance(value, int | float))]
     tightest = max(values) if start < 0 else min(values)
@@ -150,7 +153,7 @@ def _excludes(claim: Claim, value: float) -> bool:
 
 
 def _holds(value: object, claim: Claim) -> bool:
-    """Whether a claim holds of that value; what can't be compared is left open."""
+    """Return whether a claim holds for that value; True if they can't be compared."""
     if claim.sign in ("==", "!="):
         same = (
             is_number(value) == is_number(claim.value) and value == claim.value and _kind(value) == _kind(claim.value)

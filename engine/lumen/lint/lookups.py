@@ -1,4 +1,4 @@
-"""Names of files that a rule looks up, and where in a document it points."""
+"""Names of files that a rule looks up, and paths in a document."""
 
 from collections.abc import Mapping
 
@@ -25,7 +25,7 @@ UNKNOWN_STORY = Code("unknown-story", "references", ERROR, "a name refers to a s
 
 
 def first(report: DocumentReport, *paths: NodePath) -> NodePath:
-    """The first of these paths that stands in the document: a value may be written short or at length."""
+    """Return the first of these paths that is in the document, else the last: a value may have a short form."""
     return next((path for path in paths if path in report.document.spans), paths[-1])
 
 
@@ -38,18 +38,18 @@ _FOLDERS: Mapping[str, tuple[str, str, Code]] = {
     "model": ("models", "robot", UNKNOWN_MODEL),
     "message": ("schemas/messages", "message schema", UNKNOWN_MESSAGE),
 }
-"""For each kind of file its folder, what a message calls it, and the code of a name that is none's."""
+"""For each kind of file its folder, its name in messages, and the code of an unknown name."""
 
 
 class References:
-    """Looks names of files up; a folder in which nothing is, is reported once."""
+    """Looks up names of files; an empty folder is reported only once."""
 
     def __init__(self, draft: ProjectDraft) -> None:
         self._root, self._names = draft.root, draft.names
         self._missing = draft.missing
 
     def look_up(self, report: DocumentReport, path: NodePath, kind: str, name: str, *, key: bool = False) -> bool:
-        """Whether there is a file of that kind and name; reported at `path` where there is none."""
+        """Return whether there is a file of that kind and name; if not, report that at `path`."""
         folder, what, code = _FOLDERS[kind]
         names = self._names.get(folder, frozenset())
         if name in names:

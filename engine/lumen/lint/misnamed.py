@@ -1,4 +1,4 @@
-"""Files of the project's folders that are not read because their names are only nearly right."""
+"""Files in the project's folders that are not read because their names are slightly wrong."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from lumen.project.project_folders import ALL_FOLDERS, MAIN_FILE
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report endings with capital letters or followed by another ending, and folders with capital letters."""
+    """Report files whose ending has capital letters or is followed by another one, and folders with capital letters."""
     if draft.root is None:
         return
     for folder in ("", *sorted((*ALL_FOLDERS, *MISTAKEN_FOLDERS))):

@@ -1,4 +1,4 @@
-"""The elements of an MJCF file and where they stand, as far as a file may go; MuJoCo itself is not imported here."""
+"""The elements of an MJCF file and their positions, within size limits; MuJoCo itself is not imported here."""
 
 from collections.abc import Mapping
 from math import prod
@@ -6,9 +6,9 @@ from typing import NamedTuple
 from xml.parsers import expat
 
 MAX_ELEMENT_DEPTH = 100
-"""Levels of elements within one another: MuJoCo and the parsers before it call themselves for each."""
+"""The number of nested levels: MuJoCo and the parsers before it recurse at each."""
 MAX_ELEMENTS = 20_000
-"""Elements of a file, and as how many one of them may be repeated."""
+"""The number of elements of a file, and of repetitions of one of them."""
 
 _BOUNDS: Mapping[str, tuple[tuple[tuple[str, ...], float], ...]] = {
     "replicate": ((("count",), MAX_ELEMENTS),),
@@ -18,41 +18,51 @@ _BOUNDS: Mapping[str, tuple[tuple[tuple[str, ...], float], ...]] = {
     "texture": ((("width", "height"), 64_000_000),),
     "option": tuple(((name,), 10_000) for name in ("iterations", "ls_iterations", "noslip_iterations")),
 }
-"""Of an element, attributes whose product is how much is made or done of it, and the most that this may be."""
+"""For each element, attributes whose product is the amount of work or memory, and its limit."""
 
 
 class ModelElement(NamedTuple):
-    """The beginning of an XML element, and where it stands; the outermost one has the depth 0."""
+    """The start tag of an XML element, with its place; the outermost element has the depth 0."""
 
     name: str
+    """The name of the tag."""
     attributes: Mapping[str, str]
+    """Its attributes."""
     line: int
+    """Its line, from 1."""
     column: int
+    """Its column, from 1."""
     depth: int = 0
+    """The number of elements around it."""
 
 
 class ModelFault(NamedTuple):
-    """What keeps a model from being read, where, over how many characters, and what would be right."""
+    """A reason why a model can't be read."""
 
     line: int
+    """The line, from 1."""
     column: int
+    """The column, from 1."""
     length: int
+    """The number of characters to mark."""
     message: str
+    """The fault, in words."""
     hint: str
+    """The remedy."""
 
 
 class _EnoughError(Exception):
-    """The rest of the file is not looked at."""
+    """Raised to stop reading the rest of the file."""
 
 
 def mjcf_elements(content: bytes) -> tuple[list[ModelElement], ModelFault | None]:
-    """The elements of a model, and what is wrong with it as XML, or as more than a model may be."""
+    """Return the elements of a model and its first fault, invalid XML or an exceeded limit; None if it has none."""
     reader = _Reader()
     try:
         reader.parser.Parse(content, True)
     except _EnoughError:
         return reader.elements, reader.fault
-    except ValueError as error:  # an encoding of several bytes
+    except ValueError as error:  # a multi-byte encoding, which expat can't read
         return [], ModelFault(1, 1, 1, f"this is not valid XML: {error}", "save it as UTF-8")
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
@@ -95,7 +105,7 @@ class _Reader:
 
 
 def _too_many(name: str, attributes: Mapping[str, str]) -> str:
-    """Which attributes ask for more than may be, and how much; empty where none do."""
+    """Return the attributes whose product exceeds the limit of the element, in words; empty if none does."""
     for keys, most in _BOUNDS.get(name, ()):
         words = (word for key in keys for word in attributes.get(key, "").split())
         if (product := prod(abs(_number(word)) or 1.0 for word in words)) > most:
@@ -104,7 +114,7 @@ def _too_many(name: str, attributes: Mapping[str, str]) -> str:
 
 
 def _number(word: str) -> float:
-    """The number that a word is; one where it is none, which MuJoCo tells."""
+    """Return the number that a word is; 1.0 for any other word, which MuJoCo reports."""
     try:
         return float(word)
     except ValueError:

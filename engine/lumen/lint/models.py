@@ -1,6 +1,6 @@
-"""The MJCF of the robot and of the hall: whether it is XML, and whether what it names is there.
+"""The MJCF of the robot and of the hall: whether it is valid XML, and whether the files and joints that it names exist.
 
-What MuJoCo thinks of it is told when it is simulated; it is not imported here.
+MuJoCo's own errors are reported when it simulates the model; it is not imported here.
 """
 
 import os
@@ -22,7 +22,7 @@ _MODELS = "models"
 
 
 def outside(draft: ProjectDraft, folder: str, name: str) -> bool:
-    """Whether a name leads out of models/, or through a link out of the project where that lies in a folder."""
+    """Return whether a name leads out of models/, or, if the project is in a folder, by a link out of the project."""
     path = os.path.normpath(os.path.join(_MODELS, folder, name))
     if "\\" in name or "\0" in name or not path.startswith(_MODELS + os.sep):
         return True
@@ -33,7 +33,7 @@ def outside(draft: ProjectDraft, folder: str, name: str) -> bool:
 
 
 def missing(draft: ProjectDraft, folder: str, name: str) -> str:
-    """What to do about a file in models/ that is not there; empty where it is, or where nobody knows."""
+    """Return the hint for a file that is missing in models/; empty if it is there, or if that is unknown."""
     if draft.root is None:
         return ""
     models = draft.root / _MODELS
@@ -58,11 +58,11 @@ FOREIGN_FILE = Code("foreign-file", "robot", ERROR, "a model refers to a file ou
 
 _FOLDERS = {"mesh": "meshdir", "skin": "meshdir", "hfield": "meshdir", "flexcomp": "meshdir", "texture": "texturedir"}
 _NAMES = ("file", "fileright", "fileleft", "fileup", "filedown", "filefront", "fileback")
-"""Attributes that name a file."""
+"""The attributes that name a file."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report models that are no MJCF, files that they need and that are not there, and joints that they lack."""
+    """Report invalid MJCF, missing files that it names, and joints of the body that it lacks."""
     settings = draft.settings
     if settings is None:
         return
@@ -75,9 +75,9 @@ def check(draft: ProjectDraft) -> None:
 
 @dataclass
 class _ModelReader:
-    """Reads a model and what it includes, each file once, and reports what is wrong with them.
+    """Reads a model and the models that it includes, each once, and reports their faults.
 
-    Where the project lies in no folder, nobody knows whether what they name is there.
+    If the project is not in a folder, missing files are not reported, because that is unknown.
     """
 
     draft: ProjectDraft
@@ -85,7 +85,7 @@ class _ModelReader:
     around: list[str] = field(default_factory=list)
 
     def read(self, name: str) -> list[ModelElement]:
-        """The elements of a model, none where it can't be read."""
+        """Return the elements of a model; empty if it can't be read."""
         first, content = not self.seen, self.content(f"models/{name}")
         self.seen.add(name)
         if content is None:
@@ -105,7 +105,7 @@ class _ModelReader:
         return elements
 
     def content(self, file: str) -> bytes | None:
-        """What a file holds; one in a folder within models/, too."""
+        """Return the content of a file, in models/, one of its folders or a package; None if it can't be read."""
         if in_package(file):
             path = self.draft.looks.package_file(file.removeprefix("models/"))
             return read_regular(path, MAX_FILE_BYTES) if path else None
@@ -119,7 +119,7 @@ class _ModelReader:
         return None if isinstance(content, Unreadable) else content
 
     def named(self, model: str, elements: list[ModelElement]) -> None:
-        """Look for the files that a model names, and into those that it includes."""
+        """Report missing files that a model names, and read the models that it includes."""
         folders: dict[str, str] = {}
         for element in elements:
             if element.name == "compiler":
@@ -133,7 +133,7 @@ class _ModelReader:
                     self.include(model, element, os.path.normpath(name).replace(os.sep, "/"))
 
     def include(self, model: str, element: ModelElement, inner: str) -> None:
-        """Read what a model includes, where that was not done before."""
+        """Read an included model unless it has been read; report a model that includes itself."""
         if inner in self.around:
             place = model, element.line, element.column, len(element.name) + 1
             _say(self.draft, BROKEN_MODEL, *place, f"the model includes itself: {inner}", "delete this line")
@@ -141,7 +141,7 @@ class _ModelReader:
             self.read(inner)
 
     def found(self, model: str, element: ModelElement, folder: str, name: str) -> bool:
-        """Whether a file that an element names lies in models/ and is there; reported where not."""
+        """Return whether a file that an element names is in models/; report it if not."""
         place = model, element.line, element.column, len(element.name) + 1
         if outside(self.draft, folder, name):
             message = "this refers to a file outside models/, which Lumen does not read"
@@ -154,7 +154,7 @@ class _ModelReader:
 
 
 def _elements(draft: ProjectDraft, body: Body, elements: list[ModelElement]) -> None:
-    """Joints, links, sites and others that the description of the body names, and its model has not."""
+    """Report joints, links, sites and other elements that the body's description names and the model lacks."""
     assert draft.settings is not None
     if any(e.name in ("include", "attach", "replicate") for e in elements):
         return
@@ -174,7 +174,7 @@ def _elements(draft: ProjectDraft, body: Body, elements: list[ModelElement]) -> 
 
 
 def _role_elements(roles: Roles) -> Iterator[tuple[str, str, NodePath, bool]]:
-    """What the roles name in the model besides joints of `joints`: kind of element, name, and where it stands."""
+    """Yield what the roles name in the model besides `joints`: the kind of element, its name, its path, and False."""
     sensors = roles.sensors
     one: list[tuple[str, str, NodePath]] = [
         ("body", roles.torso, ("torso",)),
@@ -201,7 +201,7 @@ def _role_elements(roles: Roles) -> Iterator[tuple[str, str, NodePath, bool]]:
 
 
 def _listed(lists: Mapping[str, tuple[str, ...]]) -> Iterator[tuple[str, NodePath]]:
-    """Each name of these lists, and where it stands in them."""
+    """Yield each name of these lists, with its path in them."""
     return ((name, (key, i)) for key, names in lists.items() for i, name in enumerate(names))
 
 

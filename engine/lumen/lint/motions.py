@@ -1,4 +1,4 @@
-"""Motions: what they ask of the robot's joints on the way from key to key."""
+"""Motions: the demands of the movement between keys on the robot's joints."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -20,11 +20,11 @@ from lumen.project.units import JointUnits, joint_units
 TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
 
 
-"""The motions from posture to posture."""
+"""The folder of the motions between postures."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report where a joint would be too fast, or beyond its limits between two keys or beside another joint."""
+    """Report joints that would be too fast, or beyond their limits between two keys or because of another joint."""
     if draft.body is None:
         return
     body = replace(draft.body, passages=())
@@ -42,13 +42,16 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _excesses(motion: MotionDefinition, body: Body) -> tuple[tuple[Excess, ...], tuple[Excess, ...]]:
-    """Where a joint is too fast, and where it goes too far."""
+    """Return the points at which a joint is too fast, and those at which it goes too far."""
     course = Trajectory(motion)
     return tuple(overspeed(motion, body, course)), tuple(beyond_limits(motion, body, course))
 
 
 def _by_key(fast: Iterable[Excess]) -> list[list[Excess]]:
-    """The excesses of each key, the worst first: a key that comes too soon comes too soon for all of its joints."""
+    """Return the excesses of each keyframe, the worst first.
+
+    They are combined because a keyframe that comes too soon does so for all its joints.
+    """
     keys: dict[NodePath, list[Excess]] = {}
     for excess in sorted(fast, key=lambda e: -e.value / e.limit):
         keys.setdefault(_keyframe(excess.key.where), []).append(excess)
@@ -56,7 +59,7 @@ def _by_key(fast: Iterable[Excess]) -> list[list[Excess]]:
 
 
 def _keyframe(where: NodePath) -> NodePath:
-    """The path of the keyframe that a key stands in."""
+    """Return the path of the keyframe that contains a key."""
     return where[: max((n for n, step in enumerate(where) if step == "keyframes"), default=len(where)) + 2]
 
 
@@ -70,7 +73,7 @@ def _too_fast(report: DocumentReport, excesses: Sequence[Excess], units: JointUn
         names = ", ".join(f"`{name}`" for name in list(dict.fromkeys(e.joint for e in others))[:3])
         message += f"; also too fast: {names}{' and others' if len(others) > 3 else ''}"
     longer = more_time(excess.value / excess.limit)
-    cause = f"{report.document.file} {value:g} {limit:g}"  # of the left and of the right, wherever the pose stands
+    cause = f"{report.document.file} {value:g} {limit:g}"  # the same for left and right, and each use of a pose
     report(
         TOO_FAST,
         excess.key.where,
@@ -82,7 +85,7 @@ def _too_fast(report: DocumentReport, excesses: Sequence[Excess], units: JointUn
 
 
 def more_time(factor: float) -> str:
-    """How much longer a movement must take that is so many times too fast, in words: rounded up to two digits."""
+    """Return in words how much longer a movement must be that is `factor` times too fast, rounded up to two digits."""
     if factor >= 2:
         digits = 10.0 ** (len(str(int(factor))) - 2)
         return f"{ceil(factor / digits) * digits:g} times as much time"
@@ -111,7 +114,7 @@ def _too_far(report: DocumentReport, excess: Excess, units: JointUnits, body: Bo
 
 
 def _shown(excess: Excess, units: JointUnits, body: Body) -> tuple[float, float]:
-    """Value and limit in the file's unit, as many digits as tell them apart."""
+    """Return value and limit in the file's unit, rounded to as many digits as make them differ."""
     factor = units.factor(excess.joint, body)
     value, limit = excess.value / factor, excess.limit / factor
     digits = next((d for d in range(1, 6) if round(value, d) != round(limit, d)), 6)

@@ -1,4 +1,4 @@
-"""What a behaviour names: keys of the context, lists, and texts, by which phrases are asked for."""
+"""Names that a behaviour uses: keys of the context, lists, and texts that may name phrases."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -24,9 +24,10 @@ from lumen.talk.patterns import slots_of
 
 
 class Named(NamedTuple):
-    """`keys` of the context and `lists`, None where an expression may read any of them; all `texts` in quotes.
+    """The names that a behaviour uses.
 
-    The names in rows of `hears` are among the texts, and so are lists that a phrase has a slot of.
+    `keys` of the context and `lists` are None if an expression may read any of them. `texts` are all texts in quotes,
+    the names in rows of `hears`, and the lists of the slots of phrases.
     """
 
     keys: frozenset[str] | None
@@ -35,7 +36,7 @@ class Named(NamedTuple):
 
 
 def named_in(machine: MachineDefinition) -> Named:
-    """What a behaviour names whose expressions are known to be sound."""
+    """Return the names that a behaviour uses, whose expressions are known to be valid."""
     keys, lists, texts = set[str | None](), set[str | None](), set[str]()
     for root in _trees(machine):
         keys |= {*read_names(root, "context")}
@@ -47,7 +48,7 @@ def named_in(machine: MachineDefinition) -> Named:
 
 
 def looked_up(draft: ProjectDraft) -> set[str]:
-    """The tables of answers that expressions look up, where the first row with a phrase in the text wins."""
+    """Return the tables of answers that expressions look up with `lookup`, in which the first row that matches wins."""
     calls = (
         node.arguments[-1]
         for machine in draft.behaviors.values()
@@ -61,7 +62,7 @@ def looked_up(draft: ProjectDraft) -> set[str]:
 
 
 def heard_rows(machine: MachineDefinition) -> Iterator[Hears]:
-    """The rows of `hears` of all states."""
+    """Yield the rows of `hears` of all states."""
     yield from (t.hears for state in machine.states.values() for t in state.transitions if t.hears)
 
 
@@ -71,7 +72,7 @@ def _phrases(machine: MachineDefinition) -> Iterator[str]:
 
 
 def _trees(machine: MachineDefinition) -> Iterator[ExpressionNode]:
-    """Every expression, those in texts and in answers too."""
+    """Yield every expression, including those in texts and in answers."""
     sites = dict.fromkeys(site.text for site in expression_sites(machine))
     values = (row.value for rows in machine.answers.values() for row in rows)
     for text in (*sites, *(Template(t) for value in values for t in _texts(value))):
@@ -79,7 +80,7 @@ def _trees(machine: MachineDefinition) -> Iterator[ExpressionNode]:
 
 
 def trees(text: Expression | Template) -> Iterator[ExpressionNode]:
-    """The expression, or each of those in a text; of sound ones."""
+    """Yield the expression, or each of the expressions in a text, which must be valid."""
     if isinstance(text, Expression):
         yield tree(text.source)
     elif "{{" in text.text:
@@ -87,7 +88,7 @@ def trees(text: Expression | Template) -> Iterator[ExpressionNode]:
 
 
 def read_names(root: ExpressionNode, base: str) -> Iterator[str | None]:
-    """The names behind `base`, None where it stands alone or what follows is computed."""
+    """Yield the names read from `base`, as in `context.NAME`; None if `base` is used alone or the name is computed."""
     waiting = [root]
     while waiting:
         node = waiting.pop()

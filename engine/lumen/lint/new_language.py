@@ -1,4 +1,4 @@
-"""Another language for a project: a place for it wherever something is said or heard."""
+"""A further language for a project: an entry for it in every text and phrase."""
 
 import json
 from collections.abc import Mapping
@@ -12,10 +12,10 @@ from lumen.project.draft import ProjectDraft
 
 
 def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str, source: str) -> dict[str, bytes]:
-    """The files with a place for the language wherever there is one for `source`, whose words stand there to be read.
+    """Return the files with an entry for the language beside every one for `source`, whose words are copied into it.
 
-    A text that is said in whatever language was said in the only one so far: it gets both. Everything else in the files
-    stays as it is, comments included.
+    If the project had one language, a text without a language becomes a text in both. Everything else in the files,
+    including comments, stays as it is.
     """
     assert draft.main is not None  # the caller has checked the project
     edits: dict[str, list[Edit]] = {}
@@ -47,14 +47,14 @@ def _to_do(value: Any) -> Any:
 def beside(
     report: DocumentReport, text: FileText, around: NodePath, last: NodePath, entry: str, dash: str = ""
 ) -> Edit:
-    """Return the edit that writes an entry behind the last one: between brackets on its line, else on the next line."""
+    """Return the edit that writes an entry after the last one: between brackets on its line, else on the next line."""
     spans = report.document.spans
     whole, end = spans[around].value, spans[last].value
     if text.line(whole.line)[whole.column - 1 : whole.column] in ("{", "["):
         return Edit(Place(text.file, end.end_line, end.end_column, end.end_line, end.end_column), f", {entry}")
     line, nothing = end.end_line, ("", "#") if isinstance(report.document.find(last), list) else ("",)
     if not text.line(line)[: end.end_column - 1].strip():
-        line -= 1  # the parser sees its end where the next thing begins
+        line -= 1  # the parser places its end where the next element begins
     while line > end.line and text.line(line).strip()[:1] in nothing:
         line -= 1
     column = len(text.line(line)) + 1

@@ -1,7 +1,7 @@
-"""The codes of what lint finds only where it is asked to.
+"""The codes of findings that lint reports only on request.
 
-With `--against`, of a reload: `run/reload/against.py`. With `--physics`, of motions:
-`features/simulation/trials/verdict.py`, which would make every lint begin later if it was imported for its codes.
+`--against` checks a reload: `run/reload/against.py`. `--physics` checks motions:
+`features/simulation/trials/verdict.py`, which is too slow to import for its codes in every run of lint.
 """
 
 from lumen.language.diagnostics import ERROR, INFO, WARNING, Code

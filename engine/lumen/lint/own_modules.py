@@ -1,4 +1,4 @@
-"""Code of the project's own that lumen.yaml names: programs that it starts or waits for, and the robot's driver."""
+"""The project's own code that lumen.yaml names: programs that it starts or waits for, and the robot's driver."""
 
 from lumen.feature import rows
 from lumen.language.diagnostics import ERROR, WARNING, Code, did_you_mean
@@ -15,11 +15,11 @@ MISSING_DRIVER = Code("missing-driver", "robot", ERROR, "the driver of the robot
 
 _SCRIPTS = (".py", ".js", ".mjs", ".ts", ".sh", ".rb", ".pl", ".lua", ".jar")
 SHORTEST_HEALTH = 1.0
-"""The shortest time between two signs of life that can be watched [s]: programs send two a second."""
+"""The shortest time between two signs of life that can be monitored [s]: programs send two a second."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report names of other events, signs of life that come too often, and programs and drivers that are missing."""
+    """Report names that clash with events, too frequent signs of life, and missing programs and drivers."""
     if draft.settings is None or draft.main is None:
         return
     _driver(draft)
@@ -41,7 +41,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _driver(draft: ProjectDraft) -> None:
-    """Report a driver that is not in drivers/; one of a package is not imported here."""
+    """Report a driver that is missing in drivers/; a driver in a package is not imported here."""
     if draft.root is None or draft.main is None or draft.settings is None:
         return
     own = draft.settings.robots.get(draft.settings.robot)
@@ -58,7 +58,7 @@ def _driver(draft: ProjectDraft) -> None:
 
 
 def _program(draft: ProjectDraft, name: str, command: tuple[str, ...]) -> None:
-    """Report a script or a program with a path that the project does not have."""
+    """Report a script, or a program given by a path, that is missing in the project."""
     if draft.root is None or draft.main is None:
         return
     for i, word in enumerate(command):

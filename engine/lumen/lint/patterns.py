@@ -20,16 +20,16 @@ DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can never 
 FOREIGN_PATTERN = Code("foreign-pattern", "hearing", WARNING, "a phrase uses the syntax of another tool")
 
 _SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;\n]")
-"""Signs without which a phrase can't be wrong here."""
+"""Characters without which a phrase can't be wrong here."""
 
 _PATTERN_SIGNS = re.compile(r"[()\[\]{}|]")
 _MIN_PARTS = 3
-"""Parts between commas from which on they are alternatives: fewer may be a sentence."""
+"""The number of parts between commas from which they count as alternatives; fewer may be a sentence."""
 _SAME_BEGINNING = 3
-"""Letters that two words begin with if they are forms of one: "dance, dancing"."""
+"""The number of equal letters at the beginning of two words that counts as two forms of one: "dance, dancing"."""
 
 _MAX_TORN = 10
-"""Parts before and behind one in which the rest of a torn pattern is looked for."""
+"""The number of phrases before and after one in which the rest of a torn pattern is searched for."""
 
 _FOREIGN: tuple[tuple[re.Pattern[str], str, str], ...] = (
     (

@@ -1,4 +1,4 @@
-"""The places of lumen.yaml: whether they are there, on the stage, and told apart, and who walks to them."""
+"""The places in lumen.yaml: whether they exist, are on the stage, far enough apart, and used."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -28,11 +28,11 @@ _ENTRY = re.compile(r"\{\{\s*(?:in_language\()?context\.(?P<key>\w+)\.entry\.(?P
 _LIST = re.compile(r"lists\.(\w+)")
 
 SOLE_REACH = 0.1
-"""How far a sole reaches from the point between the feet [m]."""
+"""The extent of a sole from the point between the feet [m]."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report places that are unknown, out of reach, alike or unused, and headings in another unit than the file's."""
+    """Report places that are unknown, out of reach, too close or unused, and headings in the wrong unit."""
     if draft.settings is None or draft.main is None:
         return
     walked, places = set(), draft.settings.section(HallPlaces).by_name
@@ -49,7 +49,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def known_place(draft: ProjectDraft, report: DocumentReport, path: NodePath, name: str) -> bool:
-    """Whether lumen.yaml has that place; reported at `path` where it does not, and was readable."""
+    """Return whether lumen.yaml has that place; if it was readable and does not, report that at `path`."""
     assert draft.settings
     assert draft.main
     places = draft.settings.section(HallPlaces).by_name
@@ -64,7 +64,7 @@ def known_place(draft: ProjectDraft, report: DocumentReport, path: NodePath, nam
 
 
 def _named(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath, str]]:
-    """The places that behaviours walk to, stories expect, and passages are about, by name."""
+    """Yield the places named by walks of behaviours, expectations of stories, and passages, each with its path."""
     for behavior, machine in draft.behaviors.items():
         for site in action_sites(machine):
             if isinstance(site.step.action, GoTo) and "{{" not in site.step.action.to:
@@ -80,7 +80,7 @@ def _named(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath, str]
 
 
 def _listed(draft: ProjectDraft, machine: MachineDefinition) -> Iterator[tuple[DocumentReport, NodePath, str]]:
-    """The places that entries of a list name, where a `for` walks to them."""
+    """Yield the places named in a list's entries to which a `for` walks."""
     loops = {state.for_each.key: state.for_each for state in machine.states.values() if state.for_each}
     walks = {step.to for site in action_sites(machine) if isinstance(step := site.step.action, GoTo)}
     for found in filter(None, map(_ENTRY.fullmatch, sorted(walks))):
@@ -95,7 +95,7 @@ def _listed(draft: ProjectDraft, machine: MachineDefinition) -> Iterator[tuple[D
 
 
 def _computed(draft: ProjectDraft) -> bool:
-    """Whether some walk's place is known only while it runs."""
+    """Return whether the place of some walk is known only at run time."""
     actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
     texts = [action.to for action in actions if isinstance(action, GoTo)]
     return any(not isinstance(part, str) for text in texts for part in split_template(text))
@@ -129,7 +129,7 @@ def _on_stage(main: DocumentReport, name: str, place: HallPlace, stage: Stage) -
 
 
 def _apart(main: DocumentReport, places: Iterable[tuple[str, HallPlace]]) -> None:
-    """Two places so close that the robot may be at both."""
+    """Report pairs of places so close that the robot may be at both."""
     for (one, a), (other, b) in combinations(places, 2):
         apart = hypot(a.x - b.x, a.y - b.y)
         if apart < a.within + b.within - 1e-9:
@@ -140,7 +140,7 @@ def _apart(main: DocumentReport, places: Iterable[tuple[str, HallPlace]]) -> Non
 
 
 def _heading(main: DocumentReport, name: str) -> None:
-    """A heading that is hardly meant in the file's unit."""
+    """Report a heading that is implausible in the file's unit."""
     heading, unit = main.document.find(("places", name, "heading")), main.document.find(("units", "angle")) or "deg"
     if not isinstance(heading, int | float):
         return

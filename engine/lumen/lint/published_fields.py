@@ -1,4 +1,4 @@
-"""Fields of what is published that the messages of the route do not have."""
+"""Fields of published bodies that the schema of the route does not have."""
 
 from collections.abc import Mapping
 
@@ -10,7 +10,7 @@ from lumen.project.draft import ProjectDraft
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report a field that a schema forbids, or that is nearly called as one that it describes."""
+    """Report fields that a schema forbids, or whose name is almost that of a described field."""
     routes = draft.settings.routes if draft.settings else {}
     for name, machine in draft.behaviors.items():
         for site in action_sites(machine):

@@ -1,4 +1,4 @@
-"""What behaviours send to one another: those that they invoke, the one that invoked them, and other robots'."""
+"""The recipients of `send`: invoked behaviours, the invoking behaviour, and other robots' behaviours."""
 
 from collections.abc import Iterator
 
@@ -24,7 +24,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def recipients(draft: ProjectDraft, name: str, send: Send) -> list[MachineDefinition]:
-    """The behaviours that hear what a behaviour of that name sends; none where they could not be read."""
+    """Return the behaviours that receive what this behaviour sends; empty if they could not be read."""
     if send.to == PARENT:
         return [machine for machine in draft.behaviors.values() if name in set(_invoked(machine).values())]
     behavior = _invoked(draft.behaviors[name]).get(send.to)
@@ -34,7 +34,7 @@ def recipients(draft: ProjectDraft, name: str, send: Send) -> list[MachineDefini
 
 
 def sent_to(draft: ProjectDraft, machine: MachineDefinition) -> set[str]:
-    """The events that a behaviour is sent by those that invoke it, and by those that it invokes."""
+    """Return the events that other behaviours send to this one."""
     return {
         send.event
         for name, other in draft.behaviors.items()
@@ -44,7 +44,7 @@ def sent_to(draft: ProjectDraft, machine: MachineDefinition) -> set[str]:
 
 
 def _invoked(machine: MachineDefinition) -> dict[str, str]:
-    """The behaviours that a behaviour invokes, by their ids."""
+    """Return the names of the behaviours that a behaviour invokes, by their ids."""
     return {invoke.id: invoke.behavior for state in machine.states.values() for invoke in state.invoke}
 
 
@@ -56,7 +56,7 @@ def _known(machine: MachineDefinition, report: DocumentReport, site: ActionSite,
 
 
 def _sends(machine: MachineDefinition) -> Iterator[tuple[ActionSite, Send]]:
-    """What goes to other behaviours."""
+    """Yield each `send` to another behaviour, with its place."""
     for site in action_sites(machine):
         if isinstance(site.step.action, Send) and site.step.action.to:
             yield site, site.step.action

@@ -1,4 +1,4 @@
-"""Names that one file uses and another one has: behaviours, stories, motions, controllers, postures, routes."""
+"""Names in one file that another file must have: behaviours, stories, motions, controllers, postures, routes."""
 
 from lumen.language.actions import PublishBody
 from lumen.language.built_in_routes import BUILT_IN_ROUTES
@@ -21,7 +21,7 @@ WRONG_DIRECTION = Code("wrong-direction", "routes", WARNING, "a route is used in
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report every name in lumen.yaml and in the behaviours' actions that stands for nothing."""
+    """Report every unknown name in lumen.yaml and in the behaviours' actions."""
     references = References(draft)
     _main(draft, references)
     for name, machine in draft.behaviors.items():
@@ -31,7 +31,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def known_route(draft: ProjectDraft, report: DocumentReport, path: NodePath, route: str, *, key: bool = False) -> bool:
-    """Whether lumen.yaml has that route; reported at `path` where it does not, and was readable."""
+    """Return whether lumen.yaml has that route; if it was readable and does not, report that at `path`."""
     if draft.settings is None or draft.main is None:
         return False
     if route in draft.settings.routes:
@@ -105,7 +105,7 @@ def _action(draft: ProjectDraft, report: DocumentReport, references: References,
 def _names(
     draft: ProjectDraft, report: DocumentReport, references: References, where: NodePath, command: VerbCommand
 ) -> None:
-    """Each field of a command that names something, which stands alone behind the verb or under its key."""
+    """Check each field of a command that names something, written after the verb or under its own key."""
     verb = verb_of(command)
     for field in (field for field in verb.fields if field.names != "place"):
         name = getattr(command, field.name)

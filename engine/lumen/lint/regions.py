@@ -1,4 +1,4 @@
-"""Transitions from one region into another: they leave and enter the whole parallel state."""
+"""Transitions from one region into another, which exit and enter the whole parallel state."""
 
 from itertools import islice
 
@@ -27,7 +27,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _regions(machine: MachineDefinition) -> dict[str, dict[str, str]]:
-    """The regions of each parallel state, with their names."""
+    """Return the regions of each parallel state, as names by path."""
     states = machine.states
     return {
         path: {child: states[child].name for child in state.children if states[child].kind is not StateKind.HISTORY}
@@ -39,7 +39,10 @@ def _regions(machine: MachineDefinition) -> dict[str, dict[str, str]]:
 def _crossing(
     machine: MachineDefinition, transition: Transition, regions_of: dict[str, dict[str, str]], report: DocumentReport
 ) -> None:
-    """A parallel state is never the domain of a transition (SCXML's findLCCA), so the state around it is."""
+    """Report a transition whose domain would be a parallel state.
+
+    A parallel state is never a domain (findLCCA in SCXML), so the transition exits and enters all of it.
+    """
     path: str | None = transition.source
     while path is not None:
         parallel = machine.states[path]
@@ -70,7 +73,7 @@ def _crossing(
 
 
 def _child(machine: MachineDefinition, path: str, below: str) -> str:
-    """The child of a state in which a state below it is."""
+    """Return the child of a state that contains a descendant of it."""
     while (parent := machine.states[below].parent) is not None and parent != path:
         below = parent
     return below

@@ -1,4 +1,4 @@
-"""What `renamed` says of the past: nothing that is still there can have got another name."""
+"""Entries of `renamed`: the old name must no longer exist."""
 
 from lumen.language.diagnostics import ERROR, Code
 from lumen.language.machines import MachineDefinition
@@ -9,7 +9,7 @@ STILL_THERE = Code("still-there", "statecharts", ERROR, "`renamed` names a state
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report renamings of what still has its old name; two states may swap theirs."""
+    """Report renamings of states and keys that still have their old name; two may exchange their names."""
     for name, machine in draft.behaviors.items():
         _check(machine, draft.report("behaviors", name))
 

@@ -1,4 +1,4 @@
-"""Repairs a project as far as it can be done without asking; pure, from files to files."""
+"""Repairs of a project that need no decision: a pure function from files to files."""
 
 import re
 from collections import Counter
@@ -15,14 +15,17 @@ ProjectFiles = Mapping[str, bytes]
 FileLinter = Callable[[ProjectFiles], Sequence[Diagnostic]]
 
 _HIDING = frozenset((TAB, YAML_SYNTAX, DUPLICATE_KEY))
-"""What hides the rest of a file: repaired, it may show more."""
+"""Faults that hide the rest of a file, so that their repair may reveal more findings."""
 
 MAX_REPAIR_ROUNDS = 100
-"""What one finding stands for may be many: of one cause only the first is told."""
+"""The greatest number of rounds.
+
+Of findings with one cause only the first is reported, so a repair may reveal others.
+"""
 
 
 class Repair(NamedTuple):
-    """A finding, and the fix that made it go."""
+    """A finding, and the fix that removed it."""
 
     diagnostic: Diagnostic
     fix: Fix
@@ -31,16 +34,17 @@ class Repair(NamedTuple):
 def repaired(
     files: ProjectFiles, check: FileLinter, wanted: Callable[[Diagnostic], bool]
 ) -> tuple[ProjectFiles, list[Repair]]:
-    """The files with every fix of a wanted finding that leaves them better, and what was done.
+    """Return the files with every fix of a wanted finding that improves them, and the repairs that were made.
 
-    Better is: the finding is gone and none has come. All at once where that goes well, else by halves.
+    An improvement removes the finding and adds none. All fixes are tried together; if that fails, they are tried by
+    halves.
     """
     found, done = check(files), list[Repair]()
     for _ in range(MAX_REPAIR_ROUNDS):
         before = len(done)
         steps = _steps(found, files, wanted)
         while steps:
-            step = [r for r in steps.pop() if r.diagnostic in found]  # else repaired meanwhile, or moved
+            step = [r for r in steps.pop() if r.diagnostic in found]  # else it was repaired, or has moved
             after = applied(files, step)
             then = check(after) if step else found
             if step and _better(found, then, step):
@@ -56,14 +60,14 @@ def repaired(
 def _steps(
     found: Sequence[Diagnostic], files: ProjectFiles, wanted: Callable[[Diagnostic], bool]
 ) -> list[list[Repair]]:
-    """What to try, the last one first: the likeliest fix of each finding together, then the others one by one."""
+    """Return the repairs to try, from the end: the likeliest fix of each finding together, then the others singly."""
     proposals = [(d, fixes(d, files)) for d in found if wanted(d)]
     others = [[Repair(d, fix)] for d, proposed in proposals for fix in proposed[1:]]
     return [*reversed(others), [Repair(d, proposed[0]) for d, proposed in proposals if proposed]]
 
 
 def applied(files: ProjectFiles, repairs: Iterable[Repair]) -> dict[str, bytes]:
-    """The files with the edits of these repairs."""
+    """Return the files with the edits of these repairs."""
     edits: dict[str, list[Edit]] = {}
     for repair in repairs:
         for edit in repair.fix.edits:
@@ -72,7 +76,7 @@ def applied(files: ProjectFiles, repairs: Iterable[Repair]) -> dict[str, bytes]:
 
 
 def _better(before: Sequence[Diagnostic], after: Sequence[Diagnostic], step: Sequence[Repair]) -> bool:
-    """Whether all that the step is about has gone, and nothing has come but what it hid."""
+    """Return whether the findings of a step have gone, and only findings that it may have hidden have come."""
     then, now = Counter(map(_what, before)), Counter(map(_what, after))
     if any(now[_what(r.diagnostic)] >= then[_what(r.diagnostic)] for r in step):
         return False
@@ -80,10 +84,10 @@ def _better(before: Sequence[Diagnostic], after: Sequence[Diagnostic], step: Seq
 
 
 def _hidden(code: str, file: str, before: Sequence[Diagnostic], step: Sequence[Repair]) -> bool:
-    """Whether a finding that has come may have been there all the time, not to be seen for what the step repaired.
+    """Return whether a new finding may have existed before, hidden by a fault that the step repaired.
 
-    What is unused or never reached is looked for where there are no errors. Behind a word that could not be used may
-    be more of its file, and behind a file that could not be read more of the project; but never a new fault of form.
+    Unused and unreachable parts are searched for only if there are no errors. A word that could not be used may hide
+    findings in its file, and an unreadable file those in the project; but a new fault of form was not hidden.
     """
     if code in codes() and codes()[code].severity is not Severity.ERROR:
         return has_errors(before)
@@ -92,5 +96,5 @@ def _hidden(code: str, file: str, before: Sequence[Diagnostic], step: Sequence[R
 
 
 def _what(diagnostic: Diagnostic) -> tuple[str, str, str]:
-    """The finding without its place, which an edit above it moves."""
+    """Return a finding without its place, which an edit above it moves."""
     return diagnostic.place.file, diagnostic.code, re.sub(r"\d+", "0", diagnostic.message)

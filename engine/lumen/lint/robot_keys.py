@@ -1,6 +1,6 @@
-"""Routes that are called as in 2015, rewritten so that their keys hold the robot; the old key becomes their alias.
+"""Routes with keys of 2015, rewritten so that their keys contain the robot's name; the old key becomes their alias.
 
-No vocabulary asks for that: for one robot the old keys are right. Who has two on one broker wants it.
+No version of the vocabulary requires that: for one robot the old keys are right. Two robots on one broker need it.
 """
 
 from collections.abc import Mapping
@@ -15,13 +15,13 @@ from lumen.project.project_folders import MAIN_FILE
 from lumen.project.yaml_reader import parse
 
 NEW_KEYS: Mapping[str, str] = {alias: DEFAULT_KEYS[name] for name, alias in DEFAULT_ALIASES.items()}
-"""The key of today by that of 2015."""
+"""Today's key by the key of 2015."""
 
 
 def with_robot_keys(files: Mapping[str, bytes]) -> tuple[dict[str, bytes], list[Rewriting]]:
-    """The files with `{robot}` in the keys of their routes, and what is rewritten, where it stands.
+    """Return the files with `{robot}` in the keys of their routes, and the rewritten places.
 
-    Raises UsageError where lumen.yaml can't be read, or is laid out so that it has to be done by hand.
+    Raises UsageError if lumen.yaml can't be read, or its layout must be changed by hand.
     """
     document, old = _main(files), old_keys(files)
     done = {name: _rewriting(document, name, key) for name, key in old.items()}
@@ -32,9 +32,9 @@ def with_robot_keys(files: Mapping[str, bytes]) -> tuple[dict[str, bytes], list[
 
 
 def old_keys(files: Mapping[str, bytes]) -> dict[str, str]:
-    """The keys of 2015 that have no robot and are no alias, by the names of their routes.
+    """Return the keys of 2015 that have neither a robot nor an alias, by the names of their routes.
 
-    Raises UsageError where lumen.yaml can't be read.
+    Raises UsageError if lumen.yaml can't be read.
     """
     document = _main(files)
     routes = document.data.get("routes") if isinstance(document.data, Mapping) else None
@@ -65,7 +65,7 @@ def _rewriting(document: Document, name: str, key: str) -> Rewriting:
 
 
 def _check(content: bytes, before: Document, old: Mapping[str, str]) -> None:
-    """Raises UsageError where the text says something else now than it should, as one with anchors may."""
+    """Raise UsageError if the edited text does not have the wanted meaning, which is possible with anchors."""
     now = parse(MAIN_FILE, content)[0]
     wanted = dict(before.data)
     if old:

@@ -71,7 +71,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _removed(names: Collection[str], report: DocumentReport) -> None:
-    """Report rows that are null and whose name is none of a route that comes with Lumen."""
+    """Report rows that are null although no route of that name comes with Lumen."""
     for name in names:
         if name not in BUILT_IN_ROUTES:
             message = f"`null` can remove only a route that comes with Lumen, and `{name}` is not one"
@@ -82,7 +82,7 @@ def _removed(names: Collection[str], report: DocumentReport) -> None:
 
 
 def _password(bus: str, report: DocumentReport) -> None:
-    """A project is copied, mailed and published; what opens the broker's door is not."""
+    """Report credentials of the broker in lumen.yaml: a project is copied, mailed and published."""
     if credentials_of(bus):
         message = "a user name and a password are in a file that others can read"
         hint = "put them into the environment variable LUMEN_BUS, or into a file that LUMEN_BUS_CREDENTIALS names"
@@ -92,7 +92,7 @@ def _password(bus: str, report: DocumentReport) -> None:
 
 
 def _carried(report: DocumentReport, route: Route) -> None:
-    """What the options of a route promise must go together."""
+    """Report options of a route that contradict each other."""
     where = route.where
     if route.carried in (Carried.COMMAND, Carried.STOP) and (route.ttl or 0.0) > LONGEST_COMMAND_TTL:
         message = f"a {route.carried} may be performed {route.ttl:g} s late, when it is no longer wanted"
@@ -110,7 +110,10 @@ def _carried(report: DocumentReport, route: Route) -> None:
 
 
 def _pictures(report: DocumentReport, route: Route) -> None:
-    """Only a camera has a size, and it takes so many images a second; each form is one of images or of joints."""
+    """Report sizes, rates and content types that the route's sense can't have.
+
+    Only a camera has a size, and a limited rate; each content type belongs to either images or joints.
+    """
     if (of := _FORMED.get(route.content_type)) and route.sense != of:
         message = f"`{route.content_type}` is for the sense `{of}`, but this route carries `{route.sense}`"
         hint = f"write `of: {of}` beside it, or delete `content_type`"
@@ -125,7 +128,7 @@ def _pictures(report: DocumentReport, route: Route) -> None:
 
 
 def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentReport) -> None:
-    """Routes that a behaviour counts on without naming them."""
+    """Report missing routes that a behaviour needs without naming them."""
     if has_errors(draft.diagnostics):
         return
     for behavior, machine in draft.behaviors.items():
@@ -142,18 +145,21 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
 
 
 def _meant(route: Route) -> Iterator[str]:
-    """The routes of Lumen's own whose key a route has."""
+    """Yield the names of Lumen's own routes whose key a route has."""
     return (name for keys in (DEFAULT_KEYS, DEFAULT_ALIASES) for name, key in keys.items() if key == route.key)
 
 
 def _moves_joints(draft: ProjectDraft, action: object) -> bool:
-    """Whether an action switches a controller that moves joints."""
+    """Return whether an action switches a controller that moves joints."""
     controller = draft.controllers.get(action.controller) if isinstance(action, Track) else None
     return isinstance(action, Track) and not (controller and controller.signals and not controller.output_bindings)
 
 
 def _ways(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
-    """A route goes one way; a command that comes late is worse than one that does not come."""
+    """Report an outgoing route with an event, and an incoming command route without a time limit.
+
+    A command that is performed late is worse than one that is lost.
+    """
     if route.direction is Direction.OUT and route.event:
         message = f"messages on this route go out, so they can't become the event `{route.event}`"
         report(WRONG_DIRECTION, (*route.where, "event"), message, "write `direction: in`")
@@ -163,11 +169,11 @@ def _ways(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
 
 
 def _event(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
-    """A route that comes in and becomes an event should be waited for by somebody."""
+    """Report an incoming route whose event no behaviour waits for."""
     if route.direction is Direction.OUT or not draft.behaviors or has_errors(draft.diagnostics):
         return
     if route == BUILT_IN_ROUTES.get(route.name):
-        return  # `lumen new` writes such rows, and without its row the route would not be there
+        return  # `lumen new` writes such rows, and without its row the route would not exist
     bound = {b.route for c in draft.controllers.values() for b in c.input_bindings}
     if route.name not in bound and not any(
         hears(d, route.event) for m in draft.behaviors.values() for d in descriptors(m)

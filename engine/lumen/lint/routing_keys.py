@@ -1,4 +1,4 @@
-"""Routing keys: their form, and which are Lumen's own."""
+"""Routing keys: their form, and clashes with Lumen's own keys."""
 
 import re
 from collections.abc import Mapping
@@ -16,15 +16,15 @@ SHARED_KEY = Code("shared-key", "routes", WARNING, "robots that share a bus use 
 NEAR_KEY = Code("near-key", "routes", WARNING, "a routing key is almost the same as one of Lumen's own")
 
 MAX_ROUTING_KEY_BYTES = 255
-"""Of a routing key (AMQP 0-9-1, 3.1.1: a short string)."""
+"""The length limit of a routing key (AMQP 0-9-1, 3.1.1: a short string)."""
 NEAR = 0.8
-"""How like a prefix of ours a word has to be to be taken for a slip of it, as difflib measures."""
+"""The similarity (difflib's ratio) from which a first word counts as a misspelt prefix of Lumen's."""
 
 _WORD = re.compile(r"[^\s.*#{}]+|\{robot\}")
 
 
 def check_key(report: DocumentReport, route: Route, settings: Settings) -> bool:
-    """Whether the routing key could be a message's of that exhibition; what is wrong or odd is reported."""
+    """Return whether the key is valid and free for a message of that exhibition; report faults and near misses."""
     path = (*route.where, "key")
     for key, name in ((route.key, "key"), (route.alias, "alias")):
         message, hint = _fault(key) if key or name == "key" else ("", "")
@@ -66,7 +66,7 @@ def _fault(key: str) -> tuple[str, str]:
 
 
 def _taken(report: DocumentReport, route: Route, settings: Settings) -> bool:
-    """Whether Lumen itself uses that key for something else, which is reported."""
+    """Return whether Lumen itself uses that key for something else; report it if so."""
     key = route.key_for(settings.robot)
     owner = _owners(settings).get(key, route.name)
     message, cause = f"`{key}` is the key of Lumen's own route `{owner}`", f"name {owner}"
@@ -82,7 +82,7 @@ def _taken(report: DocumentReport, route: Route, settings: Settings) -> bool:
 
 
 def _owners(settings: Settings) -> Mapping[str, str]:
-    """The names of the routes that are Lumen's alone by the keys that they have in this exhibition."""
+    """Return the names of the routes that are only Lumen's, by their keys in this exhibition."""
     own = {name: key for name, key in DEFAULT_KEYS.items() if name not in SHARED_ROUTES}
     keys = {name: settings.routes[name].key if name in settings.routes else key for name, key in own.items()}
     aliases = {alias: name for name, alias in DEFAULT_ALIASES.items() if name in own and name not in settings.routes}
@@ -90,7 +90,7 @@ def _owners(settings: Settings) -> Mapping[str, str]:
 
 
 def _shared(report: DocumentReport, route: Route, settings: Settings) -> None:
-    """Where several robots share a broker, what one of them hears must say whom it is for."""
+    """Report a key without a robot if several robots share a broker, because the message must name its robot."""
     ours = route.name in DEFAULT_KEYS
     if settings.aliases is not False or "{robot}" in route.key or not (ours or route.event):
         return

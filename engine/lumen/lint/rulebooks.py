@@ -1,4 +1,4 @@
-"""Controllers: rules that say a thing twice, or two things, or leave one out."""
+"""Controllers: rules that are redundant, contradict each other, or leave out a case."""
 
 from collections.abc import Iterator, Mapping
 from itertools import product
@@ -35,7 +35,7 @@ UNUSED_TERM = Code("unused-term", "controllers", WARNING, "no rule uses a term")
 
 MAX_SHOWN_CASES = 3
 MAX_COMPARISONS = 10_000
-"""Pairs of rules that are compared, and cells of a table that are looked for."""
+"""The greatest number of pairs of rules that are compared, and of cells of a table that are searched for."""
 
 
 def check(controller: ControllerDefinition, report: DocumentReport) -> None:
@@ -102,7 +102,7 @@ def _pairs(block: RuleBlock, controller: ControllerDefinition, report: DocumentR
 
 
 def _sorted(node: Antecedent) -> object:
-    """The antecedent as a value in which the order of `and` and of `or` does not count."""
+    """Return the antecedent as a value in which the order of `and` and `or` does not matter."""
     match node:
         case Proposition():
             return node
@@ -121,16 +121,16 @@ def _joined(node: Antecedent, kind: type) -> Iterator[Antecedent]:
 
 
 def _conjunction(node: Antecedent) -> frozenset[Proposition]:
-    """The propositions joined by `and` alone; empty where anything else is in it."""
+    """Return the propositions of an antecedent that only uses `and`; empty for any other."""
     parts = list(_joined(node, Conjunction))
     found = frozenset(part for part in parts if isinstance(part, Proposition))
     return found if len(found) == len(parts) else frozenset()
 
 
 def _order(block: RuleBlock, controller: ControllerDefinition, first: Rule, second: Rule) -> tuple[Rule, Rule]:
-    """Of two rules that ask the same the one that was probably meant otherwise, and the other one.
+    """Return two rules with the same condition as (the one that probably has a wrong condition, the other one).
 
-    Rules are written in the order of the terms: it is the first where a term that no rule asks for would stand there.
+    Rules usually follow the order of the terms: it is the first one if a term without a rule would fit in its place.
     """
     asked = first.antecedent
     if isinstance(asked, Proposition) and (variable := controller.inputs.get(asked.variable)):
@@ -143,7 +143,7 @@ def _order(block: RuleBlock, controller: ControllerDefinition, first: Rule, seco
 
 
 def _clash(first: Rule, second: Rule) -> tuple[Proposition, Proposition] | None:
-    """Two plain consequents of one variable that differ."""
+    """Return two different consequents, without hedges, for the same variable; None if there are none."""
     for one, other in product(first.consequents, second.consequents):
         if one.variable == other.variable and one.term != other.term and not one.hedges and not other.hedges:
             return one, other
@@ -151,7 +151,7 @@ def _clash(first: Rule, second: Rule) -> tuple[Proposition, Proposition] | None:
 
 
 def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: DocumentReport) -> None:
-    """A rule that asks more than another and concludes the same never fires more than that one."""
+    """Report rules with more conditions and the same conclusion as another: they never add to it."""
     for asked, rule in found:
         wider = next((r for parts, r in found if parts < asked and r.weight >= rule.weight), None)
         if wider:
@@ -161,7 +161,7 @@ def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: Document
 
 
 def _missing(block: RuleBlock, controller: ControllerDefinition, report: DocumentReport) -> None:
-    """Where more than half of a table of terms has rules, the cells without one."""
+    """Report the cells without a rule in tables of terms of which more than half have one."""
     tables: dict[tuple[str, tuple[str, ...]], list[tuple[Rule, Mapping[str, str]]]] = {}
     for rule in block.rules:
         cell = _cell(rule)
@@ -185,14 +185,14 @@ def _missing(block: RuleBlock, controller: ControllerDefinition, report: Documen
 
 
 def _cell(rule: Rule) -> Mapping[str, str]:
-    """Variable to term, where the antecedent is `a is x and b is y and …` without hedges; else empty."""
+    """Return term by variable if the antecedent is `a is x and b is y and …` without hedges; else empty."""
     parts = _conjunction(rule.antecedent)
     cell = {part.variable: part.term for part in parts if not part.hedges}
     return cell if len(cell) == len(parts) else {}
 
 
 def _others(block: RuleBlock, output: str, found: list[tuple[Rule, Mapping[str, str]]]) -> bool:
-    """Whether rules of another form conclude that output as well: they may fill the gaps."""
+    """Return whether rules of another form also conclude that output, because these may fill the gaps."""
     cells = {id(rule) for rule, _ in found}
     return any(
         id(rule) not in cells and any(consequent.variable == output for consequent in rule.consequents)
@@ -209,7 +209,7 @@ def _absent(output: str, names: list[str], gaps: list[tuple[str, ...]], last: Ru
 
 def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
     if any(diagnostic.code == CONTRADICTING_RULE for diagnostic in report.diagnostics):
-        return  # one of the two was meant for it
+        return  # one of the two was meant for the unused term
     asked = {(p.variable, p.term) for rule in controller.rules for p in propositions(rule.antecedent)}
     asked |= {(p.variable, p.term) for rule in controller.rules for p in rule.consequents}
     for side, variables in (("checks", controller.inputs), ("concludes", controller.outputs)):
@@ -217,7 +217,7 @@ def _unused(controller: ControllerDefinition, report: DocumentReport) -> None:
             for term in variable.terms.values():
                 if (variable.name, term.name) not in asked:
                     message = f"no rule {side} `{variable.name} is {term.name}`"
-                    cause = f"{report.document.file} term {term.name}"  # a rule that is gone had it on both sides
+                    cause = f"{report.document.file} term {term.name}"  # a missing rule had it on both sides
                     report(
                         UNUSED_TERM,
                         term.where,

@@ -1,4 +1,4 @@
-"""Sayings as tests: the behaviour, state, row and slots that they name."""
+"""Sayings as tests: whether the behaviour, state, row and slots that they name exist."""
 
 from lumen.expressions.expression_findings import UNKNOWN_STATE
 from lumen.insight.explaining.sayings import path_of
@@ -17,7 +17,7 @@ UNKNOWN_SLOT = Code("unknown-slot", "references", ERROR, "a saying names a slot 
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what sayings name and is not there."""
+    """Report names in sayings that do not exist."""
     references = References(draft)
     for name, each in draft.sayings.items():
         report = draft.report(SAYINGS_FOLDER, name)
@@ -31,7 +31,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying) -> set[tuple[str, ...]]:
-    """Report what is wrong with a saying; the paths that are reported, so that each is only once."""
+    """Report the faults of a saying; return the paths of the reported keys, so that each is reported once."""
     behavior, state, key = where = saying.behavior, saying.state, saying.row
     try:
         rows = rows_around(machine, path_of(machine, state))
@@ -63,12 +63,12 @@ def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying)
 
 
 def _named(machine: MachineDefinition) -> set[str]:
-    """The names of phrases that are known: those of a list's entry are not."""
+    """Return the known names of phrases, to which those of a list's entries do not belong."""
     return {*machine.phrases, *machine.answers}
 
 
 def _slots(machine: MachineDefinition, row: Hears) -> set[str]:
-    """The slots of a row, and `answer` if it has a table of answers."""
+    """Return the slots of a row, and `answer` if it has a table of answers."""
     answers = [answer.phrases for name in row.names for answer in machine.answers.get(name, ())]
     tables = [*answers, *(machine.phrases[name] for name in row.names if name in machine.phrases)]
     texts = [text for table in tables for several in table.values() for text in several]

@@ -1,11 +1,11 @@
-"""JSON Schemas inside behaviours: those of context keys and of events; and the first values of the context."""
+"""JSON Schemas inside behaviours, of context keys and of events, and the initial values of the context."""
 
 from lumen.project.context import check_memory
 from lumen.project.draft import ProjectDraft
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what is wrong under `context:`, `types:` and `events:`."""
+    """Report faults under `context:`, `types:` and `events:`."""
     for name, machine in draft.behaviors.items():
         unsound = check_memory(machine, draft.report("behaviors", name))
         draft.unsound.update((name, part, key) for part, key in unsound)

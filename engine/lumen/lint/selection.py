@@ -1,4 +1,4 @@
-"""Which codes are meant by the words that people write: a code, its first words, or a family."""
+"""Selection of codes on the command line: by a code, its first words, or a family."""
 
 from collections.abc import Iterable
 
@@ -8,9 +8,9 @@ from lumen.lint.codes import codes, families
 
 
 def selected(words: Iterable[str]) -> frozenset[str]:
-    """The codes that these words stand for; each may be several with commas between them.
+    """Return the codes that these words select; a word may be several, separated by commas.
 
-    `unknown` is every code that begins with `unknown-`. Raises UsageError for a word that stands for nothing.
+    `unknown` selects every code that begins with `unknown-`. Raises UsageError for a word that selects none.
     """
     return frozenset(code for text in words for word in text.split(",") for code in _codes(word.strip()))
 
@@ -26,7 +26,7 @@ def _codes(word: str) -> Iterable[str]:
 
 
 def unknown_code(word: str) -> str:
-    """What to say of a word that is no code."""
+    """Return the error message for a word that is not a code."""
     if not word:
         return "a code is missing: run `lumen explain` to list the codes"
     hint = did_you_mean(word, [*codes(), *families()])

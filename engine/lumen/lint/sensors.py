@@ -1,4 +1,4 @@
-"""Sensors of the robot that guards name, `event.data.sensor == 'FrontTactil'`, and those that open the ears."""
+"""Sensors of the robot in guards, `event.data.sensor == 'FrontTactil'`, and those that open the ears."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ _SENSOR = ("event", "data", "sensor")
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report guards of `touched` and `released`, and `listens` of the ears, with sensors that it does not have."""
+    """Report unknown sensors in guards of `touched` and `released`, and in `listens` of the ears."""
     body = draft.body
     if body:
         _ears(draft, body)
@@ -51,7 +51,7 @@ def _ears(draft: ProjectDraft, body: Body) -> None:
 
 
 def _asked(guard: ExpressionNode) -> Iterator[str]:
-    """The texts that the event's sensor is compared with."""
+    """Yield the texts that the event's sensor is compared with."""
     for node, _ in walk(guard):
         if isinstance(node, Binary) and node.sign in ("==", "!=", "in"):
             for one, other in ((node.left, node.right), (node.right, node.left)):

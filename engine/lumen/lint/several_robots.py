@@ -1,15 +1,15 @@
-"""What is wrong for one of several robots, and what for all of them."""
+"""Findings of several robots, combined."""
 
 from collections.abc import Sequence
 
 from lumen.language.diagnostics import Diagnostic
 
 NEEDED_ONCE = ("unused-", "idle-", "silent-", "unreachable-")
-"""How the codes begin of what is well as soon as one robot has a use for it."""
+"""The first letters of codes about parts that need to be used by only one robot."""
 
 
 def together(views: Sequence[Sequence[Diagnostic]]) -> tuple[Diagnostic, ...]:
-    """Everything wrong for any robot, each thing once; that something is unused only where no robot uses it."""
+    """Return the findings of any robot, each once; those about unused parts only if all robots have them."""
     counted: dict[Diagnostic, int] = {}
     for view in views:
         for diagnostic in dict.fromkeys(view):

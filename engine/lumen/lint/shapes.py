@@ -1,4 +1,4 @@
-"""Controllers: terms against their names, their range, and each other."""
+"""Terms of controllers, checked against their names, their variable's range, and each other."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -18,7 +18,7 @@ UNREACHABLE_TERM = Code("unreachable-term", "controllers", WARNING, "a term lies
 
 
 MIN_MEMBERSHIP = 0.01
-"""A membership below this counts as none."""
+"""A membership below this counts as 0."""
 
 GRID_POINTS = 129
 
@@ -26,7 +26,7 @@ SampledTerm = tuple[Term, list[float]]
 
 
 def check(controller: ControllerDefinition, report: DocumentReport) -> None:
-    """Report terms out of the order of their names or of reach, and gaps between them."""
+    """Report terms in the wrong order for their names, terms outside the range, and gaps between terms."""
     for variable in (*controller.inputs.values(), *controller.outputs.values()):
         weighted = variable.name in controller.outputs and variable.weighted
         if not (isfinite(variable.minimum) and isfinite(variable.maximum)):
@@ -45,7 +45,7 @@ def _memberships(term: Term, xs: list[float]) -> list[float]:
 
 
 def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report: DocumentReport) -> None:
-    """Report each term that stands on the wrong side of the one before it by name."""
+    """Report each term on the wrong side of the term that precedes it by name."""
     places = {term.name: _top(degrees, xs) for term, degrees in rows}
     places |= {term.name: term.parameters[0] for term in variable.terms.values() if term.kind == VALUE_TERMS[0]}
     scale = ranks(tuple(places))
@@ -62,7 +62,7 @@ def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report:
 
 
 def _top(degrees: list[float], xs: list[float]) -> float:
-    """The middle of where a term is most true."""
+    """Return the middle of the points at which a term has its greatest membership."""
     most = max(degrees)
     tops = [x for x, degree in zip(xs, degrees, strict=True) if degree >= most - 1e-9]
     return sum(tops) / len(tops)
@@ -80,7 +80,7 @@ def _reached(variable: Variable, row: SampledTerm, report: DocumentReport) -> bo
 
 
 def _gaps(variable: Variable, rows: list[SampledTerm], xs: list[float], report: DocumentReport) -> None:
-    """Report where no term of an input is true, though terms lie around it or end before its range does."""
+    """Report parts of an input's range in which no term is true."""
     whole = [max(degrees) for degrees in zip(*(degrees for _, degrees in rows), strict=True)]
     for first, last in _runs([degree < MIN_MEMBERSHIP for degree in whole]):
         low, high = xs[max(first - 1, 0)], xs[min(last + 1, len(xs) - 1)]
@@ -92,12 +92,12 @@ def _gaps(variable: Variable, rows: list[SampledTerm], xs: list[float], report: 
 
 
 def _narrow(rows: list[SampledTerm]) -> bool:
-    """Whether a term may slip between two points of the grid."""
+    """Return whether a term is so narrow that it may lie between two points of the grid."""
     return any(sum(degree > MIN_MEMBERSHIP for degree in degrees) < 2 for _, degrees in rows)
 
 
 def _runs(flags: list[bool]) -> Iterator[tuple[int, int]]:
-    """First and last index of each run of true."""
+    """Yield the first and last index of each run of True."""
     start = None
     for i, flag in enumerate([*flags, False]):
         if flag and start is None:

@@ -1,4 +1,4 @@
-"""What robots have in common: who may assign it, and whether its name is free."""
+"""Values that robots share: which behaviour may assign them, and whether their name is free."""
 
 from collections.abc import Iterator
 
@@ -23,7 +23,7 @@ MAKES_SHARED_EVENT = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what this robot's behaviour does with the keys of others, and what none may do."""
+    """Report assignments of keys that belong to other robots, and uses of reserved names."""
     settings = draft.settings
     _made(draft)
     machine = draft.behaviors.get(settings.behavior) if settings else None
@@ -49,7 +49,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _made(draft: ProjectDraft) -> None:
-    """Who makes that event gives any key any value, whoever owns it."""
+    """Report other uses of the event that updates `shared`: they could change any key, bypassing its owner."""
     message = f"the event `{SHARED_EVENT}` would change keys of `shared` without their owners"
     hint = "use another event: only the owner of a key can assign it"
     if draft.settings and draft.main:
@@ -63,7 +63,7 @@ def _made(draft: ProjectDraft) -> None:
 
 
 def _assigned(machine: MachineDefinition) -> Iterator[tuple[str, NodePath]]:
-    """The keys of what all have in common that a behaviour assigns, and where."""
+    """Yield the keys of `shared` that a behaviour assigns, with their paths."""
     for site in action_sites(machine):
         if isinstance(site.step.action, Assign):
             for way in site.step.action.values:

@@ -1,4 +1,4 @@
-"""Controllers that move no joint: what their inputs and outputs are bound to, in messages, contexts and behaviours."""
+"""Controllers that move no joint: the fields, context keys and events that their inputs and outputs are bound to."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ from lumen.project.draft import ProjectDraft
 def field_schema(
     draft: ProjectDraft, report: DocumentReport, path: NodePath, route: str, field: Sequence[str]
 ) -> Mapping[str, Any] | None:
-    """The schema of a field, None where nothing says what it is; an unknown route or field is reported at `path`."""
+    """Return the schema of a field; None if it is unknown. An unknown route or field is reported at `path`."""
     if not known_route(draft, report, path, route) or draft.settings is None:
         return None
     schema: Any = draft.messages.get(draft.settings.routes[route].schema)
@@ -65,11 +65,11 @@ UNIT_MISMATCH = Code(
 VOLUME: Mapping[str, Any] = {"type": "number", "minimum": 0, "maximum": 1, "description": "How loud the robot speaks."}
 
 _UNIT = re.compile(r"\[([^\]\s]+)\]")
-"""How the description of a field tells its unit: `Nearest echo on the left [m].`"""
+"""The unit in the description of a field: `Nearest echo on the left [m].`"""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what a controller's signals are bound to and does not fit, or is not there."""
+    """Report targets of a controller's bindings that are missing or do not fit."""
     for name, controller in draft.controllers.items():
         report = draft.report("fuzzy", name)
         for source in controller.input_bindings:
@@ -102,7 +102,7 @@ def _signal(
 def _field(
     draft: ProjectDraft, report: DocumentReport, variable: Variable | None, binding: InputBinding | MessageBinding
 ) -> Mapping[str, Any] | None:
-    """The schema of the field that is bound, None where it is unknown; reported where it does not fit a number."""
+    """Return the schema of the bound field; None if it is unknown. A field that can't hold a number is reported."""
     path = first(report, (*binding.where, "message"), binding.where)
     found = field_schema(draft, report, path, binding.route, binding.path)
     if isinstance(binding, MessageBinding):
@@ -121,7 +121,7 @@ def _field(
 def _context(
     draft: ProjectDraft, report: DocumentReport, variable: Variable | None, binding: ContextInput | ContextBinding
 ) -> Mapping[str, Any] | None:
-    """The schema of the context key that is bound, None where no behaviour declares it, which is reported."""
+    """Return the schema of the bound context key; None if no behaviour declares it, which is reported."""
     path = (*binding.where, "context")
     declared = {
         key: machine.types.get(key, schema_of(value))
@@ -145,7 +145,7 @@ def _lost(draft: ProjectDraft, behavior: str) -> set[str]:
 
 
 def _number(report: DocumentReport, path: NodePath, what: str, schema: Mapping[str, Any]) -> None:
-    """Report what can never hold a number."""
+    """Report a target that can never hold a number."""
     said = schema.get("type")
     kinds = {str(kind) for kind in (said if isinstance(said, list) else [said])}
     if said is not None and not {"number", "integer"} & kinds and kinds != {"null"}:
@@ -158,7 +158,7 @@ def _number(report: DocumentReport, path: NodePath, what: str, schema: Mapping[s
 
 
 def _fits(report: DocumentReport, variable: Variable, path: NodePath, what: str, schema: Mapping[str, Any]) -> None:
-    """Report a range that goes beyond what takes the output."""
+    """Report a range larger than the output's target accepts."""
     low, high = schema.get("minimum"), schema.get("maximum")
     takes = " to ".join(f"{end:g}" if isinstance(end, int | float) else "any" for end in (low, high))
     if (isinstance(low, int | float) and variable.minimum < low) or (
@@ -198,7 +198,7 @@ def _direction(draft: ProjectDraft, report: DocumentReport, path: NodePath, rout
 
 
 def _lacks(draft: ProjectDraft, report: DocumentReport, controller: ControllerDefinition) -> None:
-    """Report fields that a message has to have, and gets from nobody."""
+    """Report required fields of a message that no binding sets."""
     messages = [signal for signal in controller.signals if isinstance(signal, MessageBinding)]
     for route in dict.fromkeys(signal.route for signal in messages):
         row = draft.settings.routes.get(route) if draft.settings else None
@@ -214,7 +214,7 @@ def _lacks(draft: ProjectDraft, report: DocumentReport, controller: ControllerDe
 
 
 def _twice(draft: ProjectDraft) -> None:
-    """Report two outputs that say the same thing: of one controller, or of two that nobody ever switches off."""
+    """Report two outputs with the same target, in one controller or in two that are never switched off."""
     forever = _never_off(draft)
     bound = [
         (name, signal, target)
@@ -231,16 +231,16 @@ def _twice(draft: ProjectDraft) -> None:
 
 
 def _never_off(draft: ProjectDraft) -> set[str]:
-    """The controllers that are switched on somewhere, and nowhere off."""
+    """Return the controllers that some action switches on and no action switches off."""
     actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
     tracks = [action for action in actions if isinstance(action, Track)]
     return {t.controller for t in tracks if t.on} - {t.controller for t in tracks if not t.on}
 
 
 def _target(signal: SignalBinding) -> str:
-    """What a signal sets, in words; empty for an event, which several may raise.
+    """Return the target of a signal in words; empty for an event, which several signals may raise.
 
-    Messages with other constants are about something else.
+    Messages with different constants count as different targets.
     """
     match signal:
         case VolumeBinding():

@@ -1,4 +1,4 @@
-"""Actions that the robot's body lacks the roles for: they are left out when it runs."""
+"""Actions for which the robot's body lacks roles: they are left out at run time."""
 
 from lumen.language.diagnostics import NodePath
 from lumen.language.skills import lack_of, tracked, tracking_lack

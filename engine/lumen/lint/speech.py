@@ -1,4 +1,4 @@
-"""Speech: languages that are missing, or that the project does not speak."""
+"""Speech: texts in too few languages, or in languages that the project does not speak."""
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -38,14 +38,14 @@ UNREACHABLE_LANGUAGE = Code(
 
 
 MIN_TEXTS_FOR_LANGUAGE = 4
-"""With fewer texts it is the texts that lack a language; with more it is the language that has none."""
+"""With fewer texts, each text lacks the language; with at least as many, the language lacks texts."""
 
 MAX_COMPARED_ROWS = 200
-"""Rows of an answers table that are compared with one another."""
+"""The number of rows of an answers table that are compared with one another."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what is said in too few languages, or in one that lumen.yaml does not name."""
+    """Report texts that are missing in a language, and languages that lumen.yaml does not name."""
     if draft.settings is None or draft.main is None or not draft.settings.languages:
         return
     if any(path[:1] == ("languages",) for path in draft.main.pruned):
@@ -96,7 +96,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _heard_tables(draft: ProjectDraft) -> set[str]:
-    """The tables of answers that rows of `hears` name and no expression looks up: more words win there, not the first.
+    """Return the tables of answers used only by rows of `hears`, in which the longest match wins, not the first row.
 
     If a behaviour can't be read, any table that the others do not look up may be one.
     """
@@ -109,8 +109,10 @@ def _heard_tables(draft: ProjectDraft) -> set[str]:
 def _silent(
     draft: ProjectDraft, languages: tuple[str, ...]
 ) -> tuple[dict[str, tuple[str, list[Related]]], dict[str, str]]:
-    """The languages in which hardly a text is, where others have some; each with the one meant instead, and a place of
-    it, and with how many of how many texts it has, empty for none.
+    """Return the languages with hardly any texts, if others have some, and how many of all texts these have.
+
+    Each is mapped to the language that was probably meant, with a place of its texts, empty if there is none. The
+    second mapping has counts such as `2 of 16`, empty if a language has no text at all.
     """
     found: dict[str, Place] = {}
     counts: Counter[str] = Counter()
@@ -138,7 +140,7 @@ def _silent(
 
 
 def _spoken(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
-    """Where texts stand that are said or answered."""
+    """Yield the places of texts that are said or given as answers."""
     for name, machine in draft.behaviors.items():
         said = (s.step.where for s in action_sites(machine) if isinstance(s.step.action, SayText))
         yield from ((draft.report("behaviors", name), (*where, "say")) for where in said)
@@ -155,7 +157,7 @@ def _silence(report: DocumentReport, path: NodePath, message: str, hint: str, re
 
 
 class _Speech:
-    """What is said and heard in some `languages`; tables of answers that are only `heard` in rows are tried there."""
+    """Checks texts and phrases in some `languages`. Tables of answers in `heard` are left to the rules of `hears`."""
 
     def __init__(self, languages: tuple[str, ...], lost: Iterable[str], heard: Collection[str]) -> None:
         self.languages, self.lost, self.heard = languages, set(lost), heard
@@ -192,7 +194,7 @@ class _Speech:
             self.texts(report, path, {language: text for language, text in texts.items() if language not in parts})
 
     def phrases(self, tables: WordTables) -> None:
-        """Phrases that are listened for in fewer languages than the project speaks; each language is told once."""
+        """Report phrases in fewer languages than the project speaks; each language is reported once."""
         for name, phrases in tables.phrases.items():
             if name in WORD_LISTS:
                 continue
@@ -205,7 +207,7 @@ class _Speech:
                     tables.report(MISSING_LANGUAGE, ("phrases", name), message, hint, key=True, cause=cause)
 
     def switches(self, draft: ProjectDraft, silent: Collection[str]) -> None:
-        """Languages that nobody can ask for, where behaviours switch to others."""
+        """Report languages that no behaviour switches to, if behaviours switch to others."""
         assert draft.main
         switched = switched_to(draft)
         spoken = switched | {story.language for story in draft.stories.values() if story.language}
@@ -220,20 +222,20 @@ class _Speech:
                 draft.main(UNREACHABLE_LANGUAGE, path, message, hint)
 
     def texts(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> None:
-        """What is said in several languages should be said in all."""
+        """Report a text that is given by language and lacks one of the languages."""
         self.each(report, path, texts)
         self.empty(report, path)
         said = {language for language in texts if not _is_rest(report, (*path, language))} | _written(report, path)
         astray = {language for language in self.languages if (*path[:-1], language) in report.pruned}
         if any(language not in self.languages for language in said - {"", "any"}):
-            return  # that one stands for it
+            return  # that one was probably meant
         missing = [language for language in self.languages if language not in said | astray]
         if missing and said.isdisjoint(("", "any")):
             message = f"this text is missing in {_listed(missing)}"
             report(MISSING_LANGUAGE, path, message, f"add `{missing[0]}:` with the text", key=True)
 
     def split(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> set[str]:
-        """The keys that are parts of texts which a comma splits; each text is reported once."""
+        """Return the keys that are parts of texts split by a comma; report each text once."""
         wholes = {key: whole_text(report.document, (*path, key), by_language=True) for key in texts}
         for key, whole in wholes.items():
             if whole:
@@ -243,7 +245,7 @@ class _Speech:
         return {key for key, whole in wholes.items() if whole}
 
     def empty(self, report: DocumentReport, path: NodePath) -> None:
-        """Translations without a word: nothing is said or heard in their languages."""
+        """Report translations without words."""
         for language, text in _mapping_at(report, path).items():
             if language in self.languages and is_empty(text) and not report.broken((*path, language)):
                 message = f"this text is empty in `{language}`"
@@ -266,7 +268,7 @@ class _Speech:
 
 
 def _written(report: DocumentReport, path: NodePath) -> set[str]:
-    """The languages of a text as the file has them, those of broken texts too."""
+    """Return the languages of a text as written in the file, including broken ones."""
     gone = {str(lost[-1]) for lost in report.pruned if lost[:-1] == path}
     found = gone.union(_mapping_at(report, path)) - {"gestures", ANYHOW}
     return {language for language in found if not _is_rest(report, (*path, language))}
@@ -278,13 +280,13 @@ def _mapping_at(report: DocumentReport, path: NodePath) -> Mapping[str, Any]:
 
 
 def _is_rest(report: DocumentReport, path: NodePath) -> bool:
-    """Whether a key of a text by language is no language but a part of a text."""
+    """Return whether a key of a text by language is a part of a text instead of a language."""
     name = str(path[-1])
     return bool(whole_text(report.document, path)) or not (is_language_tag(name) or name.isidentifier() or not name)
 
 
 def _is_missed(draft: ProjectDraft, language: str) -> bool:
-    """Whether something is told to be missing in that language: first that, then how it is reached."""
+    """Return whether a text is reported as missing in that language, which must be solved first."""
     found = (d for report in draft.reports.values() for d in report.diagnostics if d.code == MISSING_LANGUAGE)
     return any(f"`{language}`" in diagnostic.message for diagnostic in found)
 
@@ -294,7 +296,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _late(report: DocumentReport, table: str, rows: Sequence[Answer]) -> None:
-    """Rows of an answers table in each of whose phrases one of a row above is heard: the first row wins."""
+    """Report rows of an answers table each of whose phrases contains a phrase of an earlier row: the first row wins."""
     for i, row in enumerate(rows[:MAX_COMPARED_ROWS]):
         phrases = [phrase for texts in row.phrases.values() for phrase in texts]
         takers = [next((j for j in range(i) if is_taken(p, rows[j].phrases)), None) for p in phrases]

@@ -1,4 +1,4 @@
-"""Statecharts: states that can't be reached, and states that are left as soon as they are entered, for ever."""
+"""Statecharts: unreachable states, and states that are left and entered without end."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -15,19 +15,19 @@ UNREACHABLE_STATE = Code("unreachable-state", "statecharts", WARNING, "no transi
 
 
 MAX_ALWAYS_LOOP = 3
-"""Transitions of a round of guarded `always` that is looked for."""
+"""The greatest number of transitions in a loop of guarded `always` that is searched for."""
 
 MAX_FOLLOWED_ALWAYS = 4
-"""Guarded `always` of a state that are followed."""
+"""The number of guarded `always` of one state that are followed."""
 
 _LEADS = frozenset(("on", "hears", "always", "after", "at", "onDone", "onError", "onReload", "target", "initial"))
-"""Keys under which something names a state: one that was broken may have named any."""
+"""Keys whose values name states: if one of them was unreadable, it may have named any state."""
 
 Onward = Mapping[str, Sequence[tuple[Transition, str]]]
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what can never happen, and what would happen for ever."""
+    """Report unreachable states and endless loops."""
     torn = {d.place.file for d in draft.loose}
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -38,12 +38,12 @@ def check(draft: ProjectDraft) -> None:
 
 
 def within(path: str, other: str) -> bool:
-    """Whether a state is the other one, or is in it."""
+    """Return whether a state is the other one, or a descendant of it."""
     return path == other or not other or path.startswith(f"{other}.")
 
 
 def reachable(machine: MachineDefinition, begin: str = "") -> set[str]:
-    """The paths of all states that some sequence of events could enter from `begin`, whatever guards say."""
+    """Return the paths of all states that some sequence of events could enter from `begin`; guards are ignored."""
     found: set[str] = set()
     waiting = [begin]
     while waiting:
@@ -57,7 +57,7 @@ def reachable(machine: MachineDefinition, begin: str = "") -> set[str]:
 
 
 def _next(state: State) -> Iterator[str]:
-    """Where one gets from a state: down by default, and by its transitions."""
+    """Yield the states that can follow a state: those entered with it, and the targets of its transitions."""
     yield from state.initial
     if state.kind is StateKind.PARALLEL:
         yield from state.children
@@ -68,7 +68,7 @@ def _next(state: State) -> Iterator[str]:
 
 
 def _unreachable(machine: MachineDefinition, report: DocumentReport) -> None:
-    """States that nothing leads to, unless something broken may have meant them."""
+    """Report states that no transition leads to, unless an unreadable part may have named them."""
     meant = {text.rpartition(".")[2].lstrip("#") for text in report.lost | report.missed}
     missed = meant & report.missed if len(report.missed) <= MAX_COMPARED_NAMES else set()
     found = reachable(machine)
@@ -78,13 +78,13 @@ def _unreachable(machine: MachineDefinition, report: DocumentReport) -> None:
             found |= reachable(machine, path)
     for path, state in machine.states.items():
         if path not in found:
-            found |= reachable(machine, path)  # what only this one leads to is not said as well
+            found |= reachable(machine, path)  # don't report states that only this one leads to
             hint = "add a transition to it, or delete it"
             report(UNREACHABLE_STATE, state.where, f"no transition leads to `{path}`", hint, key=True)
 
 
 def _endless(machine: MachineDefinition, report: DocumentReport) -> None:
-    """States that lead back to themselves by `always` alone, nothing asked on the way."""
+    """Report states that lead back to themselves by `always` without guards."""
     onward = {path: found for path in machine.states if (found := _at_once(machine, path))}
     said: set[str] = set()
     for path in onward:
@@ -99,7 +99,7 @@ def _endless(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _at_once(machine: MachineDefinition, path: str) -> tuple[Transition, str] | None:
-    """The transition that an atomic state takes as soon as it is entered, and the atomic state that it leads to."""
+    """Return the `always` that leaves an atomic state on entry, and the atomic state it leads to; None without one."""
     state = machine.states[path]
     always = next((t for t in state.transitions if not t.event), None)
     if state.kind is not StateKind.ATOMIC or always is None or always.guard or len(always.targets) != 1:
@@ -111,7 +111,7 @@ def _at_once(machine: MachineDefinition, path: str) -> tuple[Transition, str] | 
 
 
 def _loops(machine: MachineDefinition, report: DocumentReport) -> None:
-    """States that lead back to themselves by guarded `always`, where nothing on the way changes what is asked."""
+    """Report states that lead back to themselves by guarded `always`, if no action on the way changes the context."""
     onward: dict[str, list[tuple[Transition, str]]] = {}
     for state in machine.states.values():
         if state.kind is StateKind.ATOMIC:
@@ -136,7 +136,7 @@ def _loops(machine: MachineDefinition, report: DocumentReport) -> None:
 def _rounds(
     machine: MachineDefinition, onward: Onward, begin: str, path: str, way: tuple[Transition, ...]
 ) -> Iterator[tuple[Transition, ...]]:
-    """The ways of at most LONGEST transitions back to `begin` whose guards can all be true at once."""
+    """Yield the loops of at most MAX_ALWAYS_LOOP transitions back to `begin` whose guards can all be true at once."""
     for transition, target in onward.get(path, ())[:MAX_FOLLOWED_ALWAYS]:
         longer = (*way, transition)
         if _assigns(machine.states[target].entry) or _assigns(machine.states[path].exit):
@@ -150,7 +150,7 @@ def _rounds(
 
 
 def _settled(machine: MachineDefinition, transition: Transition) -> str:
-    """The atomic state that a transition ends in, empty where that is not a single one."""
+    """Return the atomic state that a transition ends in; empty if it is not a single one."""
     if not transition.targets:
         return transition.source
     if len(transition.targets) > 1:

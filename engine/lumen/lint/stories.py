@@ -1,4 +1,4 @@
-"""Stories: the names they use of their behaviour, the robot and the exhibition."""
+"""Stories: names of states, context keys, sensors, events and routes that they use."""
 
 import json
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ UNKNOWN_SENSOR = Code("unknown-sensor", "references", ERROR, "the robot has no t
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report states, context keys, motions, routes, sensors and events that a story names and that are not there."""
+    """Report states, context keys, motions, routes, sensors and events that a story names and that do not exist."""
     references = References(draft)
     for name, story in draft.stories.items():
         _Script(draft, references, draft.report("behaviors/stories", name), story).check()
@@ -71,7 +71,7 @@ class _Script:
                     self.expect((*step.where, "expect"), expected)
 
     def condition(self, condition: Expression) -> None:
-        """What a property says, by what its behaviour declares."""
+        """Check the expression of a property against the declarations of its behaviour."""
         machine = self.machine
         if machine is None or not self.sound:
             return
@@ -99,7 +99,10 @@ class _Script:
             known_route(self.draft, self.report, place, expected.published)
 
     def state(self, path: NodePath, name: str) -> None:
-        """A state as `configuration` calls it, by its id where it has one; `quiz/ask` of what is invoked as `quiz`."""
+        """Report an unknown state.
+
+        It is named by its id or path; `quiz/ask` is a state of the behaviour invoked as `quiz`.
+        """
         if (
             self.machine is None
             or _has(self.machine, name)
@@ -111,7 +114,7 @@ class _Script:
         state = machine.states.get(rest)
         pruned = self.draft.report("behaviors", self.behavior).pruned
         if any((*s.where, "id") in pruned and s.path.endswith(rest) for s in machine.states.values()):
-            return  # its id was refused
+            return  # its id was invalid
         names = _names(machine, name.removesuffix(rest))
         inner = sorted(known for known in names if known.rpartition(".")[2] == rest)
         hint = (
@@ -131,7 +134,7 @@ class _Script:
         )
 
     def key(self, path: NodePath, key: str, value: Any) -> None:
-        """A context key, and whether it can have that value."""
+        """Report an unknown context key, or a value that the key can't have."""
         if self.machine is None or self._lost(key):
             return
         if key not in self.machine.context:
@@ -170,14 +173,14 @@ class _Script:
             self.fits((*where, "body"), body, self.draft.messages.get(self.draft.settings.routes[route].schema))
 
     def fits(self, path: NodePath, data: Any, schema: Any) -> None:
-        """Data that the story makes up has to be such as the world could send."""
+        """Report data of the story that does not fit the schema of real data."""
         if isinstance(schema, Mapping):
             for complaint in faults(data, schema):
                 place = (*path, *complaint.path)
                 self.report(complaint.code, place, complaint.message, complaint.hint, key=complaint.key)
 
     def _lost(self, name: str) -> bool:
-        """Whether the name stood in a part of the behaviour, or of one that it invokes, that is broken."""
+        """Return whether a name was in an unreadable part of the behaviour, or of one that it invokes."""
         last = name.rpartition(ID_SEPARATOR)[2]
         behaviors = self.draft.behaviors if last != name else (self.behavior,)
         lost = [self.draft.report("behaviors", behavior).lost for behavior in behaviors]
@@ -190,7 +193,7 @@ def _has(machine: MachineDefinition, name: str) -> bool:
 
 
 def _names(machine: MachineDefinition, prefix: str) -> set[str]:
-    """The states of a machine, and of those that it invokes, as one calls them from outside."""
+    """Return the states of a machine and of those that it invokes, as they are named from outside."""
     names = {prefix + state.name for state in machine.states.values() if state.path}
     for invoke in (invoke for state in machine.states.values() for invoke in state.invoke):
         if other := machine.invoked.get(invoke.behavior):

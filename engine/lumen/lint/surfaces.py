@@ -1,4 +1,4 @@
-"""Controllers: what comes out, looked over coarsely, against what the file says should."""
+"""Controllers: their outputs over a coarse grid of inputs, against what the file declares."""
 
 from collections.abc import Iterator
 from itertools import product
@@ -23,31 +23,37 @@ SURFACE_STEP = Code("surface-step", "controllers", WARNING, "an output jumps whi
 
 
 STEP_SHARE, TURN_SHARE, REST_SHARE = 0.1, 0.02, 0.02
-"""Shares of an output's range: what is a step, what is a turning back, what is not zero."""
+"""Shares of an output's range: the smallest step, the smallest reversal, and the largest value that counts as 0."""
 
 MIN_RANGE_SHARE = 0.2
-"""An output that uses less of its declared range than this was meant otherwise."""
+"""The share of the declared range that an output should use at least."""
 
 RESOLUTION_FACTOR = 4
-"""By how much the resolution is raised to see how far off it is."""
+"""The factor by which the resolution is raised to estimate its error."""
 
 CORNERS = 5, 400
-"""Points of each input's range, and how many combinations are asked at most."""
+"""The number of points in each input's range, and the greatest number of their combinations."""
 
 
 class SurfaceSamples(NamedTuple):
-    """All that was seen of a controller's surface."""
+    """The samples of a controller's surface."""
 
     slices: list[Slice]
+    """Each output over one input, the other inputs being neutral."""
     steps: list[tuple[Slice, SurfaceJump]]
+    """The slices with a jump of more than STEP_SHARE, and the jump."""
     neutral_inputs: dict[str, float]
+    """The outputs at the neutral point of all inputs, by name."""
     reach: dict[str, tuple[float, float]]
+    """The least and the greatest value of each output."""
     silent: dict[str, dict[str, float]]
+    """For each output that may be undefined, the inputs at which that happens."""
     off: dict[str, float]
+    """The greatest error of each output with an `accuracy`, against a finer resolution."""
 
 
 def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
-    """The surface of a controller."""
+    """Sample the surface of a controller."""
     survey = Survey(controller)
     slices = list(survey.slices())
     smooth = [
@@ -71,7 +77,7 @@ def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
 
 
 def _corners(controller: ControllerDefinition) -> Iterator[dict[str, float]]:
-    """Combinations of the inputs, where several move together."""
+    """Yield combinations of the inputs, for controllers in which several inputs decide about one output."""
     names = [n for n, v in controller.inputs.items() if abs(v.minimum) < 1e300 and abs(v.maximum) < 1e300]
     points, most = CORNERS
     while len(names) > 1 and points > 1 and points ** len(names) > most:
@@ -95,7 +101,7 @@ def _all(
 
 
 def _off(controller: ControllerDefinition, slices: list[Slice]) -> dict[str, float]:
-    """How far an output with a stated accuracy lies from what four times the resolution gives."""
+    """Return the greatest error of each output with an `accuracy`, against RESOLUTION_FACTOR times the resolution."""
     exact = {
         n: v for n, v in controller.outputs.items() if v.accuracy is not None and v.defuzzifier in INTEGRAL_DEFUZZIFIERS
     }
@@ -120,7 +126,7 @@ def _finer(controller: ControllerDefinition) -> ControllerDefinition:
 
 
 def check(controller: ControllerDefinition, report: DocumentReport, seen: SurfaceSamples) -> None:
-    """Report what the surface has that it should not: silence, steps, turns, a value at rest, an unused range."""
+    """Report faults of the surface: undefined values, steps, reversals, a value at rest, an unused range."""
     for variable in controller.outputs.values():
         _silence(controller, variable, report, seen)
         _reached(controller, variable, report, seen)
@@ -175,7 +181,7 @@ def _coarse(variable: Variable, report: DocumentReport, seen: SurfaceSamples) ->
 
 
 def _turns(controller: ControllerDefinition, found: Slice, report: DocumentReport) -> None:
-    """Over an input with a neutral point an output may only rise or only fall."""
+    """Report an output that both rises and falls over an input with a neutral point."""
     output = controller.outputs[found.output]
     least = TURN_SHARE * (output.maximum - output.minimum)
     extremes = list(_extremes(found, least))
@@ -188,7 +194,7 @@ def _turns(controller: ControllerDefinition, found: Slice, report: DocumentRepor
 
 
 def _extremes(found: Slice, least: float) -> Iterator[tuple[float, float]]:
-    """The ends of a curve and where it turns back by more than `least`."""
+    """Yield the two ends of a curve and the points at which it reverses by more than `least`."""
     points = [(x, y) for x, y in zip(found.xs, found.ys, strict=True) if not isnan(y)]
     if not points:
         return

@@ -1,4 +1,4 @@
-"""How long a `do` takes, and whether its state is left before."""
+"""The duration of a `do`, and whether its state is left earlier."""
 
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
@@ -19,11 +19,11 @@ CUT_SHORT = Code("cut-short", "statecharts", WARNING, "an `after` ends a state b
 
 
 SECONDS_PER_TEXT, SECONDS_PER_CHARACTER, SECONDS_PER_POSTURE, WALKING_SPEED = 0.4, 0.06, 2.0, 0.1
-"""What the recording robot takes: for a text [s], for each of its characters [s], for a posture [s], walking [m/s]."""
+"""The times of the recording robot: per text [s], per character [s], per posture [s]; and its speed [m/s]."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report an `after` that always comes before the `do` beside it is done."""
+    """Report an `after` that always ends the state before its `do` has finished."""
     for name, machine in draft.behaviors.items():
         for state in machine.states.values():
             if state.do and any(isinstance(t.delay, float) for t in state.transitions):
@@ -48,9 +48,9 @@ def _cut(
 
 
 def duration(block: Iterable[PlacedAction], motions: Mapping[str, MotionDefinition]) -> float:
-    """How long these actions take one after another [s], at the most for alternatives of a text; never too much.
+    """Return the duration of these actions in sequence [s]; it is never too long, except for alternatives of a text.
 
-    What is not known (an expression's text, a walk's turn) counts as nothing.
+    Of these the longest counts. Unknown times, such as of an expression's text or of a walk's turn, count as 0.
     """
     return sum(_one(step, motions) for step in block)
 
@@ -64,7 +64,7 @@ def _one(step: PlacedAction, motions: Mapping[str, MotionDefinition]) -> float:
         case Play(name):
             return motions[name].duration if name in motions else 0.0
         case Posture():
-            return 0.0  # it may stand there already
+            return 0.0  # the robot may be in that posture already
         case Walk(x, y):
             return hypot(x, y) / WALKING_SPEED
         case Wait(seconds):
@@ -79,11 +79,11 @@ def _one(step: PlacedAction, motions: Mapping[str, MotionDefinition]) -> float:
 
 
 def _taken(command: Do) -> float:
-    with suppress(BadCommandError):  # an argument that only a step fills in
+    with suppress(BadCommandError):  # an argument that only a step can fill in
         return time_taken(command)
     return 0.0
 
 
 def _length(text: str) -> int:
-    """The characters of a text that are said in any case."""
+    """Return the number of characters of a text outside its expressions."""
     return len(text) if "{{" not in text else sum(len(part) for part in split_template(text) if isinstance(part, str))

@@ -1,4 +1,4 @@
-"""Texts that YAML reads otherwise than they were meant: cut off by a comment, torn at a comma, or a map by a colon."""
+"""Texts that YAML reads in an unintended way: cut off by a comment, split at a comma, or made a map by a colon."""
 
 import re
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ _ENDED = (".", "!", "?", "…", ":", '"', "'", ")")
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report texts that end where a comment begins without a blank, and alternatives that are parts of one."""
+    """Report texts that end at a comment without a space after its `#`, and alternatives that are parts of one text."""
     for file, report in draft.reports.items():
         if file.startswith("behaviors/"):
             report.memoize(("torn texts", file), None, partial(_texts, report))
@@ -49,18 +49,18 @@ def _cut(report: DocumentReport) -> None:
 
 
 def _torn(report: DocumentReport) -> None:
-    """Lists of sentences of which one does not end, and goes on in small letters."""
+    """Report lists of sentences in which one has no end and the next begins with a small letter."""
     lines = lines_of(report.document.text)
     lists: dict[NodePath, list[str]] = {}
     for path in report.document.spans:
         if path and isinstance(path[-1], int) and isinstance(value := report.document.find(path), str):
             lists.setdefault(path[:-1], []).append(value)
     for path, texts in lists.items():
-        if "phrases" in path:  # a full stop there says that a phrase must be a whole clause
+        if "phrases" in path:  # a full stop there means that a phrase must be a whole clause
             continue
         if len(texts) > 1 and any(text.endswith((".", "!", "?")) for text in texts):
             places = [report.document.place((*path, i)) for i in range(len(texts))]
-            # the line of each plain text; a text in quotes, which is whole, gets a number of its own
+            # the line of each plain text; a quoted text can't be torn, and gets a number of its own
             plain = [p.line if lines[p.line - 1][p.column - 1] not in "\"'" else -i for i, p in enumerate(places)]
             for first, last in _parts(texts, plain):
                 *before, end = [f"`{text}`" for text in texts[first:last]]
@@ -73,7 +73,7 @@ def _torn(report: DocumentReport) -> None:
 
 
 def _mapped(report: DocumentReport) -> None:
-    """Texts in a list of answers that a colon makes maps; a map with brackets is meant to be one."""
+    """Report texts in a list of answers that became maps by a colon; a map in braces is intended."""
     lines = report.document.text.split("\n")
     for path in report.document.spans:
         if "answers" not in path or "value" not in path[:-1] or not isinstance(path[-1], int):
@@ -87,9 +87,9 @@ def _mapped(report: DocumentReport) -> None:
 
 
 def _parts(texts: list[str], lines: list[int]) -> Iterator[tuple[int, int]]:
-    """Yield where the parts of each torn text begin and end, in texts that begin in these lines.
+    """Yield the first index and the end index of each torn text, in texts that begin in these lines.
 
-    Each part but the last has no end, and each but the first begins with a small letter in the same line.
+    Each part but the last has no full stop, and each but the first begins with a small letter in the same line.
     """
     first = 0
     for i in range(1, len(texts) + 1):

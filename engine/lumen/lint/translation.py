@@ -1,4 +1,4 @@
-"""What a project says and hears in its languages, and what is missing in one."""
+"""The texts and phrases of a project by language, and what is missing in one."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,11 +17,11 @@ from lumen.project.words import ANYHOW
 
 _HOLE = re.compile(r"\{\{.*?\}\}")
 TO_DO = "TODO "
-"""What a text begins with that is to be translated yet."""
+"""The mark at the beginning of a text that is not translated yet."""
 
 
 class LanguageEntry(NamedTuple):
-    """Where something stands once for each language: a text, alternatives of one, or phrases to be heard."""
+    """A value given once for each language: a text, alternatives of one, or phrases."""
 
     report: DocumentReport
     path: NodePath
@@ -29,14 +29,14 @@ class LanguageEntry(NamedTuple):
 
 
 class Untranslated(NamedTuple):
-    """A place where a language is missing, or not translated yet, and what stands there in another."""
+    """A text that is missing in a language or not translated yet: its place, and the text in another language."""
 
     place: Place
     text: str
 
 
 def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
-    """All of a project, file by file, each once; what is the same in every language is none of them."""
+    """Return all values by language of a project, file by file, each once; values for every language are left out."""
     found = {(report.document.file, path): report for report, path in _places(draft)}
     entries = []
     for (_, path), report in found.items():
@@ -48,7 +48,7 @@ def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
 
 
 def plain_texts(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
-    """Where something is said in one line without a language, and is more than a value to fill in."""
+    """Yield the places of texts on one line without a language that have words besides their expressions."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for site in action_sites(machine):
@@ -60,13 +60,13 @@ def plain_texts(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]
 
 
 def switched_to(draft: ProjectDraft) -> set[str]:
-    """The languages that an action of some behaviour lets the robot speak."""
+    """Return the languages to which an action of some behaviour switches the robot."""
     actions = (site.step.action for machine in draft.behaviors.values() for site in action_sites(machine))
     return {action.language for action in actions if isinstance(action, Language)}
 
 
 def untranslated(entries: Sequence[LanguageEntry], language: str) -> Iterator[Untranslated]:
-    """Where something is missing in that language."""
+    """Yield the entries that are missing in that language, or not translated yet."""
     for report, path, by_language in entries:
         there = by_language.get(language)
         if not is_empty(there) and not _is_begun(there):
@@ -77,14 +77,14 @@ def untranslated(entries: Sequence[LanguageEntry], language: str) -> Iterator[Un
 
 
 def begun(entries: Sequence[LanguageEntry], language: str) -> Iterator[tuple[DocumentReport, NodePath]]:
-    """Where words of another language still stand in place of that one, behind TODO."""
+    """Yield the path of each text in another language that is still behind TODO in that language."""
     for report, path, by_language in entries:
         if _is_begun(by_language.get(language)):
             yield report, (*path, language)
 
 
 def is_empty(value: Any) -> bool:
-    """Whether nothing is said or heard in a language: it has no text, or one of its texts has no words."""
+    """Return whether a translation is empty: it has no text, or one of its texts has no words."""
     texts = value if isinstance(value, list) else [value]
     return not texts or any(text is None or (isinstance(text, str) and not text.strip()) for text in texts)
 

@@ -1,4 +1,4 @@
-"""What YAML reads otherwise than it was meant: words for true and false, numbers, quotes; texts with half a hole."""
+"""Values that YAML reads in an unintended way: words for true and false, numbers, quotes; and unfilled placeholders."""
 
 import re
 from collections.abc import Iterator
@@ -24,14 +24,14 @@ NOT_FILLED_IN = Code("not-filled-in", "speech", WARNING, "the robot would say th
 
 _TRUTHS = {"yes": "true", "on": "true", "y": "true", "no": "false", "off": "false", "n": "false"}
 _TRUTH = re.compile(r"(?i)(?<=[:,\[-] )(yes|no|on|off|y|n)(?=\s|[,}\]]|$)", re.MULTILINE)
-_ZERO, _ZEROS = re.compile(r"0(?<=[ \[,+-]0)\d"), re.compile(r"[-+]?0\d+")  # the first one finds lines, and is fast
+_ZERO, _ZEROS = re.compile(r"0(?<=[ \[,+-]0)\d"), re.compile(r"[-+]?0\d+")  # _ZERO finds lines, quickly
 _GROUP, _GROUPED = re.compile(r"_(?<=\d_)\d"), re.compile(r"[-+]?\d{1,3}(?:_\d{3})+")
 _CURLY = re.compile("[“”„‘’«»]")
 _PAIRS = {"“": "”", "”": "”", "„": "“”", "‘": "’", "«": "»"}
 _DATA = ("context", "data", "body", "robot")
 _HALF = re.compile(r"(?<!\{)\$?\{\s*((?:context|event|state)\.[\w.]+)\s*\}(?!\})")
 _SIGNS = re.compile(r"(?:<|%|\[)\s*((?:context|event|state)\.[\w.]+)\s*(?:>|%|\])")
-"""A value to fill in, as other programs write it."""
+"""A placeholder in the form of other programs."""
 _OF_OTHERS = re.compile(
     r"\{%.*?%\}|\{#.*?#\}|[$#]\{\s*(?P<certain>\w+)\s*\}|(?<!\{)\{\s*(?P<braces>[^\W\d]\w*)\s*\}(?!\})"
     r"|%\((?P<percent>\w+)\)s|%(?P<signs>\w+)%|\$(?P<dollar>\w+)|<(?P<angles>\w+)>|\[(?P<square>\w+)\]"
@@ -41,7 +41,7 @@ _BARE = re.compile(r"(?:context|event\.data)\.\w+(?:\.\w+)*")
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report values that are texts, numbers or texts with quotes where something else was probably meant."""
+    """Report values probably meant as truth values, numbers or quoted texts, and unfilled placeholders."""
     for file, report in draft.reports.items():
         report.memoize(("traps", file), None, partial(_values, report))
     for name, machine in draft.behaviors.items():
@@ -57,14 +57,14 @@ def _values(report: DocumentReport) -> None:
 
 
 def _lines(text: str, pattern: re.Pattern[str]) -> set[int]:
-    """The numbers of the lines in which a pattern is found."""
+    """Return the numbers of the lines in which a pattern is found."""
     found = [match.start() for match in pattern.finditer(text)]
     index = LineIndex(text) if found else None
     return set(map(index.line, found)) if index else set()
 
 
 def _plain(report: DocumentReport, wanted: set[int]) -> Iterator[tuple[NodePath, str, object]]:
-    """Every value that stands in one of these lines without quotes: its path, as it is written, and as it is read."""
+    """Yield every unquoted value in one of these lines: its path, its source text, and its value."""
     lines = lines_of(report.document.text)
     for path, span in report.document.spans.items():
         place = span.value
@@ -75,7 +75,7 @@ def _plain(report: DocumentReport, wanted: set[int]) -> Iterator[tuple[NodePath,
 
 
 def _truth(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
-    """Only where data stands: among phrases, `no` is a word."""
+    """Report a word for true or false in data only: among phrases, `no` is a word."""
     if isinstance(value, str) and (meant := _TRUTHS.get(value.lower())) and any(key in _DATA for key in path[:-1]):
         hint = f'write `{meant}`, or put it in quotes if you mean the text: "{value}"'
         report(LOOKS_LIKE_TRUTH, path, f"this is the text `{value}`, not `{meant}`", hint)
@@ -94,14 +94,14 @@ def _quotes(report: DocumentReport, path: NodePath, source: str, value: object) 
     closing = _PAIRS.get(source[:1], "")
     place = report.document.place(path)
     if any(d.place.line == place.line and d.place.column == place.column for d in report.diagnostics):
-        return  # told already
+        return  # it has a finding already
     if isinstance(value, str) and len(source) > 1 and source[-1] in closing and not _CURLY.search(source[1:-1]):
         hint = f'write straight quotes: "{source[1:-1]}"'
         report(CURLY_QUOTES, path, "these quotes are part of the text: YAML accepts only straight ones", hint)
 
 
 def _strange(report: DocumentReport) -> None:
-    """Errors that come of curly quotes are told as such."""
+    """Replace the hints of errors that curly quotes caused."""
     if not _CURLY.search(report.document.text):
         return
     lines = lines_of(report.document.text)
@@ -114,7 +114,7 @@ def _strange(report: DocumentReport) -> None:
 
 
 def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
-    """Texts that are said with the name of a value in place of the value."""
+    """Report texts that would say the name of a value instead of the value."""
     for site in action_sites(machine):
         if isinstance(site.step.action, SayText):
             for template in (t for texts in site.step.action.texts.values() for t in texts):
@@ -128,7 +128,7 @@ def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _foreign(found: re.Match[str], machine: MachineDefinition) -> tuple[str, str] | None:
-    """A placeholder in the form of another tool, and the hint; None if it may be meant as text."""
+    """Return a placeholder in another tool's form, and the hint; None if it may be meant as text."""
     if found[0].startswith("{%"):
         return found[0], "texts have no `{% … %}`: write `{{ CONDITION ? 'one text' : 'another' }}`"
     if found[0].startswith("{#"):

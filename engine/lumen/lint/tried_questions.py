@@ -1,4 +1,4 @@
-"""Questions to try passages with that try nothing: of a passage that is not there, or in words that are known."""
+"""Test questions for passages that test nothing: of an unknown passage, or in words that are already used."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -22,12 +22,12 @@ class _Text(NamedTuple):
 
     @property
     def key(self) -> tuple[str, str]:
-        """What it has in common with all that is the same question."""
+        """The value that equal questions have in common."""
         return self.language, words_of(self.said)
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what says nothing of how like a passage a question has to be."""
+    """Report unknown passages and repeated questions."""
     stand = {text.key: place for text, place in _known(draft)}
     for name, questions in draft.questions.items():
         report = draft.report(QUESTIONS_FOLDER, name)
@@ -46,7 +46,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _known(draft: ProjectDraft) -> Iterator[tuple[_Text, Place]]:
-    """The questions of the passages."""
+    """Yield the questions of the passages."""
     for name, passage in draft.knowledge.items():
         report = draft.report(KNOWLEDGE_FOLDER, name)
         for text in _texts(("questions",), passage.questions):
@@ -66,5 +66,5 @@ def _texts(path: NodePath, texts: Mapping[str, tuple[str, ...]]) -> Iterator[_Te
 
 
 def _place(report: DocumentReport, text: _Text) -> Place:
-    """Of one text alone the place is that of its language."""
+    """Return the place of a text; for a single text of a language it is the place of that language's value."""
     return report.document.place(first(report, text.path, text.path[:-1]))

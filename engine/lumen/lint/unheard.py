@@ -1,4 +1,4 @@
-"""Rows of `hears` and slots of phrases from which nothing comes: names that no row hears, and what no row reads."""
+"""Rows of `hears` and slots without effect: names that no other row has, and slots that no row reads."""
 
 from collections.abc import Iterator
 
@@ -20,13 +20,13 @@ UNHEARD_NAME = Code("unheard-name", "hearing", WARNING, "a row with `not` or `as
 UNUSED_SLOT = Code("unused-slot", "hearing", WARNING, "no row uses the value of a slot")
 
 Reads = dict[str, dict[int, set[str | None]]]
-"""Of each behaviour what each row reads of `heard`, by its number; None among it if that may be anything."""
+"""For each behaviour the names that each row, by its number, reads from `heard`; None stands for any name."""
 
 _NO_SLOTS = frozenset(("text", "phrase", "answer"))
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report rows about names that are not heard there, and slots that no row reads."""
+    """Report rows with `not` or `asked` whose names no other row has, and slots that no row reads."""
     hearing = hearing_behaviors(draft)
     for name in hearing:
         rows = HeardRows(draft, name)
@@ -40,7 +40,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _unheard(rows: HeardRows, row: SaidRow) -> None:
-    """Report the names of a row with `not` or `asked` that nothing else hears, in its state or around it."""
+    """Report the names of a row with `not` or `asked` that no other row in its state or around it has."""
     around = [*rows.around(row.state.path)]
     others = [other.hears for state in around for other in rows.by_state.get(state.path, ())]
     heard = {name for other in others if not other.way for name in other.names}
@@ -53,7 +53,7 @@ def _unheard(rows: HeardRows, row: SaidRow) -> None:
 
 
 def _quoted(transition: Transition) -> Iterator[str]:
-    """The texts in a guard under `on`, which may ask for phrases."""
+    """Yield the texts in a guard under `on`, which may be names of phrases."""
     if transition.guard and not transition.hears:
         nodes = (node for node, _ in walk(tree(transition.guard.source)))
         yield from (node.value for node in nodes if isinstance(node, Literal) and isinstance(node.value, str))
@@ -74,13 +74,13 @@ def _unread(draft: ProjectDraft, tables: WordTables, name: str, reads: Reads) ->
     """Report each slot of the phrases of a name that no row with the name reads, at its first phrase."""
     users = known_by(draft, tables.report)
     if not reads.keys() >= {user for user in users if any(heard_rows(draft.behaviors[user]))}:
-        return  # one that is broken may read it
+        return  # a behaviour that is unreadable may read it
     users = [user for user in users if user in reads]
     rows = [(user, row) for user in users for row in heard_rows(draft.behaviors[user]) if name in row.names]
     read = {key for user, row in rows for key in reads[user].get(row.number, ())}
     known = {key for user, row in rows for key in caught_schema(draft.behaviors[user], row).get("properties", ())}
     if not rows or not read <= known:
-        return  # what is read is all of it, or is not there: one of these may be meant
+        return  # all of it is read, or something that does not exist: this slot may be meant
     paths = [("phrases", name), *(("answers", name, i, "phrases") for i in range(len(tables.answers.get(name, ()))))]
     phrases = (phrase for path in paths for phrase in written_phrases(tables.report, path))
     sound = (p for p in phrases if "{" in p.text and not any(is_broken(draft.behaviors[u], p.text) for u in users))

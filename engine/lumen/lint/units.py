@@ -1,4 +1,4 @@
-"""Angles and lengths that are a thousandfold, or a fifty-seventh part, of what was probably meant."""
+"""Angles and lengths that are probably in another unit than the file's."""
 
 from collections.abc import Iterator
 from math import pi
@@ -18,17 +18,17 @@ WRONG_UNIT = Code("wrong-unit", "robot", WARNING, "an angle or a length is not i
 
 
 MAX_WALK_DISTANCE = 20.0
-"""No walk at an exhibition is longer [m]."""
+"""The longest walk at an exhibition [m]."""
 
 SPEED_TOLERANCE = 1.05
-"""How far a speed may lie above the greatest: people round."""
+"""The tolerance factor for a speed above the limit, because people round."""
 
 HALF_TURN_PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for digits in (2, 3, 4))
-"""Parts of a half turn as people write them in radians."""
+"""Fractions of a half turn as people write them in radians."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report angles in radians among degrees, turns of many rounds, walks that leave the stage by far or run."""
+    """Report angles in radians among degrees, turns of more than one round, and walks that are too far or too fast."""
     for name in draft.motions:
         _radians(draft.report("motions", name), draft.body)
     stage = draft.settings.stage if draft.settings else None
@@ -37,7 +37,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _radians(report: DocumentReport, body: Body | None) -> None:
-    """In a file that counts in degrees: 1.57 is hardly one and a half of them."""
+    """Report angles such as 1.57 in a file in degrees."""
     if report.document.find(("units", "angle")) != "deg":
         return
     angles = [(path, angle) for path, angle in _angles(report.document.data, (), body) if angle]
@@ -54,7 +54,7 @@ def _radians(report: DocumentReport, body: Body | None) -> None:
 
 
 def _angles(data: Any, path: NodePath, body: Body | None) -> Iterator[tuple[NodePath, float]]:
-    """Every angle of a motion's `joints` and `roles`; openings and lengths are none."""
+    """Yield every angle under `joints` and `roles` of a motion, with its path; openings and lengths are left out."""
     others = (*body.hands, *body.slides, *map(body.roles.path, body.slides)) if body else ()
     waiting: list[tuple[Any, NodePath]] = [(data, path)]
     while waiting:

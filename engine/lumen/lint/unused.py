@@ -1,4 +1,4 @@
-"""What is declared and never used, and names that differ by case only."""
+"""Declarations that are never used, and names that differ only in case."""
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -43,16 +43,16 @@ _ASKED = {
     ),
     "lists": ("nothing uses the list `{}`", "write `for: {{each: lists.{}, as: …}}` in a state", UNUSED_LIST),
 }
-"""The tables, and for each what is said where nothing asks for it, and a hint."""
+"""The tables, each with the message and the hint for an unused name, and its code."""
 
 _NO_MEANINGS = {"phrases": WORD_LISTS, "answers": TABLES}
-"""The names by which sentences are read, whether or not something asks for them."""
+"""Names that are used to understand sentences, even if no expression names them."""
 
 _EXPRESSION_CODES = {c for c in vars(expression_findings).values() if isinstance(c, Code)} - {UNKNOWN_STATE}
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what nothing uses, where nothing is broken that could: in a file, and in the whole project."""
+    """Report unused names, but only if nothing that could use them is broken: in a file, and in the whole project."""
     sound = set()
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -86,7 +86,7 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
 
 
 def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
-    """Words files that no behaviour names, and what stands in the others and is asked for by none of these."""
+    """Report words files that no behaviour names, and names in the others that no behaviour uses."""
     for name, words in draft.own_words.items():
         report, users = draft.report(WORDS_FOLDER, name), [n for n, m in draft.behaviors.items() if name in m.words]
         if not users and report.whole and draft.whole_behaviors:
@@ -101,9 +101,9 @@ def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
 def _unasked(
     report: DocumentReport, own: Mapping[str, Collection[str]], named: Sequence[Named], root: str, *, hears: bool
 ) -> None:
-    """Report phrases, answers and lists of a file whose name stands in no expression and no row of `hears`.
+    """Report phrases, answers and lists of a file whose name is in no expression and no row of `hears`.
 
-    Word lists have no name to ask for; `hears` is whether a behaviour that knows them has rows.
+    Word lists are exempt; `hears` is whether a behaviour that knows the file has rows.
     """
     texts = {text for each in named for text in each.texts}
     lists = None if any(each.lists is None for each in named) else {n for each in named for n in each.lists or ()}
@@ -128,12 +128,12 @@ def _context(machine: MachineDefinition, report: DocumentReport, read: Collectio
 
 
 def _states_of(report: DocumentReport) -> str:
-    """What is wrong where much is unused, or is missed by stories: part of the chart is gone."""
+    """Return the root cause to report if much is unused or missed by stories: a part of the statechart is missing."""
     return f"the states of {report.document.file}"
 
 
 def _looked_at(draft: ProjectDraft, name: str) -> set[str]:
-    """The context keys that stories and controllers look at."""
+    """Return the context keys that stories and controllers read."""
     main = draft.settings.behavior if draft.settings else ""
     stories = [story for story in draft.stories.values() if (story.behavior or main) == name]
     expected = {
@@ -147,7 +147,7 @@ def _looked_at(draft: ProjectDraft, name: str) -> set[str]:
 
 
 def _files(draft: ProjectDraft) -> None:
-    """Files that nothing names."""
+    """Report files that no other file names."""
     assert draft.settings is not None
     actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
     expected = {
@@ -165,14 +165,14 @@ def _files(draft: ProjectDraft) -> None:
         "fuzzy": ("controller", draft.controllers, controllers, "use it with `track`, or delete the file"),
     }
     for folder, (what, names, wanted, hint) in used.items():
-        for name in names if wanted.intersection(names) else ():  # where none is used, they are about to be
+        for name in names if wanted.intersection(names) else ():  # without any use, the project is still being written
             if name not in wanted and (folder != "fuzzy" or _bound(draft.controllers[name])):
                 message = f"nothing uses the {what} `{name}`"
                 draft.say(UNUSED_FILE, f"{folder}/{name}.yaml", message, hint)
 
 
 def _functions(draft: ProjectDraft) -> None:
-    """Functions of the project that no expression calls; one that calls another may itself be unused."""
+    """Report functions of the project that no expression calls; a call by another function counts."""
     written = [site.text.shown for machine in draft.behaviors.values() for site in expression_sites(machine)]
     written += [each.shown for story in draft.stories.values() for each in conditions_of(story.properties)]
     written += [function.expression for function in draft.functions.values()]
@@ -183,7 +183,7 @@ def _functions(draft: ProjectDraft) -> None:
 
 
 def _bound(controller: ControllerDefinition) -> bool:
-    """Whether a controller does something by itself, for who lets it `track`."""
+    """Return whether a controller has an effect when `track` switches it on."""
     return bool(controller.output_bindings or controller.signals)
 
 
@@ -216,7 +216,7 @@ def _say_alike(report: DocumentReport, path: NodePath, names: Iterable[str]) -> 
 
 
 def _alike(names: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Each name that a former one is like, with that one."""
+    """Yield each name that differs only in case from an earlier one, with the earlier one."""
     seen: dict[str, str] = {}
     for name in names:
         other = seen.setdefault(name.casefold(), name)

@@ -1,6 +1,6 @@
-"""Files of an older vocabulary, rewritten word by word for a newer one; pure, from files to files.
+"""Files of an older vocabulary, rewritten word by word for a newer one: a pure function from files to files.
 
-What is not a word that changed stays as it is, comments and blanks included.
+Everything else, including comments and spaces, stays as it is.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -18,7 +18,7 @@ from lumen.project.yaml_reader import parse
 
 
 class Rewriting(NamedTuple):
-    """A place of a file that is rewritten: why, in words, and how."""
+    """A place of a file that is rewritten: the reason in words, and the new text."""
 
     place: Place
     why: str
@@ -26,10 +26,10 @@ class Rewriting(NamedTuple):
 
 
 Migration = Callable[[Document], Iterable[Rewriting]]
-"""What has changed from one vocabulary to the next, as it is found in one document."""
+"""A change from one vocabulary to the next: a function that finds the places to rewrite in a document."""
 
 MIGRATIONS: Mapping[int, Sequence[Migration]] = {}
-"""What leads from each vocabulary to the next, by the number of the older one. There is one vocabulary so far."""
+"""The migrations from each vocabulary to the next, by the older number. There is one vocabulary so far."""
 
 
 def upgraded(
@@ -37,10 +37,10 @@ def upgraded(
     migrations: Mapping[int, Sequence[Migration]] = MIGRATIONS,
     vocabulary: int = VOCABULARY,
 ) -> tuple[dict[str, bytes], list[Rewriting]]:
-    """The files of a project as `vocabulary` has them, and what was rewritten, where it stood.
+    """Return the files of a project in `vocabulary`, and the rewritten places, as they were before.
 
-    lumen.yaml says the number then. Raises UsageError where a file can't be read, where the files are newer than that,
-    or where the old and the new word of something stand side by side.
+    lumen.yaml then has the new number. Raises UsageError if a file can't be read, if the files are newer than that, or
+    if the old and the new word for the same thing are both in use.
     """
     now, done = dict(files), list[Rewriting]()
     said = _said(_document(now, MAIN_FILE))
@@ -62,7 +62,10 @@ def upgraded(
 
 
 def renamed_key(files: str, path: Sequence[str], name: str) -> Migration:
-    """Calls a key by a new name in the files that match, at any path that does; `*` in it is any one step."""
+    """Return a migration that renames a key in matching files, at every matching path.
+
+    A `*` in a path matches any one step.
+    """
 
     def migrate(document: Document) -> Iterator[Rewriting]:
         if not PurePosixPath(document.file).match(files):
@@ -98,7 +101,7 @@ def _said(main: Document) -> int:
 
 
 def _numbered(main: Document, vocabulary: int, line_break: str) -> Rewriting | None:
-    """How lumen.yaml comes to say the number, None where it does."""
+    """Return the rewriting that writes the number into lumen.yaml; None if it is there already."""
     said = main.data.get(VOCABULARY_KEY)
     if said == vocabulary:
         return None

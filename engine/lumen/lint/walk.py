@@ -1,4 +1,4 @@
-"""Every action and every expression of a behaviour, and where each stands."""
+"""Every action and every expression of a behaviour, with its place."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -28,7 +28,7 @@ from lumen.project.memoization import Same, memoize
 
 
 class ActionSite(NamedTuple):
-    """An action in its state; `transition` is the one it belongs to, None for `entry`, `do` and `exit`."""
+    """An action in its state; `transition` is the one that it belongs to, None for `entry`, `do` and `exit`."""
 
     state: State
     transition: Transition | None
@@ -36,25 +36,27 @@ class ActionSite(NamedTuple):
 
 
 class ExpressionSite(NamedTuple):
-    """An expression or template; `key` is where `assign` puts its value, `guard` whether it is a condition.
-
-    `expected` is the JSON Schema that its value has to fit, where neither says so.
-    """
+    """An expression or template."""
 
     text: Expression | Template
+    """The expression, with its place."""
     transition: Transition | None
+    """The transition that it belongs to; None for any other part of a state."""
     guard: bool = False
+    """Whether it is a condition."""
     key: str = ""
+    """The context key to which `assign` assigns its value; empty for others."""
     expected: Mapping[str, Any] | None = None
+    """The JSON Schema that its value must fit, if neither `guard` nor `key` implies one."""
 
 
 def action_sites(machine: MachineDefinition) -> tuple[ActionSite, ...]:
-    """All actions, those inside `if` and `parallel` too, in the order of the file."""
+    """Return all actions, including those inside `if` and `parallel`, in the order of the file."""
     return memoize(("action sites", machine.id), Same(machine), lambda: tuple(_actions(machine)))
 
 
 def expression_sites(machine: MachineDefinition) -> tuple[ExpressionSite, ...]:
-    """All expressions and templates."""
+    """Return all expressions and templates."""
     return memoize(("expression sites", machine.id), Same(machine), lambda: tuple(_expressions(machine)))
 
 
@@ -85,7 +87,7 @@ def _expressions(machine: MachineDefinition) -> Iterator[ExpressionSite]:
 
 
 def _made(where: NodePath) -> bool:
-    """Whether something that stands there was made of a `for`: its place is that of the `for`, and nobody wrote it."""
+    """Return whether an element was generated from a `for`: it has the path of the `for`, and is not in the file."""
     return where[-1:] == ("for",)
 
 

@@ -1,4 +1,4 @@
-"""Ways through the hall: places where the robot can't stand, and straight ways through what is solid."""
+"""Ways through the hall: places where the robot can't stand, and straight ways through solid objects."""
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
@@ -18,23 +18,21 @@ BLOCKED_PLACE = Code(
 BLOCKED_WAY = Code("blocked-way", "robot", WARNING, "the straight way from one place to the next is blocked")
 
 ROOM_TO_STAND, ROOM_TO_PASS = 0.4, 0.2
-"""How far it has to be to what is solid, from where the robot stands: nearer it does not set out; and where it passes,
-with its arms [m].
-"""
+"""The free distance that the robot needs to set out from a place, and to pass an object with its arms [m]."""
 
 START = ""
-"""Stands for where the robot starts, which has no name."""
+"""The name of the robot's start."""
 
 
 class PlacedWalk(NamedTuple):
-    """A walk to a place, and where it is written."""
+    """A walk to a place, and the path of its action."""
 
     to: str
     where: NodePath
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report places and ways that are not free in the hall of the project."""
+    """Report places and ways that are blocked in the hall of the project."""
     if draft.settings is None or draft.main is None:
         return
     named = draft.settings.section(HallPlaces).by_name
@@ -80,9 +78,9 @@ def _ways(
 
 
 def _followers(machine: MachineDefinition) -> set[tuple[str, PlacedWalk]]:
-    """Each place, or the start, with each walk that may be the next one after it.
+    """Return each place, or the start, with each walk that may be the next after it.
 
-    What guards forbid is not seen; a walk whose place is computed leads anywhere, and nothing is said of what follows.
+    Guards are ignored. After a walk whose place is computed the position is unknown, so nothing is returned for it.
     """
     walks = {path: _walks(state) for path, state in machine.states.items()}
     found: set[tuple[str, PlacedWalk]] = set()
@@ -94,7 +92,7 @@ def _followers(machine: MachineDefinition) -> set[tuple[str, PlacedWalk]]:
 
 
 def _next(machine: MachineDefinition, walks: Mapping[str, list[PlacedWalk]], begin: list[str]) -> Iterator[PlacedWalk]:
-    """The first walks that can come when these states are entered."""
+    """Yield the first walks that can happen when these states are entered."""
     waiting, seen = list(begin), set()
     while waiting:
         path = waiting.pop()
@@ -110,7 +108,7 @@ def _next(machine: MachineDefinition, walks: Mapping[str, list[PlacedWalk]], beg
 
 
 def _left_for(machine: MachineDefinition, path: str) -> list[str]:
-    """The states that the transitions of a state, and of those around it, lead to."""
+    """Return the targets of the transitions of a state and of its ancestors."""
     found: list[str] = []
     at: str | None = path
     while at is not None:
@@ -121,6 +119,6 @@ def _left_for(machine: MachineDefinition, path: str) -> list[str]:
 
 
 def _walks(state: State) -> list[PlacedWalk]:
-    """The walks of a state to places, in the order in which they are written."""
+    """Return the walks of a state to places, in the order of the file."""
     rows = [step for block in (state.entry, state.do) for step in nested(block)]
     return [PlacedWalk(step.action.to, step.where) for step in rows if isinstance(step.action, GoTo)]

@@ -1,4 +1,4 @@
-"""The words by which sentences are read, in each language of a project that hears."""
+"""Word lists that are needed to understand sentences, in each language of a project that hears."""
 
 from lumen.language.diagnostics import WARNING, Code
 from lumen.lint.naming import heard_rows
@@ -19,7 +19,7 @@ _NEEDED = {
     NEGATIONS: (NEGATIONS, NEGATIONS_AFTER),
     QUESTIONS: (QUESTIONS,),
 }
-"""The lists that each language needs, and those of which one is enough."""
+"""The lists that each language needs; of several, one is enough."""
 
 
 def check(draft: ProjectDraft) -> None:

@@ -1,4 +1,4 @@
-"""The phrases, answers and lists of every file, behaviours and words files alike, where they stand."""
+"""The phrases, answers and lists of all behaviours and words files, with their places."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ from lumen.talk.patterns import Slot, forms
 
 
 class WordTables(NamedTuple):
-    """What one file gives names to, with the file's report."""
+    """The named tables of one file, with the file's report."""
 
     report: DocumentReport
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]]
@@ -33,7 +33,7 @@ class WrittenPhrase(NamedTuple):
 
 
 def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
-    """Those of each file of the project; a behaviour's without what it has from words files."""
+    """Yield the tables of each file of the project; a behaviour's do not include those from words files."""
     for name, machine in draft.behaviors.items():
 
         def own(key: str, table: Mapping[str, Any], borrowed: Any = machine.borrowed) -> dict[str, Any]:
@@ -46,7 +46,7 @@ def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
 
 
 def written_phrases(report: DocumentReport, path: NodePath) -> Iterator[WrittenPhrase]:
-    """The phrases at a path: a text, a list of texts, or either for each language."""
+    """Yield the phrases at a path: a text, a list of texts, or either for each language."""
     value = report.document.find(path)
     table = value if isinstance(value, Mapping) else {"": value}
     for language, rows in table.items():
@@ -60,12 +60,12 @@ def written_phrases(report: DocumentReport, path: NodePath) -> Iterator[WrittenP
 
 
 def is_taken(phrase: str, other: Mapping[str, tuple[str, ...]]) -> bool:
-    """Whether other phrases are heard in each form of a phrase; in one with a slot that is not certain."""
+    """Return whether each form of a phrase contains another of these phrases; False for a form with a slot."""
     return all(form.plain and is_heard(" ".join(form.literals), other) for form in forms(phrase))
 
 
 def declaring_report(draft: ProjectDraft, behavior: str, key: str, name: str) -> DocumentReport | None:
-    """The report of the file that gives a behaviour those phrases or answers; None if they come with Lumen."""
+    """Return the report of the file that declares these phrases or answers; None if they come with Lumen."""
     words = draft.behaviors[behavior].borrowed.get((key, name))
     if words is None:
         return draft.report("behaviors", behavior)
@@ -77,14 +77,14 @@ def _listed(value: Any) -> list[Any]:
 
 
 def known_by(draft: ProjectDraft, report: DocumentReport) -> list[str]:
-    """The behaviours that know what a file gives names to: the one that it is, or those that name it under `words`."""
+    """Return the behaviours that know the names of a file: its own, or those that name the file under `words`."""
     folder, _, file = report.document.file.rpartition("/")
     name = file.removesuffix(".yaml")
     return [n for n, m in draft.behaviors.items() if (name in m.words if folder == WORDS_FOLDER else n == name)]
 
 
 def slot_place(phrase: WrittenPhrase, slot: Slot) -> Place:
-    """The place of a slot of a phrase."""
+    """Return the place of a slot of a phrase."""
     signs = (f"{{{slot.type}:{slot.name}}}", f"{{{slot.type}}}")
     sign = next(sign for sign in signs if sign in phrase.text)
     return place_within(phrase.report.document, phrase.path, phrase.text, phrase.text.index(sign), len(sign))

@@ -19,8 +19,9 @@ _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sa
 
 
 def render(found: Sequence[Findings], *, coloured: bool = False) -> str:
-    """Return a log with one run for each project; files are relative to the project, and the project to its
-    repository.
+    """Return a log with one run for each project.
+
+    Files are relative to the project, and the project to its repository.
     """
     log = {"$schema": _SCHEMA, "version": "2.1.0", "runs": [_run(each) for each in found]}
     return json.dumps(log, indent=2)

@@ -36,9 +36,7 @@ def counted(number: int, word: str) -> str:
 
 
 def clean(text: str) -> str:
-    """Return the text with control characters, which could move a terminal's cursor, made visible; a tab becomes a
-    space.
-    """
+    """Return the text with tabs as spaces, and control characters, which could move the cursor, made visible."""
     return "".join(" " if c == "\t" else c if c.isprintable() else "\ufffd" for c in text)
 
 

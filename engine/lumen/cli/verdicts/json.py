@@ -12,9 +12,7 @@ from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 
 def render(verdict: Verdict) -> str:
-    """Return `{"stories": […], "failed": N, "took": s}`, and if they were tested `sayings`, `examples`, `questions`
-    …
-    """
+    """Return `{"stories": […], "failed": N, "took": s}`, and `sayings`, `examples`, `questions` … if there are any."""
     found: dict[str, Any] = {
         "stories": [_story(rehearsal) for rehearsal in verdict.rehearsals],
         "failed": verdict.failed,

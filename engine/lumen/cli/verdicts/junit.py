@@ -10,9 +10,7 @@ from lumen.run.verdict import JudgedExample, JudgedSaying, Verdict
 
 
 def render(verdict: Verdict) -> str:
-    """Return a suite for the stories, one for the sayings, one for the functions, and one for the results of
-    exploring.
-    """
+    """Return a suite for the stories, one for the sayings, one for the functions, and one for the exploration."""
     suites = []
     if verdict.rehearsals or not (verdict.explored or verdict.sayings or verdict.examples):
         cases = [*map(_story, verdict.rehearsals), *_uncovered(verdict)]

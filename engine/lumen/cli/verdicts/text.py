@@ -25,9 +25,7 @@ def render(verdict: Verdict, *, coloured: bool = False) -> str:
 
 
 def story(rehearsal: Rehearsal, *, coloured: bool = False) -> str:
-    """Return a line with a story's result, length [min:s], name and title; if it failed, also the failure and last
-    events.
-    """
+    """Return a line with a story's result, length, name and title, and below it a failure and the last events."""
     failed = rehearsal.failed
     sign = paint("FAILED", "bold", "red", on=coloured) if failed else paint("ok    ", "green", on=coloured)
     length = paint(f"{clock_time(rehearsal.time):>6}", "dim", on=coloured)

@@ -1,7 +1,7 @@
-"""What can be repaired without asking: findings to edits of the text, comments and layout untouched.
+"""Repairs that need no decision: from findings to edits of the text that leave comments and layout alone.
 
-A fix is a proposal: whoever applies one lints again and keeps it only where the finding is gone and no other has come
-(`rules.repairs`).
+A fix is a proposal: its user lints again, and keeps it only if the finding has gone and no other has come
+(`lint.repairs`).
 """
 
 from collections.abc import Mapping
@@ -17,13 +17,13 @@ from lumen.project.broken_features import blaming, faulty, shown
 __all__ = ["Edit", "FileText", "Fix", "edited", "fixes"]
 
 SLIP = "lumen.lint.fixes.misspellings:slip"
-"""The repair of a word that is unknown or wrong, if its code has no other."""
+"""The repair of an unknown or wrong word, if its code has no other."""
 
 
 def fixes(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> list[Fix]:
-    """Return what may repair this finding, the likeliest first; nothing if only its author can know.
+    """Return the fixes for this finding, the most likely first; empty if only the author can decide.
 
-    Raises LumenError if the repair belongs to a package that was installed beside Lumen, and raises.
+    Raises LumenError if the repair belongs to another installed package and raises an exception.
     """
     content = files.get(diagnostic.place.file)
     where = table("fixes").get(diagnostic.code, SLIP if diagnostic.code.startswith(("unknown-", "wrong-")) else "")

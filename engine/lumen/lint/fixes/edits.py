@@ -1,4 +1,4 @@
-"""Edits of a file's text, and the text by its lines as places count them."""
+"""Edits of a file's text, and access to the text by lines and columns."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -10,21 +10,21 @@ _BOM = b"\xef\xbb\xbf"
 
 
 class Edit(NamedTuple):
-    """The text at `place` becomes `text`."""
+    """The replacement of the text at `place` by `text`."""
 
     place: Place
     text: str
 
 
 class Fix(NamedTuple):
-    """What a fix does, in words, and the edits that do it."""
+    """The effect of a fix in words, and its edits."""
 
     title: str
     edits: tuple[Edit, ...]
 
 
 class FileText:
-    """The text of a file by its lines, as places count them."""
+    """The text of a file, by line and column as places count them."""
 
     def __init__(self, file: str, content: bytes) -> None:
         self.file = file
@@ -33,27 +33,28 @@ class FileText:
         self.lines, self.breaks = lines_and_breaks(self.text)
 
     def line(self, number: int) -> str:
+        """Return the line of this number, from 1; empty if there is none."""
         return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
 
     def at(self, place: Place) -> str:
-        """The text at a place of one line, empty where it has several."""
+        """Return the text at a place within one line; empty if the place spans several."""
         one = place.line == place.end_line
         return self.line(place.line)[place.column - 1 : place.end_column - 1] if one else ""
 
     def whole(self, number: int) -> Place:
-        """The place of a line with its break."""
+        """Return the place of a line including its line break."""
         if number < len(self.lines):
             return Place(self.file, number, 1, number + 1, 1)
         return Place(self.file, number, 1, number, len(self.line(number)) + 1)
 
     def offset(self, line: int, column: int) -> int:
-        """Where a place is in the text."""
+        """Return the index of a line and column, both from 1, in the text."""
         before = sum(len(t) + len(b) for t, b in zip(self.lines[: line - 1], self.breaks, strict=False))
         return min(before + column - 1, len(self.text))
 
 
 def edited(content: bytes, edits: Sequence[Edit]) -> bytes:
-    """The file after these edits; of two that overlap the first one counts."""
+    """Return the file after these edits; of two that overlap, only the later one in the file is made."""
     source = FileText("", content)
     spans = [(source.offset(*e.place[1:3]), source.offset(*e.place[3:5]), e.text) for e in dict.fromkeys(edits)]
     text, done = source.text, len(source.text) + 1

@@ -1,4 +1,4 @@
-"""Fixes of whole lines: their indentation, lines that stand twice, comments."""
+"""Fixes of whole lines: indentation, duplicate lines, comments."""
 
 import re
 
@@ -10,7 +10,7 @@ _COMMENT = re.compile(r"[ \t]*#[ \t]*lumen:[ \t]*ignore.*")
 
 
 def spaces(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Tabs in the indentation of the file as two, four or eight spaces each."""
+    """Return fixes that replace tabs in the indentation by two, four or eight spaces each."""
     lines = [(n, m) for n, line in enumerate(source.lines, 1) if (m := TABBED.match(line))]
     return [
         Fix(
@@ -22,7 +22,7 @@ def spaces(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
 
 
 def once(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """One of two lines that say the same, the one without a comment where one has one."""
+    """Return a fix that deletes one of two equal lines: the one without a comment if only one has a comment."""
     number = diagnostic.place.line
     line = source.line(number)
     if line[: diagnostic.place.column - 1].strip() or _deeper(source, number):
@@ -39,13 +39,13 @@ def once(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
 
 
 def _said(line: str) -> str:
-    """The line without its comment; of one with a `#` or a quote elsewhere all of it."""
+    """Return the line without its comment; all of it if it has a quote, because a `#` could be part of a text."""
     before = re.split(r"\s+#", line)[0]
     return before.rstrip() if "'" not in before and '"' not in before else line
 
 
 def _deeper(source: FileText, number: int) -> bool:
-    """Whether what is in that line goes on below it."""
+    """Return whether the value of that line continues below it."""
 
     def depth(line: str) -> int:
         return len(line) - len(line.lstrip())
@@ -56,7 +56,7 @@ def _deeper(source: FileText, number: int) -> bool:
 
 
 def fewer_ignores(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """An ignore comment without one of its codes, or without it where it has one."""
+    """Return a fix that removes one code from an ignore comment, or the whole comment if it has no other code."""
     place, line = diagnostic.place, source.line(diagnostic.place.line)
     comment = next((m for m in _COMMENT.finditer(line) if m.start() < place.column - 1), None)
     if comment is None:

@@ -1,4 +1,4 @@
-"""Fixes of a word or a text: what was meant stands in the finding."""
+"""Fixes of a word or a text whose right form is in the finding's message or hint."""
 
 import re
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ _SAYS = re.compile(r"`([^`]+)`")
 
 
 def slip(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """The word that was meant, where it is so near that there is no doubt."""
+    """Return the fix that writes the word from the hint, if it is similar enough to leave no doubt."""
     there = source.at(diagnostic.place)
     if instead := _INSTEAD.search(diagnostic.hint):
         new = instead[1] or instead[2]
@@ -27,9 +27,9 @@ def slip(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
 
 
 def outnumbered(word: str, meant: str, files: Mapping[str, bytes]) -> bool:
-    """Whether the word stands in the project several times, and what is said to be meant no oftener.
+    """Return whether the project uses `word` several times, and `meant` at most as often.
 
-    Then it is rather the one place where that is defined that has the slip in it.
+    Then the slip is probably in the single definition, not in its uses.
     """
     often, seldom = _count(word, files), _count(meant, files)
     return often > 1 and often >= seldom
@@ -41,9 +41,9 @@ def _count(word: str, files: Mapping[str, bytes]) -> int:
 
 
 def near(word: str, meant: str) -> bool:
-    """Whether one is a slip of the other: another case, a letter too many, too few, wrong, or two exchanged.
+    """Return whether two words differ by one slip: letter case, one letter added, missing or wrong, or two exchanged.
 
-    Not where it could be another name: in a short word, in its first letter (`left`, `reft`), in a digit.
+    It is False if they could be two different names: in short words, in the first letter (`left`, `reft`), in a digit.
     """
     a, b = word.lower(), meant.lower()
     if a == b:
@@ -66,7 +66,7 @@ def _one_slip(a: str, b: str) -> bool:
 
 
 def straight_quotes(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Straight quotes around a text that has curly ones around it, and no others in it."""
+    """Return a fix that writes straight quotes around a text in curly ones, if it contains no others."""
     there = source.at(diagnostic.place)
     if len(there) < 2 or there[0] not in "“”„‟" or there[-1] not in "“”‟" or any(c in '"\\' for c in there):
         return []
@@ -74,13 +74,13 @@ def straight_quotes(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
 
 
 def point(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """The number with a point in place of its comma."""
+    """Return a fix that writes the number with a point instead of its only comma."""
     there = source.at(diagnostic.place)
     return [Fix("write a point", (Edit(diagnostic.place, there.replace(",", ".")),))] if there.count(",") == 1 else []
 
 
 def filled_in(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Two braces on both sides of what is to be filled in."""
+    """Return a fix that writes double braces around a placeholder."""
     there, said, right = source.at(diagnostic.place), _SAYS.search(diagnostic.message), _SAYS.search(diagnostic.hint)
     if said is None or right is None or there.count(said[1]) != 1 or not right[1].startswith("{{"):
         return []

@@ -1,11 +1,11 @@
-"""What is to be said about each code: what it means, why it matters, an example of what is wrong and of what is right.
+"""The explanation of each code: its meaning, why it matters, a wrong and a right example.
 
-Beside this file stands a `CODE.md` for each code: a paragraph that says what, paragraphs that say why, `Wrong:` and
+This folder has a `CODE.md` for each code: a paragraph with the meaning, paragraphs with the reasons, and `Wrong:` and
 `Right:` with the same files in both. An example is a fenced block whose info string names its language and its file; in
 a wrong one also the word that lint marks, as in `yaml behaviors/tour.yaml:3:11-15` (line, first column, column after
-the last). The keys at the left edge of an example replace those of a small sound project; all others stay.
+the last). The top-level keys of an example replace those of a small valid project; all others stay.
 
-Only who explains reads these files: lint itself does not.
+These files are read only to explain a code, not by lint.
 """
 
 import re
@@ -25,7 +25,7 @@ _FENCE = re.compile(
 
 
 class MarkedWord(NamedTuple):
-    """The word of an example that lint points at; line and columns from 1, the last column exclusive."""
+    """The word of an example that lint marks; line and columns count from 1, and the last column is exclusive."""
 
     line: int
     first: int
@@ -33,9 +33,9 @@ class MarkedWord(NamedTuple):
 
 
 class Example(NamedTuple):
-    """A file of an example. `note` is for more than its text: `latin-1`, or `folder` in place of the file.
+    """A file of an example. `note` is for a special case: `latin-1`, or `folder` in place of the file.
 
-    `installed` is a module of an installed distribution with an entry point for the module's `FEATURE`.
+    With `installed` the file is a module of another installed package, with an entry point for its `FEATURE`.
     """
 
     file: str
@@ -46,7 +46,7 @@ class Example(NamedTuple):
 
 
 class Page(NamedTuple):
-    """All that is to be said about a code; `what` and `why` are Markdown."""
+    """The explanation of a code; `what` and `why` are Markdown."""
 
     code: str
     what: str
@@ -57,9 +57,9 @@ class Page(NamedTuple):
 
 @cache
 def page(code: str) -> Page:
-    """Return the page of one of `codes()`; of a code without a page, its summary.
+    """Return the page of one of `codes()`; for a code without a page, its summary.
 
-    Raises LumenError if a package of pages was installed beside Lumen and can't be read.
+    Raises LumenError if the pages of another installed package can't be read.
     """
     text = ""
     for feature, package in rows("pages"):
