@@ -1,7 +1,7 @@
-"""What stands in `entry`, `do`, `exit` and `actions`: one value for each verb of the YAML.
+"""The actions of `entry`, `do`, `exit` and `actions`: one class for each verb of the YAML.
 
-Verbs without expressions are their own commands (`Play`, `Posture`, …); the others hold expressions and templates
-that a step evaluates. `where` is the action's path in its document, for diagnostics; it does not count in equality.
+Verbs without expressions are their own commands (`Play`, `Posture`, …); the others hold expressions and templates that
+a step evaluates. `where` is the action's path in its document, for diagnostics; it does not count in equality.
 """
 
 from collections.abc import Iterator, Mapping
@@ -14,30 +14,33 @@ from lumen.language.diagnostics import NodePath
 
 @dataclass(frozen=True, slots=True)
 class Expression:
-    """The source of an expression.
-
-    `written` is how the author wrote it, where that differs: `question.ask` of what `for` lets stand for an entry.
-    """
+    """The source of an expression."""
 
     source: str
     where: NodePath = field(default=(), compare=False)
+    """Its path in the document."""
     written: str = field(default="", compare=False)
+    """The author's text if it differs from `source`: `question.ask`, which a `for` replaces by a path; else empty."""
 
     @property
     def shown(self) -> str:
+        """The expression as the author wrote it."""
         return self.written or self.source
 
 
 @dataclass(frozen=True, slots=True)
 class Template:
-    """A text that may hold `{{ expression }}`; `written` is how the author wrote it, where that differs."""
+    """A text that may contain `{{ expression }}`."""
 
     text: str
     where: NodePath = field(default=(), compare=False)
+    """Its path in the document."""
     written: str = field(default="", compare=False)
+    """The author's text if it differs from `text`; else empty."""
 
     @property
     def shown(self) -> str:
+        """The text as the author wrote it."""
         return self.written or self.text
 
 
@@ -90,17 +93,17 @@ PARENT = "parent"
 
 @dataclass(frozen=True, slots=True)
 class Send:
-    """`send`: an event for this machine, after `delay` [s]; `id` lets `cancel` take it back.
-
-    A delay that is a template says when the action is done how long it is: `{{ context.patience }}s`. `to` is the id
-    of a behaviour that this one has invoked, PARENT for the one that invoked this, or a robot of the house.
-    """
+    """`send`: an event for this machine, after `delay` [s]."""
 
     event: str
+    """The name of the event."""
     data: ComputedValue = None
     delay: float | Template = 0.0
+    """The delay [s]; a template, such as `{{ context.patience }}s`, is evaluated when the action is performed."""
     id: str = ""
+    """The id by which `cancel` can withdraw it."""
     to: str = ""
+    """The id of an invoked behaviour, PARENT for the invoking one, or a robot of the house; empty for this one."""
 
 
 @dataclass(frozen=True, slots=True)

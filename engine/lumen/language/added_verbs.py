@@ -92,7 +92,7 @@ def default_result(row: VerbRow) -> dict[str, Any]:
 
 
 def whole_result(row: VerbRow, returned: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a verb returned, with the defaults of what it left out."""
+    """Return the result of a verb, with the defaults of the properties that it lacks."""
     return {**default_result(row), **returned}
 
 

@@ -13,12 +13,12 @@ _ENDING = "/?#[]"
 
 
 def credentials_of(url: str) -> str:
-    """The name and password in an address, as far as they may reach; empty if there are none."""
+    """Return the part of an address that may be a name and password; empty if it has none."""
     return _FILE.sub("", url.partition("://")[2] or url).rpartition("@")[0]
 
 
 def public(url: str) -> str:
-    """The address without what may be a name or a password."""
+    """Return the address without any part that may be a name or a password."""
     scheme, separator, rest = url.partition("://")
     rest = rest.rpartition("@")[2]
     if not separator:
@@ -29,13 +29,13 @@ def public(url: str) -> str:
 
 
 def unescaped(url: str) -> str:
-    """The spelling of signs that end a name or a password too early; empty if there are none."""
+    """Return the spelling of characters that would end a name or a password too early; empty if it has none."""
     signs = [sign for sign in _ENDING if sign in credentials_of(url)]
     return ", ".join(f"{quote(sign, safe='')} for `{sign}`" for sign in signs)
 
 
 def fault_of_broker(url: str) -> str:
-    """The fault of an address that can't be a broker's, with the remedy; empty for a possible address."""
+    """Return the fault of an address that can't be a broker's, with the remedy; empty for a possible address."""
     if signs := unescaped(url):
         return f"in the user name and password, write {signs}; after the host, write %40 for `@`"
     try:
@@ -60,7 +60,7 @@ def fault_of_broker(url: str) -> str:
 
 
 def loopback(host: str) -> bool:
-    """Whether a host is this machine."""
+    """Return whether a host is this machine."""
     try:
         return host == "localhost" or ip_address(host).is_loopback
     except ValueError:

@@ -20,7 +20,7 @@ class Cause(NamedTuple):
 
 
 class MessageOrigin(NamedTuple):
-    """The origin that a message declares. A bus fills in what is empty, as far as it can."""
+    """The origin that a message declares. A bus fills in the fields that are empty, as far as it can."""
 
     id: str = ""
     sender: str = ""
@@ -35,9 +35,7 @@ UNKNOWN_ORIGIN = MessageOrigin()
 """An empty origin: the bus gives the message an id, its own sender and the time."""
 
 PROGRAM, TERMINAL, VISITOR, OPERATOR = "the program", "a terminal", "the visitor", "the operator"
-"""Senders that are no part of an exhibition: who opened it in Python, who types commands, who stands before it, and
-who runs it.
-"""
+"""Senders outside an exhibition: a Python program that opened it, a person at a terminal, the visitor, the operator."""
 UNNAMED_PROGRAM = "a program on the bus"
 """The sender of a message that names neither a person nor a program."""
 PEOPLE = frozenset((TERMINAL, VISITOR, OPERATOR))

@@ -29,16 +29,19 @@ class Say:
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """Find an answer to a visitor's `question`, without names of people, `within` this time [s].
+    """Find an answer to a visitor's question.
 
-    What is found arrives as events `answer.command.ID`; `error.command.ID` means that there is no answer. `language` is
-    the one to speak, `place` where the robot is.
+    The parts of the answer arrive as events `answer.command.ID`; `error.command.ID` means that there is no answer.
     """
 
     question: str
+    """The question, without names of people."""
     language: str = ""
+    """The language of the answer."""
     within: float = 0.0
+    """The time limit [s]."""
     place: str = ""
+    """The robot's place, or empty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,17 +187,19 @@ class Log:
 
 @dataclass(frozen=True, slots=True)
 class Do:
-    """Perform the verb `skill` of a feature; `arguments` are JSON data that fit the schema of its row.
+    """Perform the verb `skill` of a feature or of a file of the project.
 
-    In the YAML a text in them can contain `{{ expression }}`, which a step fills in. `sections` are those of the
-    project for the performer, added when the command goes to the robot; no YAML or message contains them. `row` is that
-    of a verb which a file of the project declares; None for the verb of an installed package.
+    In the YAML a text in `arguments` can contain `{{ expression }}`, which a step fills in.
     """
 
     skill: str
+    """The name of the verb."""
     arguments: Mapping[str, Any] = field(default_factory=dict)
+    """JSON data that fit the schema of the verb's row."""
     sections: Sections = field(default_factory=dict, repr=False, compare=False, metadata={"yaml": False})
+    """The project's sections for the performer, added on the way to the robot; never in YAML or a message."""
     row: VerbRow | None = field(default=None, repr=False, compare=False, metadata={"yaml": False})
+    """The row of a verb that a file of the project declares; None for the verb of an installed package."""
 
 
 MotorCommand = Posture | Walk | Move | Look | Leds | Volume | PlaySound | Stop | Rest | Wake

@@ -195,17 +195,20 @@ class InputBinding:
 
 @dataclass(frozen=True, slots=True)
 class OutputBinding:
-    """The joint that an output moves: by `gain` times the output (with its sign), within limits [rad].
-
-    `angle` [rad] is one unit of the output.
-    """
+    """The joint that an output moves."""
 
     variable: str
+    """The output."""
     joint: str
+    """The joint, by name or role."""
     gain: float
+    """The factor, with its sign, from the output to the turn."""
     minimum: float | None = None
+    """The lower limit [rad]; None for that of the joint."""
     maximum: float | None = None
+    """The upper limit [rad]; None for that of the joint."""
     angle: float = 1.0
+    """The angle of one unit of the output [rad]."""
     where: NodePath = field(default=(), compare=False)
 
 
@@ -281,13 +284,13 @@ class TrackingSettings:
     speed: float = 0.3
     """The fraction of the joints' maximum speed."""
     looks: int = 1
-    """How often the controller is evaluated for each image, each time as seen after the turn before."""
+    """The number of evaluations of the controller for each image, each with the face as seen after the turn before."""
     zoom: float = 1.0
     """The maximum magnification of these evaluations."""
     hold: float = 2.0
-    """How long the joints stay after a loss [s]."""
+    """The time that the joints stay after a loss [s]."""
     search: float = 8.0
-    """How long they then swing to search [s]."""
+    """The time that they then swing to search [s]."""
     period: float = 4.0
     """The period of the swing [s]."""
     stale: float = 1.0

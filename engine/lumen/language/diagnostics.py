@@ -31,6 +31,8 @@ NodePath = tuple[str | int, ...]
 
 
 class Severity(StrEnum):
+    """How serious a finding is."""
+
     ERROR = "error"
     WARNING = "warning"
     INFO = "info"
@@ -92,7 +94,7 @@ class Diagnostic:
         return f"{self.place}: {self.severity} [{self.code}] {self.message}{hint}"
 
     def to_json(self) -> dict[str, Any]:
-        """The object of `lumen lint --format json`."""
+        """Return the object of `lumen lint --format json`."""
         return {
             "file": self.place.file,
             "line": self.place.line,
@@ -111,10 +113,10 @@ class Diagnostic:
 
 
 class Code(str):
-    """A kind of finding: as text its name; its family, how bad it is, and in a line what it means.
+    """A kind of finding. As a text it is its name; it also has its family, its severity and a one-line summary.
 
-    Each is declared once, as a value beside the check that raises it; `lumen.lint.codes` has them all, and
-    `rules/pages/CODE.md` says why it matters and shows what is wrong and what is right.
+    Each is declared once, as a value beside the check that raises it. `lumen.lint.codes` collects them, and
+    `lint/pages/CODE.md` explains why it matters and shows a wrong and a right example.
     """
 
     family: str
@@ -127,12 +129,12 @@ class Code(str):
         return code
 
     def __reduce__(self) -> tuple[type[str], tuple[str]]:
-        return str, (str(self),)  # what is sent to another process is its name
+        return str, (str(self),)  # other processes receive only its name
 
     def at(
         self, place: Place, message: str, hint: str = "", related: tuple[Related, ...] = (), cause: str = ""
     ) -> Diagnostic:
-        """A finding of this kind at that place."""
+        """Return a finding of this kind at that place."""
         return Diagnostic(self, message, place, hint, self.severity, related, cause)
 
 
@@ -142,10 +144,10 @@ def has_errors(diagnostics: Iterable[Diagnostic]) -> bool:
 
 
 def gathered(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """The findings sorted by file and line; of those with the same code and cause the first, the others related to it.
+    """Return the findings by file and line, those with the same code and cause as one with related places.
 
-    A story tells of what a behaviour has: what is wrong in both is wrong in the behaviour. And where at least
-    MIN_FINDINGS_FOR_ROOT have the same root, or one of them has it for its cause, the root is wrong, and not each.
+    A fault of a behaviour that a story repeats is reported in the behaviour. If at least MIN_FINDINGS_FOR_ROOT findings
+    have the same root, or one of them has that root as its cause, the root is reported instead of each.
     """
     several = list(dict.fromkeys(diagnostics))
     causes = {(d.code, d.cause) for d in several}
@@ -165,7 +167,7 @@ def _order(diagnostic: Diagnostic) -> tuple[Place, str, str]:
 
 
 def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
-    """The first, the others as places related to it; those beyond MAX_RELATED counted."""
+    """Return the first finding with the others as related places; those beyond MAX_RELATED are only counted."""
     if len(findings) == 1:
         return findings[0]
     first, *others = sorted(findings, key=lambda d: (d.cause != cause, "/stories/" in d.place.file, _order(d)))
@@ -178,7 +180,7 @@ def _joined(findings: list[Diagnostic], cause: str, many: bool) -> Diagnostic:
 
 
 def nearest(word: object, candidates: Iterable[str]) -> str:
-    """Return the candidate that was probably meant; empty if none is similar."""
+    """Return the candidate that was probably meant; empty if no candidate is similar."""
     names = set(candidates)
     meant = typed(str(word))
     if meant != word and (equal := next((name for name in sorted(names) if typed(name) == meant), "")):
@@ -195,7 +197,7 @@ def nearest(word: object, candidates: Iterable[str]) -> str:
 
 
 def _is_slip(word: str, meant: str) -> bool:
-    """Whether few letters differ: words that differ more may share letters in the same order by chance."""
+    """Return whether few letters differ. If many differ, words can share letters in the same order by chance."""
     word, meant = word.lstrip("-"), meant.lstrip("-")  # of options
     short, long = sorted((word, meant), key=len)
     if long.startswith(short) or long.endswith(short):
@@ -211,7 +213,7 @@ def _is_slip(word: str, meant: str) -> bool:
 
 
 def _alike(word: str, names: set[str]) -> set[str]:
-    """These names; of very many those that begin or end as the word does, and are about as long."""
+    """Return these names; if there are very many, those of similar length with the first or last letter of the word."""
     if len(names) <= MAX_COMPARED_NAMES:
         return names
     ends = {word[:1].lower(), word[-1:].lower()}

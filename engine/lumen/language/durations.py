@@ -46,7 +46,7 @@ def duration_hint(text: object) -> str:
 
 
 def seconds(text: object) -> float | None:
-    """Return the duration of `500ms`, `20s`, `1.5s`, `2min` or `1h` [s]; None if it is none or too long."""
+    """Return the duration of `500ms`, `20s`, `1.5s`, `2min` or `1h` [s]; None for other texts and if it is too long."""
     match = _DURATION.fullmatch(text) if isinstance(text, str) else None
     duration = float(match[1]) * _SECONDS[match[2]] if match else None
     return duration if duration is not None and duration <= MAX_DURATION else None

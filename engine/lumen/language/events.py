@@ -8,18 +8,21 @@ from lumen.language.modules import module_names
 
 
 class Event(NamedTuple):
-    """Something that happened, named and timed; `event.name` and `event.data` in expressions.
+    """An event of the world or of the behaviour itself.
 
-    `data` is JSON data. `at` [s] is the time on the exhibition's clock, the only clock a step reads. `sendid` is
-    the id of the timer or delayed `send` that raised it (SCXML 5.10.1), empty for events from outside. `cause` says who
-    or what brought it about, None where nobody said; no expression reads it.
+    Expressions read its name and data as `event.name` and `event.data`.
     """
 
     name: str
+    """The name, with words separated by dots."""
     data: Any = None
+    """JSON data."""
     at: float = 0.0
+    """The time on the exhibition's clock, the only clock that a step reads [s]."""
     sendid: str = ""
+    """The id of the timer or delayed `send` that raised it (SCXML 5.10.1); empty for events from outside."""
     cause: Cause | None = None
+    """The cause if it is known; no expression reads it."""
 
 
 def _object(**fields: object) -> dict[str, object]:
@@ -32,13 +35,13 @@ def _said_by() -> dict[str, object]:
 
 
 CUE = "cue"
-"""What a robot raises when a motion comes to words or a sound: its `motion`, `kind` (`say`, `sound`) and `value`.
+"""The event of a robot at words or a sound in a motion: its `motion`, `kind` (`say`, `sound`) and `value`.
 
-It is for who runs the exhibition, not for its behaviour, which hears no such event.
+It informs the operator; the behaviour does not receive it.
 """
 
 RECORDED = "recorded"
-"""What a robot raises when it has listened: the body of the route `recording`. It is for modules, and no behaviour."""
+"""The event of a robot that has listened: the body of the route `recording`. Only modules receive it."""
 
 FALLEN = "fallen"
 """The event of a robot that has fallen."""
@@ -53,16 +56,16 @@ RESULT = "result"
 """The field of `done.command.ID` that has what a verb of a feature returned."""
 
 ARRIVED, LEFT, DOUBTFUL = "arrived", "left", "doubtful"
-"""What is raised when the robot has come to one of the places, when it is no longer there, and where it can't tell.
+"""The events of a robot that has come to a place, has left it, and is no longer sure that it is there.
 
-`place` is which one, `doubt` how far from where it believes to be it may really be [m]: `doubtful` says that this is
-more than the place's `within`.
+`place` is the name of the place, and `doubt` the possible error of the robot's believed position [m]. `doubtful` is
+raised when that error exceeds the place's `within`.
 """
 
 CLOCK_SET = "clock set"
-"""The name and `sendid` of what is told to a behaviour where the clock on the wall was set: no transition hears of it.
+"""The name and `sendid` of the notice that the wall clock was set, which no transition receives.
 
-Its data is when time 0 was by that clock, `epoch` [s since 1970, in UTC], and the `timezone` where it hangs.
+Its data are `epoch`, the time of that clock at time 0 [s since 1970, in UTC], and its `timezone`.
 """
 
 _ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
@@ -88,8 +91,8 @@ _ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
 def robot_events() -> Mapping[str, Mapping[str, object]]:
     """Return the events that every robot raises by itself, each with the JSON Schema of its data.
 
-    No behaviour has to declare them. If parts of the exhibition run in processes of their own, `robot`, `motion` and
-    the modules can be lost and come back.
+    A behaviour need not declare them. If parts of the exhibition run in separate processes, `robot`, `motion` and the
+    modules can be lost and come back.
     """
     gone = _object(seconds={"type": "number"})
     return {

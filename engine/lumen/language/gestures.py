@@ -1,4 +1,4 @@
-"""Gestures that accompany speech, as `motions/gestures/NAME.yaml` says them: frozen values."""
+"""Gestures that accompany speech, from `motions/gestures/NAME.yaml`: frozen values."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -16,26 +16,28 @@ class WordTime(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Gesture:
-    """Arms and head beside a phrase: prepared, the stroke at `stroke` [s], held, and taken back at `duration` [s].
-
-    `tags` are what it goes with. `tracks` has for each joint where it is at which time [s]: offsets from where it
-    stands [rad; hands 0..1], from nothing and back to nothing. It may also be done with the other side where
-    it is `mirrored`, as `mirror` says for its joints (`language/mirrors.py`).
-    """
+    """A movement of arms and head during a phrase: preparation, stroke, hold, and return."""
 
     name: str
+    """Its name in the file."""
     tags: tuple[str, ...]
+    """The tags of the texts that it accompanies."""
     tracks: Mapping[str, tuple[tuple[float, float], ...]]
+    """For each joint rows (time [s], offset from its current angle [rad; hands 0..1]), from zero back to zero."""
     stroke: float
+    """The time of the stroke [s]."""
     duration: float
+    """The time at which the joints have returned [s]."""
     mirrored: bool = False
+    """Whether it may also be performed with the other side, by `mirror`."""
     where: NodePath = field(default=(), compare=False)
     mirror: Mapping[str, tuple[str, float]] = field(default_factory=dict)
+    """The mirror of its joints (`language/mirrors.py`)."""
 
 
 @dataclass(frozen=True, slots=True)
 class GestureLibrary:
-    """Gestures, and by which phrases in which language (`any` for each) a text has their tags."""
+    """Gestures, and the phrases by tag and language (`any` for every one) by which a text gets their tags."""
 
     gestures: tuple[Gesture, ...] = ()
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)

@@ -9,16 +9,16 @@ DEFAULT_WITHIN = 0.25
 
 @dataclass(frozen=True, slots=True)
 class HallPlace:
-    """A place where the robot can stand, in the frame of the stage: x forward, y to the left of where it starts [m].
-
-    `heading` is how far it turns to the left there [rad], None where it may look anywhere. It is there where it is no
-    farther than `within` [m] from it, as far as it can tell.
-    """
+    """A place for the robot to stand, in the frame of the stage."""
 
     x: float
+    """The distance ahead of the robot's start [m]."""
     y: float
+    """The distance to the left of the robot's start [m]."""
     heading: float | None = None
+    """The turn to the left there [rad]; None for any."""
     within: float = DEFAULT_WITHIN
+    """The distance within which the robot counts as being there, by its own estimate [m]."""
 
 
 @dataclass(frozen=True, slots=True)

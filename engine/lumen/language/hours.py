@@ -1,24 +1,24 @@
-"""Times of day as the YAML says them: `at: {"mon-fri 18:00": closing}`."""
+"""Times of day in the YAML: `at: {"mon-fri 18:00": closing}`."""
 
 from dataclasses import dataclass, field
 from datetime import date
 
 WEEKDAYS = ("mon", "tue", "wed", "thu", "fri", "sat", "sun")
-"""As `weekday()` says them; their places are those of `date.weekday`."""
+"""The results of `weekday()`, in the order of `date.weekday`."""
 
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """Moments by the clock on the wall: each of `times` [min since midnight] on each of the days.
-
-    The days are those of `weekdays` (0 is Monday) and `dates`; every day where both are empty. `text` is how it is
-    written.
-    """
+    """Moments by the wall clock: each of `times` on each of the days."""
 
     times: tuple[int, ...]
+    """Minutes since midnight."""
     weekdays: tuple[int, ...] = ()
+    """Days of the week, 0 being Monday."""
     dates: tuple[date, ...] = ()
+    """Days of the calendar; if there are no `weekdays` either, every day."""
     text: str = field(default="", compare=False)
+    """The schedule as it is written."""
 
     def holds(self, day: date) -> bool:
         """Return True if that is one of its days."""

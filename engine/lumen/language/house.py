@@ -17,18 +17,21 @@ class StartPose:
 
 @dataclass(frozen=True, slots=True)
 class RobotSpec:
-    """A robot of `robots:`, or the one of `robot:`: what counts for it, its own or that of all.
-
-    `name` stands for {robot} in routing keys, `stand` for {stand}; `model` is its body, `at` where it stands in the
-    hall; `behavior`, `languages` and `story` are what it does, speaks, and is tried with. `driver` is the robot of the
-    project's own that performs it, `package:Class` or a name in drivers/, empty for none.
-    """
+    """A robot of `robots:`, or the one of `robot:`, with its own settings or the common ones."""
 
     name: str
+    """Its name, which replaces {robot} in routing keys."""
     model: str = ""
+    """Its body."""
     at: StartPose = StartPose()
+    """Its start in the hall."""
     behavior: str = ""
+    """The behaviour that it runs."""
     languages: tuple[str, ...] = ()
+    """The languages that it speaks."""
     story: str = ""
+    """The story that it is tried with."""
     stand: str = ""
+    """Its stand, which replaces {stand} in routing keys."""
     driver: str = ""
+    """The project's own robot that performs it, `package:Class` or a name in drivers/; empty for none."""

@@ -1,4 +1,4 @@
-"""What the exhibition's people know, as `knowledge/NAME.yaml` or `NAME.md` says it, and what it is tried with."""
+"""The knowledge of the exhibition, from `knowledge/NAME.yaml` or `NAME.md`, and the questions that test it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -7,21 +7,25 @@ from datetime import date
 
 @dataclass(frozen=True)
 class Passage:
-    """One thing that is known: questions as visitors may put them, and what is spoken, both by language.
-
-    `place` is the one of lumen.yaml that it is about, `who` the robots that may say it; empty means any. It is true
-    until the end of the day `until`; `as_of` is when somebody last made sure. `file` is where it stands.
-    """
+    """One piece of knowledge: questions as visitors may ask them, and the answer to speak."""
 
     name: str
+    """The name of its file."""
     questions: Mapping[str, tuple[str, ...]]
+    """The questions by language."""
     answer: Mapping[str, str]
+    """The answer by language."""
     place: str = ""
+    """The place of lumen.yaml that it is about; empty if it is about none."""
     who: tuple[str, ...] = ()
+    """The robots that may say it; empty for all."""
     as_of: date | None = None
+    """The day on which its author last checked it."""
     until: date | None = None
+    """The last day on which it is true."""
     tags: tuple[str, ...] = ()
     file: str = ""
+    """The path of its file."""
 
     def is_said_by(self, robot: str) -> bool:
         """Return True if that robot may use it in an answer."""
@@ -34,10 +38,10 @@ class Passage:
 
 @dataclass(frozen=True)
 class QuestionSet:
-    """Questions in other words than the passages', `knowledge/questions/NAME.yaml`: they say when one is like enough.
+    """Questions in other words than those of the passages, which tune how similar a question must be.
 
-    `asked` are those that a passage answers, by its name and by language, `unanswered` those that none does, by
-    language.
+    They are in `knowledge/questions/NAME.yaml`. `asked` are questions that a passage answers, by its name and by
+    language; `unanswered` are those that no passage answers, by language.
     """
 
     name: str

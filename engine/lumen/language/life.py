@@ -1,4 +1,4 @@
-"""What a robot does while nothing else moves it, as `motions/life/NAME.yaml` says it: frozen values."""
+"""The idle movements of a robot while nothing else moves it, from `motions/life/NAME.yaml`: frozen values."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,20 +11,21 @@ STILL = "still"
 
 NAOQI_SPEECH, NAOQI_BREATHING, NAOQI_BLINKING, OWN_LEGS = "speech", "breathing", "blinking", "legs"
 NAOQI_PARTS = (NAOQI_SPEECH, NAOQI_BREATHING, NAOQI_BLINKING, OWN_LEGS)
-"""What a real NAO does by NAOqi in place of ours, where a style says so; and that our sways move its legs, too."""
+"""The parts of life that a style can leave to NAOqi on a real NAO; OWN_LEGS lets our sways also move its legs."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sway:
-    """Joints that go to and fro together around where they stand, by `joints` [rad; hands 0..1] at most.
-
-    Once in `period` [s]; where it `wanders`, never twice in the same way.
-    """
+    """Joints that swing together around their current angles."""
 
     name: str
+    """Its name in the file."""
     period: float
+    """The period [s]."""
     joints: Mapping[str, float]
+    """The amplitudes by joint [rad; hands 0..1]."""
     wanders: bool = False
+    """Whether the movement varies instead of repeating itself exactly."""
     where: NodePath = field(default=(), compare=False)
 
 
@@ -74,9 +75,9 @@ class Settles:
 
 @dataclass(frozen=True, slots=True)
 class EyeColours:
-    """The colours of the eyes while nothing else lights them, empty where they stay as they are.
+    """The colours of the eyes while nothing else lights them; empty to leave them unchanged.
 
-    `thinking` is for while it looks aside before an answer.
+    `thinking` is the colour while the robot looks aside before an answer.
     """
 
     silent: str = ""
@@ -86,25 +87,25 @@ class EyeColours:
 
 @dataclass(frozen=True, slots=True)
 class LifeStyle:
-    """A way to be alive. `attention` [s] is how long it looks where it was touched or spoken to; 0 for not at all.
-
-    `naoqi` are those of `NAOQI_PARTS` that a real NAO does, too.
-    """
+    """A style of idle movement."""
 
     name: str
+    """Its name."""
     sways: tuple[Sway, ...] = ()
     glances: Glances | None = None
     nods: Nods | None = None
     blinks: Blinks | None = None
     attention: float = 0.0
+    """The time that the robot looks at the place of a touch or a voice [s]; 0 for not at all."""
     eyes: EyeColours = EyeColours()
     asides: Asides | None = None
     settles: Settles | None = None
     naoqi: tuple[str, ...] = ()
+    """Those of `NAOQI_PARTS` that a real NAO leaves to NAOqi."""
 
     @property
     def amplitudes(self) -> Mapping[str, float]:
-        """The maximum sway of each joint, including where it has settled [rad; hands 0..1]."""
+        """The maximum deflection of each joint, sways and settled angle together [rad; hands 0..1]."""
         settles = self.settles.joints if self.settles else {}
         found = {joint: abs(angle) for joint, angle in settles.items()}
         for sway in self.sways:

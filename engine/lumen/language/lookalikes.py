@@ -10,7 +10,7 @@ _TWINS = str.maketrans(
 
 
 def typed(text: str) -> str:
-    """The text as a keyboard types it: without invisible characters, and with Latin letters, digits and a minus."""
+    """Return the text as typed on a keyboard: Latin letters, digits and minus signs, no invisible characters."""
     if text.isascii():
         return text
     whole = unicodedata.normalize("NFKC", text).translate(_TWINS)
@@ -19,7 +19,7 @@ def typed(text: str) -> str:
 
 
 def difference(word: str, other: str) -> str:
-    """The character by which two words that look equal differ; empty if they do not look equal."""
+    """Describe the character by which two words that look equal differ; empty if they do not look equal."""
     if word == other or typed(word) != typed(other):
         return ""
     if unicodedata.normalize("NFC", word) == unicodedata.normalize("NFC", other):

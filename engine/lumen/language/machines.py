@@ -216,6 +216,7 @@ class MachineDefinition:
 
     @property
     def root(self) -> State:
+        """The outermost state."""
         return self.states[""]
 
     def invoked_behavior(self, path: str, id: str) -> str:

@@ -24,7 +24,7 @@ def mirror_of(body: Body) -> Mirror:
 
 
 def _sign(path: str, role: JointRole, other: JointRole, body: Body) -> float:
-    """Joints on one motor turn together, whatever they are."""
+    """Return the sign of a mirrored angle; joints that share a motor turn together, and keep their sign."""
     one_motor = body.shared.get(role.joint) == other.joint or body.shared.get(other.joint) == role.joint
     turned = -1.0 if path.endswith(("yaw", "roll", "head.y")) and not one_motor else 1.0
     return turned * role.sign * other.sign

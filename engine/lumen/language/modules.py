@@ -1,4 +1,4 @@
-"""The modules beside robot, brain and motion: what an exhibition may have, and what `lumen.yaml` says of each."""
+"""The modules besides robot, brain and motion: their names, and their settings in `lumen.yaml`."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ MEMORY, EYES, EARS, VOICE, SOCIAL, SHOW, ANSWERS = "memory", "eyes", "ears", "vo
 """The modules that Lumen's own code refers to; `module_names` has all of them."""
 
 VISITOR_KEY = "visitor"
-"""The key of a behaviour's context that holds the visitor's name, where the memory's options do not say another."""
+"""The key of a behaviour's context that holds the visitor's name, unless the memory's options name another."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from lumen.language.diagnostics import NodePath
 
 
 class Interpolation(StrEnum):
-    """How a joint comes to a key."""
+    """The course of a joint towards a key."""
 
     LINEAR = "linear"
     CUBIC = "cubic"

@@ -1,11 +1,11 @@
 """Time as timers count it: whole nanoseconds, so that a hundred times 10 ms is a second to the last digit."""
 
 NANOSECONDS = 1_000_000_000
-"""In a second."""
+"""The nanoseconds in a second."""
 NEVER = 2**63
-"""So late [ns] that it never comes."""
+"""A time that is never reached [ns]."""
 HALF = 0.5 / NANOSECONDS
-"""Times that are less apart [s] are the same time."""
+"""Times closer than this are the same time [s]."""
 
 
 def nanoseconds(seconds: float) -> int:

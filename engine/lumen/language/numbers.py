@@ -1,4 +1,4 @@
-"""Numbers in plain data: what JSON, YAML and the expressions call a number. `True` is none, though Python counts it."""
+"""Numbers as JSON, YAML and the expressions define them; a bool is not a number, although Python counts it as one."""
 
 from math import isfinite
 from typing import TypeGuard

@@ -1,4 +1,4 @@
-"""The requests of operators to a running exhibition: a row each, for who sends one and for the part that answers it.
+"""The requests of operators to a running exhibition: a row for each, for its senders and for the part that answers.
 
 A request is a message on `lumen.{robot}.operator.request` with a `reply_to`: docs/processes.md describes the answers.
 """
@@ -9,7 +9,7 @@ from typing import Any
 
 TEXT: Mapping[str, Any] = {"type": "string"}
 MAX_NAME = 100
-"""Characters of the name of an event, and of a person."""
+"""The maximum length of the name of an event or a person [characters]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class OperatorRequest:
     needs: tuple[str, ...] = ()
     """The fields that may not be left out."""
     example: str = ""
-    """What follows `"ask": …` in the list that an invalid request is answered with; empty for one not listed there."""
+    """The text after `"ask": …` in the list that answers an invalid request; empty if it is not in the list."""
     fault: str = ""
     """The reason that an invalid request of this name is refused with; empty for the list of valid requests."""
 
@@ -40,6 +40,7 @@ class OperatorRequest:
 
     @property
     def shown(self) -> str:
+        """The request as that list shows it."""
         return f'`{{"ask": "{self.ask}"{self.example and f", {self.example}"}}}`'
 
 

@@ -11,9 +11,9 @@ _CLUSTER = re.compile(r"\s+|.", re.DOTALL)
 
 
 def name_key(name: str) -> str:
-    """The name as it is compared: in NFKC, case folded, without invisible signs, one space between words.
+    """Return the name in the form for comparisons: in NFKC, case folded, without invisible characters, single spaces.
 
-    The Turkish i's are one: who writes `IŞIK` or `ipek` on another keyboard means `Işık` and `İpek`.
+    The Turkish letters i are equal: `IŞIK` and `ipek` from another keyboard mean `Işık` and `İpek`.
     """
     return " ".join(_folded(name).split())
 
@@ -32,6 +32,7 @@ class PersonName:
         self._pattern = re.compile("|".join(words)) if self.key else None
 
     def is_named_in(self, text: str) -> bool:
+        """Return True if the text contains the name."""
         return bool(self._spans(name_key(text)))
 
     def taken_from(self, text: str) -> str:
@@ -77,7 +78,7 @@ class PersonName:
         return "".join([*kept, text[at:]]).strip() if kept else text
 
     def _spans(self, folded: str) -> list[tuple[int, int]]:
-        """Where in a folded text it is named."""
+        """Return the spans in a folded text that name the person."""
         found = self._pattern.finditer(folded) if self._pattern else ()
         return [match.span() for match in found if match["name"] is not None]
 
@@ -92,12 +93,12 @@ def _folded(text: str) -> str:
 
 
 def _accent(sign: str) -> bool:
-    """Whether a sign that is set on another one tells names apart: all do but those that only choose a glyph."""
+    """Return whether a combining mark distinguishes names: all do except those that only choose a glyph."""
     return unicodedata.category(sign) == "Mn" and not "\ufe00" <= sign <= "\ufe0f"
 
 
 def _mapped(text: str) -> tuple[str, list[int]]:
-    """The text folded as a key is, sign after sign, and where in the text each of its signs begins; and its end."""
+    """Return the folded text, and for each of its characters the offset in `text`, with the end as a last offset."""
     folded, places = [], []
     starts = [match.start() for match in _CLUSTER.finditer(text)]
     starts = [at for at in starts if unicodedata.category(text[at]) not in ("Mn", "Cf", "Mc", "Me")]
@@ -109,7 +110,7 @@ def _mapped(text: str) -> tuple[str, list[int]]:
 
 
 def _words(key: str) -> str:
-    """A pattern for a key as whole words."""
+    """Return a pattern for a key as whole words."""
     before = "" if not key or _SPACELESS.match(key[0]) else r"(?<!\w)"
     after = "" if not key or _SPACELESS.match(key[-1]) else r"(?!\w)"
     return before + re.escape(key) + after

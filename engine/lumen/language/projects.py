@@ -30,7 +30,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Stage:
-    """The area in which the robot may walk: a rectangle around its start, in its frame [m]."""
+    """The area in which the robot may walk: a rectangle in the frame of the robot's start [m]."""
 
     x: tuple[float, float]
     y: tuple[float, float]
@@ -72,7 +72,7 @@ class Project:
     stage: Stage | None = None
     bus: str = "memory://"
     patience: float = DEFAULT_PATIENCE
-    """How long saved files wait for running commands [s]."""
+    """The time that saved files wait for running commands [s]."""
     modules: Mapping[str, ModuleSettings] = field(default_factory=dict)
     aliases: bool | None = None
     """Whether routes have their aliases: None as long as no other robot is seen on the bus."""

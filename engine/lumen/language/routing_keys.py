@@ -26,7 +26,7 @@ SHARED_ROUTES = frozenset((
 CONFIG_COMMAND, CONFIG_STATUS = "lumen.{robot}.config.command", "lumen.{robot}.config.status"
 """Keys without a route: orders to reload, and their results."""
 OPERATOR_REQUEST, OPERATOR_ANSWER = "lumen.{robot}.operator.request", "lumen.operator.answer"
-"""What operators ask, and the answers, which are told apart by their `correlation_id`."""
+"""The key of operators' requests, and the key of all answers, which a `correlation_id` relates to their requests."""
 SKILL_CALL, SKILL_ANSWER = "lumen.{robot}.skill.{module}", "lumen.{robot}.skill_answer"
 """The keys on which a module receives the calls of its skills, and answers them."""
 TOLD = "lumen.{robot}.event"

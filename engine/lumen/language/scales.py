@@ -1,4 +1,4 @@
-"""Words that have an order: where terms are called so, their numbers should have it too."""
+"""Scales of words: terms named by words of one scale should have numbers in the same order."""
 
 SCALES: tuple[tuple[tuple[str, ...], ...], ...] = (
     (("negative", "neg", "minus"), ("zero", "neutral", "center", "centre", "null"), ("positive", "pos", "plus")),
@@ -16,7 +16,7 @@ SCALES: tuple[tuple[tuple[str, ...], ...], ...] = (
 
 
 def ranks(names: tuple[str, ...]) -> dict[str, int]:
-    """The names that one scale orders, with their ranks in it; empty where fewer than two are ordered."""
+    """Return the names that one scale orders, with their ranks in it; empty if it orders fewer than two."""
     best: dict[str, int] = {}
     for scale in SCALES:
         words = {word: rank for rank, step in enumerate(scale) for word in step}

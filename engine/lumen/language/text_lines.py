@@ -12,12 +12,12 @@ _BREAK = re.compile("(\r\n|\n|\r)")
 
 
 def lines_of(text: str) -> list[str]:
-    """The lines without their breaks; a break at the end of the text adds an empty line, as in an editor."""
+    """Return the lines without their breaks; a break at the end of the text adds an empty line, as in an editor."""
     return _BREAK.split(text)[::2] if "\r" in text else text.split("\n")
 
 
 def lines_and_breaks(text: str) -> tuple[list[str], list[str]]:
-    """The lines, and the break behind each; that of the last one is empty."""
+    """Return the lines, and the break after each; that of the last line is empty."""
     parts = _BREAK.split(text)
     return parts[::2], [*parts[1::2], ""]
 
@@ -31,15 +31,15 @@ class LineIndex:
         self._starts = [0, *accumulate(len(line) + len(end) for line, end in zip(lines, breaks, strict=True))][:-1]
 
     def line(self, offset: int) -> int:
-        """The number of the line, from 1, that an offset from 0 lies in."""
+        """Return the number of the line, from 1, that contains an offset from 0."""
         return bisect_right(self._starts, offset)
 
     def column(self, offset: int) -> int:
-        """The column, from 1."""
+        """Return the column of an offset, from 1."""
         return offset - self._starts[self.line(offset) - 1] + 1
 
     def offset(self, line: int, column: int) -> int:
-        """The offset of a line and column, from 1; the end of the text if they lie beyond it."""
+        """Return the offset of a line and column, both from 1; the end of the text if they lie beyond it."""
         if line > len(self._starts):
             return self._length
         return min(self._starts[line - 1] + column - 1, self._length)

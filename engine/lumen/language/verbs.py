@@ -61,36 +61,40 @@ class Quantity(Enum):
 
 @dataclass(frozen=True, slots=True)
 class VerbField:
-    """A field of a command, under the name that it has in the YAML and in the dataclass.
-
-    `names` is the kind of thing that it is the name of: `motion`, `posture`, `controller`, `language` or `place`. One
-    for the `others` is a map of all keys that are no field's name.
-    """
+    """A field of a command, under the name that it has in the YAML and in the dataclass."""
 
     name: str
+    """The name."""
     quantity: Quantity = Quantity.PLAIN
+    """The kind of value, which decides its unit."""
     names: str = ""
+    """The kind of thing that its value names: `motion`, `posture`, `controller`, `language` or `place`; else empty."""
     others: bool = False
+    """Whether its value is the map of all keys that are no other field's name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verb(Generic[C]):
-    """A verb that is a command: `name` in the YAML, where two commands may share one, and the command's class.
+    """A verb that is a command.
 
-    Behind it stands a map from fields to values, or the first field's value alone; without fields `true`. A `pair` is
-    written as the first field's value with the second's behind it: `track: {head: false}`. A `mapped` one is a map with
-    its one field, too: `walk: {to: organ}`. An `instant` one ends as it begins, and no robot performs it. `transcript`
-    says what the robot does (`plays dance`), `change` what a behaviour does from now on (“`greet` now … on entering”).
+    Its data are a map from fields to values, or the first field's value alone; without fields they are `true`.
     """
 
     name: str
+    """The name in the YAML, which two commands may share."""
     command: type[C]
+    """The command's class."""
     fields: tuple[VerbField, ...]
     transcript: Callable[[C], str]
+    """Describes what the robot does: `plays dance`."""
     change: Callable[[C], str]
+    """Describes what a behaviour does from now on: “`greet` now … on entering”."""
     pair: bool = False
+    """Whether it is written as the first field's value, followed by the second's: `track: {head: false}`."""
     mapped: bool = False
+    """Whether it is written as a map although it has one field: `walk: {to: organ}`."""
     instant: bool = False
+    """Whether it ends at once; no robot performs it."""
 
     def arguments(self, data: Any) -> Iterator[tuple[VerbField, tuple[str, ...], Any]]:
         """Yield each field in the data of the YAML, its path below the verb, and its value."""
@@ -218,7 +222,7 @@ COMPUTED: Mapping[type[ComputedAction], str] = {
     Wait: "wait", LogText: "log", If: "if", Parallel: "parallel",
     AskQuestion: "ask",
 }  # fmt: skip
-"""The names of the other verbs: what each does is the statechart's, and `mypy` names the places that know."""
+"""The names of the other verbs, which the statechart itself evaluates; `mypy` finds the code that handles each."""
 
 _BY_COMMAND: Mapping[type, Verb[Any]] = {verb.command: verb for verb in VERBS}
 
@@ -240,7 +244,7 @@ def _added(name: str) -> Verb[Do]:
 
 
 def _listed(arguments: Mapping[str, Any]) -> str:
-    """` with times 3, eye left`."""
+    """Return the arguments in words, ` with times 3, eye left`; empty if there are none."""
     listed = ", ".join(f"{name} {value}" for name, value in arguments.items())
     return f" with {listed}" if listed else ""
 
