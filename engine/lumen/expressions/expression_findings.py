@@ -90,7 +90,7 @@ class ExpressionFindings:
         self.found[ExpressionFinding(code, start, max(1, node.end - start), message, hint)] = None
 
     def expect(self, node: ExpressionNode, kinds: frozenset[str], wanted: frozenset[str], whose: str) -> bool:
-        """Return whether one of `kinds` is in `wanted`; if none is, report a type mismatch."""
+        """Return True if one of `kinds` is in `wanted`; otherwise report a type mismatch."""
         if kinds & wanted:
             return True
         self.report(TYPE_MISMATCH, node, f"this is {in_words(kinds)}, but {in_words(wanted)} is needed {whose}")

@@ -37,6 +37,7 @@ class CompiledPattern:
         self._occurs_in = occurs_in
 
     def search(self, text: str) -> bool:
+        """Return True if the pattern matches anywhere in the text."""
         try:
             return self._occurs_in(str(text))
         except UnicodeEncodeError:  # half a surrogate pair, which no UTF-8 can hold

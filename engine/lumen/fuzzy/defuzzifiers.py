@@ -19,9 +19,13 @@ if TYPE_CHECKING:
 class Defuzzifier(Protocol):
     """Converts the degrees of an output's conclusions to its value; NaN if no rule fires."""
 
-    def crisp(self, degrees: list[float], values: list[float]) -> float: ...
+    def crisp(self, degrees: list[float], values: list[float]) -> float:
+        """Return the value for one degree of each conclusion, and the values of the known variables."""
+        ...
 
-    def crisp_batch(self, degrees: "list[Array]", values: "list[Array]") -> "Array": ...
+    def crisp_batch(self, degrees: "list[Array]", values: "list[Array]") -> "Array":
+        """Return the values, Shape (n,), for degrees and known variables of Shape (n,) each."""
+        ...
 
 
 def defuzzifier(

@@ -133,6 +133,7 @@ def _kept(motion: MotionDefinition, body: Body) -> _Analysis:
     if found is None or (found.body is not body and found.body != body):
         inside, changes, fits = _analysed(motion, body)
         if found is None:
+            # Another motion may get the same id once this one is gone; at exit there is no need to clean up
             weakref.finalize(motion, _analyses.pop, id(motion), None).atexit = False
         found = _analyses[id(motion)] = _Analysis(body, inside if changes else None, changes, fits)
     return found

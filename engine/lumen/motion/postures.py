@@ -42,6 +42,7 @@ def route(body: Body, start: str, *goals: str) -> list[str] | None:
     found: dict[str, list[str]] = {}
     ways: dict[str, tuple[float, list[str]]] = {start: (0.0, [])}
     while ways:
+        # Dijkstra's algorithm: the cheapest open posture can't be reached more cheaply later
         here = min(ways, key=lambda name: ways[name][0])
         cost, path = ways.pop(here)
         if here in goals:

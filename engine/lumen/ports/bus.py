@@ -73,7 +73,7 @@ class Bus(Protocol):
 
     @abstractmethod
     def prepare(self, routes: Mapping[str, Route]) -> None:
-        """Prepare `carry`, and subscriptions to the incoming routes, so that neither has to wait later.
+        """Prepare `carry`, and subscriptions to the incoming routes, so that neither waits later.
 
         This may wait for the network, so call it on a background thread. Raises BusError if the broker refuses a route.
         """

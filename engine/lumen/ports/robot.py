@@ -40,7 +40,7 @@ class Live:
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """Listen for `duration` [s]; then the robot raises `RECORDED` with what it heard."""
+    """Listen for `duration` [s]; then the robot raises `RECORDED` with the sound."""
 
     name: str
     duration: float

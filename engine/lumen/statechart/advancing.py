@@ -70,7 +70,7 @@ def resumption_of(node: StateNode) -> str:
 
 
 class Advance:
-    """Moves one `do` forward until it awaits something; `started` collects the ids of what it began."""
+    """Moves one `do` forward until it awaits something; `started` collects the ids that it began."""
 
     __slots__ = ("context", "started")
 

@@ -6,4 +6,5 @@ def draw(generator: int, count: int) -> tuple[int, int]:
     if count == 1:
         return 0, generator
     generator = (generator * 1664525 + 1013904223) % 2**32
+    # The low bits of such a generator have short periods
     return (generator >> 16) % count, generator

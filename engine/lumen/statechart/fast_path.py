@@ -53,6 +53,7 @@ class FastPaths:
         """
         name, names = event.name, snapshot.configuration
         if ".command." in name:
+            # A result becomes data of `done.do.*`, which a generated step does not compute
             return whole if result_of(event.data) is not None else self._answered(snapshot, name)
         if name in (ARRIVED, LEFT, SHARED_EVENT) or name.startswith(CONTROLLER_EVENT):
             return whole

@@ -141,6 +141,7 @@ class MicrostepPlanner:
 
     def plan(self, start: Configuration, enabled: tuple[CompiledTransition, ...], history: History) -> MicrostepPlan:
         """Return the microstep of these enabled transitions in the configuration `start`."""
+        # A plan enters other states if histories remember others
         key = (enabled, *history.items()) if self.chart.has_history else enabled
         found = start.plans.get(key)
         if found is None:

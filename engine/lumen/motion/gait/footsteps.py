@@ -40,6 +40,7 @@ def footsteps(feet: Feet, goal: Pose, first: Side, pace: GaitParameters) -> list
     count = max(1, ceil(hypot(way.x / pace.forward, way.y / pace.sideways, way.theta / pace.turn) - 1e-6))
     steps: list[Footstep] = []
     side, bearing, there = first, feet[other(first)], 0
+    # Both feet must reach the goal; the bound ends a walk in which one never does
     while there < 2 and len(steps) < 2 * count + 4:
         part = min(1.0, (len(steps) + 1) / count)
         wanted = beside(here.then(Pose(way.x * part, way.y * part, way.theta * part)), side, pace)

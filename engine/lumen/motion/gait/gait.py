@@ -98,6 +98,7 @@ class Gait:
         self._tracker: StepTracker | None = None
         self._mass = self._dcm = self._zmp = between(feet, self.pace)
         self.heading, self._offset = middle(feet).theta, np.array(_TORSO_TO_MASS)
+        # The centre of mass depends on the stance, and the stance on the offset of that centre: a few rounds converge
         for _ in range(4):
             stance = self._stand({side: Placed(pose) for side, pose in feet.items()})
         self.angles: Mapping[str, float] = stance.angles

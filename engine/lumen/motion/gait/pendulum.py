@@ -1,4 +1,4 @@
-"""The linear inverted pendulum: how the body falls, and how it must begin to fall to end where it should.
+"""The linear inverted pendulum: how the body falls, and how it must begin to fall to end at a given point.
 
 The divergent component of motion (DCM) is the centre of mass plus its velocity divided by omega. The body falls away
 from the point it rests on (ZMP), towards the DCM: Englsberger, Ott and Albu-Schäffer, "Three-dimensional bipedal
