@@ -82,6 +82,7 @@ class Motions(Observer):
         self.texts: list[Say] = []
 
     def performing(self, command: Command, now: float) -> None:
+        """Track the motions that play, and collect the texts."""
         match command:
             case Start(id, Play()):
                 self.playing.add(id)
@@ -89,6 +90,7 @@ class Motions(Observer):
                 self.texts.append(said)
 
     def answered(self, event: Event) -> None:
+        """Remove a motion that has ended."""
         self.playing.discard(event.name.partition(".command.")[2])
 
 

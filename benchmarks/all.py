@@ -61,10 +61,12 @@ def actor() -> dict[str, float]:
 
 
 def ring_of_15() -> str:
+    """Return the rate of a ring of 15 states relative to XState's."""
     return f"{rate(sending(ring(15))) / actor()['15 states']:.2f} x"
 
 
 def three_levels() -> str:
+    """Return the rate of a chart with three levels relative to XState's."""
     return f"{rate(sending(regions())) / actor()['regions']:.2f} x"
 
 
@@ -89,6 +91,8 @@ def first_visits() -> str:
 
 
 def built() -> str:
+    """Return the times to build and to start a ring of 1,500 states."""
+
     def once() -> tuple[float, float]:
         began = time.process_time()
         machine = ring(1_500)
@@ -101,24 +105,29 @@ def built() -> str:
 
 
 def visits() -> str:
+    """Return the steps per second of visits to the tour."""
     return f"{rate(tour()) / 1e3:.0f} k/s"
 
 
 @cache
 def edits() -> reload.Outcome:
+    """Return the outcome of edits during a run, made once."""
     return reload.soak(EDITS)
 
 
 def verdict() -> str:
+    """Return the median time from a saved file to its verdict."""
     return f"{1e3 * median(edits().single):.0f} ms"
 
 
 def missed() -> str:
+    """Return the number of ticks missed during edits."""
     found = edits()
     return f"{found.missed} of {found.ticks:,}; idle {found.beside}"
 
 
 def first_word(robot: str) -> str:
+    """Return the median processor time until a robot's first word."""
     return f"{median(_first_word(robot) for _ in range(RUNS)):.2f} s"
 
 
@@ -151,6 +160,7 @@ def _processor_time(pid: int) -> float:
 
 
 def cold_lint() -> str:
+    """Return the processor times of a cold lint relative to those of the imports."""
     imports, nothing, same, changed = lint.cold()
     each = (
         f"{took / imports:.2f} x {what}" for took, what in ((nothing, "nothing kept"), (changed, "one file changed"))
@@ -159,6 +169,7 @@ def cold_lint() -> str:
 
 
 def toured() -> str:
+    """Return the speed of the simulated tour without a camera."""
     import simulation
 
     project = lumen.load(ROOT)
@@ -170,6 +181,7 @@ def toured() -> str:
 
 
 def pictured() -> str:
+    """Return the speed of the simulated tour with its camera. Raises RuntimeError if no camera can be rendered."""
     import simulation
 
     if why := simulation.available():
@@ -210,11 +222,13 @@ def evaluations() -> str:
 
 
 def in_process() -> str:
+    """Return the messages per second in one process, checked and unchecked."""
     off, on = bus.checks(1.0)
     return f"{on / 1e3:.0f} k/s; unchecked {off / 1e3:.0f}"
 
 
 def paced() -> str:
+    """Return latency and processor time of a steady stream of messages, for Lumen and pika."""
     with bus.broker(None) as url:
         ours, theirs = bus.paced(url, bus.Ours), bus.paced(url, bus.Pikas)
     return f"{ours.p99:.1f} ms, pika {theirs.p99:.1f}; {ours.spent:.0f} us CPU, pika {theirs.spent:.0f}"

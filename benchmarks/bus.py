@@ -223,6 +223,7 @@ class Ours:
         self.close = lambda: (self._sender.close(), self._undo(), receiver.close())
 
     def send(self, sent: int) -> None:
+        """Publish a message with its time of sending."""
         self._sender.publish(KEY, {"sent": sent, "filler": FILLER})
 
 
@@ -250,9 +251,11 @@ class Pikas:
         ready.wait()
 
     def send(self, sent: int) -> None:
+        """Publish a message with its time of sending."""
         self._channel.basic_publish("amq.topic", KEY, json.dumps({"sent": sent, "filler": FILLER}).encode())
 
     def close(self) -> None:
+        """End the consumer, and close both connections."""
         self._ending.set()
         self._server.join()
         self._sender.close()
@@ -278,6 +281,7 @@ def paced(url: str, kind: Callable[[str, Callable[[Any], None]], "Ours | Pikas"]
 
 
 def asking(url: str) -> Iterator[None]:
+    """Yield after each answered command of two buses of Lumen."""
     server, client = connect(url), connect(url)
     for bus in (server, client):
         bus.carry({KEY: COMMAND})
@@ -340,6 +344,7 @@ def asking_raw(url: str) -> Iterator[None]:
 
 @contextmanager
 def broker(url: str | None) -> Iterator[str]:
+    """Yield the address of the given broker, else of a private one."""
     if url:
         yield url
         return

@@ -82,11 +82,13 @@ def project(mistake: Mistake, folder: Path) -> dict[str, bytes]:
 
 
 def ours(mistake: Mistake, folder: Path) -> str:
+    """Return the findings of `lumen lint`."""
     found = [d for d in check_files(folder, read_files(folder))[1] if d.place.file == mistake.file]
     return "; ".join(f"{d.place.line}:{d.place.column} {d.message}{f' ({d.hint})' if d.hint else ''}" for d in found)
 
 
 def check_jsonschema(mistake: Mistake, folder: Path, tool: Path) -> str:
+    """Return the errors of check-jsonschema."""
     schema = folder / "schemas" / f"{KINDS[mistake.file]}.schema.json"
     done = run([tool, "--schemafile", schema, "-o", "json", folder / mistake.file], folder)
     try:
@@ -100,6 +102,7 @@ def check_jsonschema(mistake: Mistake, folder: Path, tool: Path) -> str:
 
 
 def spectral(mistake: Mistake, folder: Path, tool: Path) -> str:
+    """Return the errors of Spectral."""
     rules = folder / "rules.json"
     schema = json.loads((folder / "schemas" / f"{KINDS[mistake.file]}.schema.json").read_text("utf-8"))
     then = {"function": "schema", "functionOptions": {"schema": schema, "allErrors": True}}
@@ -115,6 +118,7 @@ def spectral(mistake: Mistake, folder: Path, tool: Path) -> str:
 
 
 def language_server(mistake: Mistake, folder: Path, tool: Path) -> str:
+    """Return the diagnostics of the YAML language server."""
     with Client(folder, ["node", str(tool), "--stdio"]) as client:
         client.open(mistake.file)
         found = client.diagnostics(mistake.file)
@@ -137,6 +141,7 @@ def esphome(mistake: Mistake, folder: Path, tool: Path) -> str | None:
 
 
 def run(words: list[object], folder: Path) -> CompletedProcess[str]:
+    """Run a checker in a folder; return its output."""
     environment = {**os.environ, "NO_COLOR": "1", "HOME": str(folder)}
     command = [str(word) for word in words]
     return run_guarded(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120, check=False)

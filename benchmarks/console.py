@@ -192,6 +192,7 @@ def cpu_of(process: Guarded[str] | None) -> float:
 
 @contextmanager
 def console(folder: Path) -> Iterator[tuple[Guarded[str], int]]:
+    """Yield a console's process and its port."""
     line = [sys.executable, "-m", "lumen", "console", folder, "--port", "0"]
     with Guarded(line, stdin=DEVNULL, stdout=PIPE, text=True) as process:
         try:
@@ -204,6 +205,7 @@ def console(folder: Path) -> Iterator[tuple[Guarded[str], int]]:
 
 @contextmanager
 def listeners(port: int, pages: int, watchers: int) -> Iterator[Guarded[str]]:
+    """Yield a process with that many pages and watchers."""
     line = [sys.executable, __file__, "--listen", port, pages, watchers]
     with Guarded(line, stdin=DEVNULL, stdout=PIPE, text=True) as process:
         try:

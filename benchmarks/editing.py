@@ -73,9 +73,11 @@ class Writer:
         return text.replace(old, f"{old} {self.number} ".rstrip(), 1)
 
     def read_first(self, path: str) -> str:
+        """Return the original text of a file."""
         return (self.root.parent / "first" / path).read_text("utf-8")
 
     def in_place(self, files: dict[str, str]) -> None:
+        """Write files in place."""
         for path, text in files.items():
             with (self.root / path).open("r+", encoding="utf-8") as file:
                 file.write(text)
@@ -106,6 +108,7 @@ class Writer:
             file.with_name(f"{file.name}~").unlink()
 
     def one_after_the_other(self, files: dict[str, str]) -> None:
+        """Write files one after another, with pauses."""
         for path, text in files.items():
             (self.root / path).write_text(text, "utf-8")
             if path != list(files)[-1]:
@@ -141,6 +144,7 @@ class Colleague:
         return hash, said == "good", int(count)
 
     def close(self) -> None:
+        """End the writer's process."""
         self._process.communicate()
 
 

@@ -100,21 +100,25 @@ class Part:
         return time.monotonic() - self.begun
 
     def begin(self) -> None:
+        """Start the process, and a thread that reads its output."""
         self.begun = time.monotonic()
         self.process = Guarded(self._command, text=True, stdin=DEVNULL, stdout=PIPE, stderr=STDOUT, bufsize=1)
         threading.Thread(target=self._read, args=(self.process,), daemon=True).start()
 
     def signal(self, number: int) -> None:
+        """Send a signal to the process and its children."""
         assert self.process
         with suppress(ProcessLookupError):  # it ended by itself: `until` and the outcome of the fault report that
             os.killpg(self.process.pid, number)
 
     def end(self) -> None:
+        """Kill the process and wait for its end."""
         if self.process:
             self.signal(signal.SIGKILL)
             self.process.wait()
 
     def since(self, at: float, who: str = "") -> list[Told]:
+        """Return the lines since `at` [s], only those of `who` if it is given."""
         return [told for told in list(self.told) if told.at >= at and who in ("", told.who)]
 
     def _read(self, process: Guarded[str]) -> None:
@@ -149,6 +153,7 @@ class Outcome(NamedTuple):
 
     @property
     def well(self) -> bool:
+        """Return True if the tour has recovered, with nothing repeated and rest as required."""
         return self.on is not None and not self.twice and self.should_rest in (None, self.rested)
 
 
@@ -209,6 +214,7 @@ class Exhibition:
         return None
 
     def publish(self, key: str, body: Any) -> None:
+        """Publish a message, repeatedly until the bus accepts it."""
         self.until(lambda: self._published(key, body), READY_TIMEOUT, f"a message on {key}")
 
     def _published(self, key: str, body: Any) -> bool:
@@ -219,6 +225,7 @@ class Exhibition:
         return True
 
     def say(self, text: str) -> None:
+        """Publish a sentence of the visitor."""
         self.publish("lumen.audio.speech.recognition", {"name": "Ada", "result": text, "date": "2026-01-01T10:00:00"})
 
     def reach(self, moment: str) -> None:
@@ -325,6 +332,7 @@ def _copy(folder: Path) -> Path:
 
 @contextmanager
 def exhibition_with(robot: str) -> Iterator[Exhibition]:
+    """Yield an exhibition with that robot."""
     with ExitStack() as stack:
         yield Exhibition(robot, stack)
 

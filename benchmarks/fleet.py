@@ -76,6 +76,7 @@ class TickPart(Part):
         self._ticked = ticked
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        """Call the function."""
         self._ticked(now)
 
 

@@ -44,11 +44,13 @@ class ByHand:
         self.terms = np.array([np.exp(-0.5 * ((self.y - c) / s) ** 2) for c, s in outputs])
 
     def one(self, x: float) -> float:
+        """Return the output for one input."""
         degrees = np.exp(-0.5 * ((x - self.centres) / self.sigmas) ** 2)
         whole = np.minimum(degrees[:, None], self.terms).max(axis=0)
         return float(whole @ self.y / whole.sum())
 
     def many(self, xs: NDArray[np.float64], chunk: int = 64) -> NDArray[np.float64]:
+        """Return the outputs, Shape (n,), for inputs of Shape (n,), computed in chunks."""
         return np.concatenate([self._chunk(xs[i : i + chunk]) for i in range(0, len(xs), chunk)])
 
     def _chunk(self, xs: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -61,6 +63,7 @@ class ByHand:
 
 
 def by_hand(points: int = POINTS) -> One:
+    """Return the evaluation with NumPy by hand."""
     yaw, pitch = ByHand(FACE_X, ANGLE_X, points), ByHand(FACE_Y, ANGLE_Y, points)
     return lambda row: {"AngleX": yaw.one(row["FaceXLoc"]), "AngleY": pitch.one(row["FaceYLoc"])}
 
@@ -86,6 +89,7 @@ def fuzzylite(head: Controller, points: int) -> One:
 
 
 def scikit_fuzzy(head: Controller, points: int) -> One:
+    """Return an evaluation by scikit-fuzzy, without its cache."""
     from skfuzzy import control, gaussmf
 
     made: dict[str, Any] = {}
@@ -113,6 +117,7 @@ def scikit_fuzzy(head: Controller, points: int) -> One:
 
 
 def simpful(head: Controller, points: int) -> One:
+    """Return an evaluation by simpful."""
     from simpful import FuzzySystem, GaussianFuzzySet, LinguisticVariable
 
     system = FuzzySystem(show_banner=False, verbose=False)
@@ -177,6 +182,7 @@ def main() -> None:
 
 
 def batches(head: Controller) -> None:
+    """Print the rates of batches, by hand and by Lumen."""
     yaw, pitch = ByHand(FACE_X, ANGLE_X), ByHand(FACE_Y, ANGLE_Y)
     columns = {"FaceXLoc": np.random.default_rng(1).uniform(0, 320, BATCH),
                "FaceYLoc": np.random.default_rng(2).uniform(0, 240, BATCH)}  # fmt: skip

@@ -39,6 +39,7 @@ Loop = Callable[[float, float], tuple[Run, Run]]
 
 
 def kinematic(project: Project) -> Loop:
+    """Return the loop of a head without physics."""
     head, goal = project.controllers["head"], centring(FACE, TOP)
 
     def loop(latency: float, tick: float) -> tuple[Run, Run]:
@@ -55,6 +56,8 @@ def _passing(now: float) -> Vector3:
 
 
 def physical(project: Project) -> Loop:
+    """Return the loop of a head under physics."""
+
     def loop(latency: float, tick: float) -> tuple[Run, Run]:
         still = physical_loop.run(project, lambda now: Visitor(), OFF, latency=latency, tick=tick)
         walk = physical_loop.run(project, lambda now: Visitor(1.5, -1.0 + 0.5 * now), latency=latency, tick=tick)
@@ -64,6 +67,7 @@ def physical(project: Project) -> Loop:
 
 
 def row(still: Run, walk: Run) -> Iterator[str]:
+    """Yield the cells of a row: overshoot, settled, rest and walk."""
     yield f"{100 * max(still.overshoot(axis, 0.0) for axis in (0, 1)):.1f} %"
     yield f"{max(still.settled(axis, 0.0) for axis in (0, 1)):.2f} s"
     yield f"{degrees(max(abs(still.poses[-1][1 + axis]) for axis in (0, 1))):.2f} deg"

@@ -83,6 +83,7 @@ def same(name: Any, wanted: Any) -> bool:
 
 
 def held_back(number: int) -> bool:
+    """Return True for every `HELD_BACK`th number."""
     return number % HELD_BACK == HELD_BACK - 1
 
 
@@ -102,6 +103,7 @@ class Tour:
                 raise SystemExit(f"the tour is not in `{state}` but in {sorted(self.at[kind].configuration)}")
 
     def said(self, snapshot: Any, text: str) -> Any:
+        """Return the step after a text was heard."""
         return statechart.step(self.machine, snapshot, Event("heard", {"result": text}, snapshot.at + 1))
 
     def settled(self, step: Any) -> Any:
@@ -116,6 +118,7 @@ class Tour:
         return step.snapshot
 
     def try_all(self, file: Path, *, all_known: bool) -> Iterator[Tried]:
+        """Yield each saying of a file, tried on the tour."""
         for kind, by_language in yaml.safe_load(file.read_text()).items():
             for language, rows in by_language.items():
                 for number, (text, wanted) in enumerate(rows):
@@ -153,6 +156,7 @@ def table(tried: list[Tried]) -> Iterator[str]:
 
 
 def share(tried: list[Tried], *, held: bool) -> str:
+    """Return the share of right ones, as text."""
     of = [one.right for one in tried if one.held_back == held]
     return f"{sum(of)} of {len(of)}, {100 * sum(of) / len(of):.0f} %" if of else "-"
 

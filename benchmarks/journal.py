@@ -48,6 +48,7 @@ class Ticks(Observer):
         self.events: list[Event] = []
 
     def stepped(self, step: object) -> None:
+        """Collect the event of a step, unless it is a timer's."""
         event = getattr(step, "event", None)
         if event and not event.sendid:
             self.events.append(event)
@@ -111,6 +112,7 @@ def renamed(event: Event, number: int, commands: int, awaited: int) -> Event:
 
 
 def entries(folder: Path) -> list[RecordedEntry]:
+    """Return all entries of the journals in a folder."""
     return [entry for file in JournalFolder(folder, 30.0, 1e9).files() for entry in read_journal(file).entries]
 
 
@@ -121,9 +123,11 @@ class Bundles:
         self._bundle = bundle
 
     def project(self, hash: str, behavior: str) -> Project:
+        """Return the project of the bundle."""
         return self._bundle
 
     def machine(self, hash: str, behavior: str) -> MachineDefinition:
+        """Return the machine of the bundle."""
         return self._bundle.machine
 
 

@@ -140,6 +140,7 @@ def grown(count: int) -> dict[str, bytes]:
 
 
 def timed(work: Callable[[], object]) -> float:
+    """Return the processor time of a call [s]."""
     began = time.process_time()
     work()
     return time.process_time() - began

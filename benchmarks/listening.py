@@ -66,6 +66,7 @@ WALL_DELAY, WALL_LEVEL = 0.08, 0.3
 
 
 def texts(lines: str) -> list[str]:
+    """Return the texts between semicolons and line ends."""
     return re.split("[;\n]", lines.strip())
 
 
@@ -93,10 +94,12 @@ def spoken(text: str, voice: str, pace: int) -> Samples:
 
 
 def loudness(samples: Samples) -> float:
+    """Return the root mean square of the samples."""
     return sqrt(float(np.mean(samples**2)))
 
 
 def sound(samples: Samples) -> Sound:
+    """Return the samples as a sound of 16 bits."""
     return Sound(RATE, np.clip(samples, -32_768, 32_767).astype("<i2").tobytes())
 
 
@@ -159,6 +162,7 @@ class Hall:
         self.ears.begin()
 
     def close(self) -> None:
+        """Close the ears and the bus."""
         self.ears.close()
         self.bus.close()
 

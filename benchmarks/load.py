@@ -161,9 +161,11 @@ class Asker:
         self._ear.begin()
 
     def rates(self) -> dict[str, float]:
+        """Return the messages per second of each sense."""
         return self._ear.rates()
 
     def close(self) -> None:
+        """Close both connections."""
         self._ear.close()
         self._connection.close()
 
@@ -207,14 +209,17 @@ class Ear:
         self._thread.start()
 
     def begin(self) -> None:
+        """Start to count."""
         self._counts.clear()
         self._began = time.monotonic()
 
     def rates(self) -> dict[str, float]:
+        """Return the messages per second of each sense since the start."""
         passed = time.monotonic() - self._began
         return {sense: self._counts[sense] / passed for sense in SENSES}
 
     def close(self) -> None:
+        """End the thread and close the connection."""
         self._ending = True
         self._thread.join()
         self._connection.close()
@@ -253,6 +258,7 @@ def busy() -> Iterator[Guarded[bytes]]:
 
 @contextmanager
 def flooding(url: str, kind: str, rate: int) -> Iterator[Guarded[str]]:
+    """Yield a process that sends a flood, once it has begun."""
     line = [sys.executable, __file__, "--flood", kind, url, "--rate", str(rate)]
     with Guarded(line, stdin=PIPE, stdout=PIPE, text=True) as process:
         assert process.stdout

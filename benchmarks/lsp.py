@@ -103,6 +103,7 @@ class Typist:
         assert errors == [], errors
 
     def can(self, capability: str) -> bool:
+        """Return True if the server has the capability."""
         return bool(self.client.capabilities.get(capability))
 
     def findings(self, near: str, word: str, said: str) -> Took:
@@ -141,6 +142,7 @@ class Typist:
         return took, len(answer["items"] if isinstance(answer, dict) else answer)
 
     def spot(self, near: str) -> tuple[int, int]:
+        """Return the line and column of the first occurrence of a text."""
         line = next(i for i, text in enumerate(self.lines) if near in text)
         return line, self.lines[line].index(near)
 
@@ -154,13 +156,16 @@ class Typist:
         return pressed
 
     def clocks(self) -> Took:
+        """Return the wall clock and the server's CPU time."""
         return Took(time.perf_counter(), cpu(self.client.process.pid))
 
     def since(self, began: Took) -> Took:
+        """Return the times that have passed since other clocks."""
         now = self.clocks()
         return Took(now.wall - began.wall, now.cpu - began.cpu)
 
     def key(self, line: int, start: int, wide: int, key: str) -> None:
+        """Send a change of the file: `key` in place of `wide` characters."""
         self.version += 1
         places = [{"line": line, "character": start + n} for n in (0, wide)]
         change = {"range": {"start": places[0], "end": places[1]}, "text": key}

@@ -25,6 +25,7 @@ ROW = "{:<34}{:>12}{:>12}{:>10}"
 
 
 def chart(kind: str) -> dict[str, Any]:
+    """Return a large or a wide chart."""
     states = {f"s{i}": {"on": {"go": _row(f"s{(i + 1) % SIZE}")}} for i in range(SIZE)}
     regions = {f"s{i}": {"on": {"go": {"guard": "context.n < 5"}}} for i in range(SIZE)}
     wide = {"all": {"type": "parallel", "states": regions}}
@@ -36,6 +37,7 @@ def _row(target: str) -> dict[str, Any]:
 
 
 def tour() -> Exhibition:
+    """Return the shipped tour, running, with a visitor."""
     exhibition = lumen.open(".")
     exhibition.send("face", {"x": 160, "y": 120})
     exhibition.run(1.0)
@@ -54,6 +56,7 @@ def milliseconds(work: Any) -> float:
 
 
 def line(name: str, project: Project, snapshot: Any, activity: ActivityTracker, status: Any) -> None:
+    """Print a row for one chart."""
     view = NowView()
 
     def take() -> Any:

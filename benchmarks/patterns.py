@@ -50,22 +50,26 @@ MAX_SECONDS = 1.0
 
 
 def by_lumen(pattern: str) -> Search:
+    """Compile a pattern with Lumen, without its cache."""
     getattr(compile_pattern, "cache_clear", lambda: None)()
     return compile_pattern(pattern).search
 
 
 def by_re(pattern: str) -> Search:
+    """Compile a pattern with Python's `re`, without its cache."""
     re.purge()
     return re.compile(pattern).search
 
 
 def by_jsonschema_rs(pattern: str) -> Search:
+    """Compile a pattern with jsonschema-rs."""
     from jsonschema_rs import Draft202012Validator, RegexOptions
 
     return Draft202012Validator({"pattern": pattern}, pattern_options=RegexOptions()).is_valid
 
 
 def by_re2(pattern: str) -> Search:
+    """Compile a pattern with google-re2, without its cache."""
     import re2
 
     re2.purge()
@@ -117,6 +121,7 @@ def steps(engines: Engines, pattern: str, hard: str) -> list[dict[str, Callable[
 
 
 def cell(taken: dict[str, float], name: str) -> str:
+    """Return a time as a cell of the table."""
     return f"{1e6 * taken[name]:9.1f}" if name in taken else f"{'> 1 s':>9}"
 
 
@@ -131,6 +136,7 @@ def measured(work: Mapping[str, Callable[[], object]], rounds: int) -> dict[str,
 
 
 def timed(todo: Callable[[], object], count: int) -> float:
+    """Return the processor time of `count` calls [s]."""
     began = process_time()
     for _ in range(count):
         todo()
@@ -148,6 +154,7 @@ def hopeless(pattern: str, text: str) -> bool:
 
 
 def importable(statement: str) -> bool:
+    """Return True if the import statement works in a new process."""
     return run_guarded([sys.executable, "-c", statement], stdout=DEVNULL, stderr=DEVNULL).returncode == 0
 
 

@@ -27,13 +27,16 @@ class Model:
     n = 0
 
     def below(self) -> bool:
+        """Return True while the count is below its limit."""
         return self.n < MOST
 
     def plus(self) -> None:
+        """Increment the count."""
         self.n += 1
 
 
 def transitions_ring(size: int) -> Work:
+    """Return a ring in `transitions`."""
     from transitions import Machine
 
     names = [f"s{i}" for i in range(size)]
@@ -42,6 +45,7 @@ def transitions_ring(size: int) -> Work:
 
 
 def transitions_regions() -> Work:
+    """Return two regions in `transitions`."""
     from transitions.extensions import HierarchicalMachine
 
     regions = [{"name": side, "children": ["a", "b"], "initial": "a"} for side in ("left", "right")]
@@ -67,11 +71,13 @@ def _transitions(kind: Any, states: Any, rows: Any, start: str) -> Work:
 
 
 def statemachine_ring(size: int) -> Work:
+    """Return a ring in `python-statemachine`."""
     states: dict[str, Any] = {f"s{i}": {"on": {"go": [_turn(f"s{(i + 1) % size}")]}} for i in range(size)}
     return _statemachine(states, "s0")
 
 
 def statemachine_regions() -> Work:
+    """Return two regions in `python-statemachine`."""
     left = {"la": {"initial": True, "on": {"go": [_turn("lb")]}}, "lb": {"on": {"go": [_turn("la")]}}}
     right = {"ra": {"initial": True, "on": {"go": [{"target": "rb"}]}}, "rb": {"on": {"go": [{"target": "ra"}]}}}
     states: dict[str, Any] = {
@@ -101,11 +107,13 @@ def _statemachine(states: dict[str, Any], start: str) -> Work:
 
 
 def sismic_ring(size: int) -> Work:
+    """Return a ring in `sismic`."""
     states = [{"name": f"s{i}", "transitions": [_guarded(f"s{(i + 1) % size}")]} for i in range(size)]
     return _sismic({"name": "root", "initial": "s0", "states": states})
 
 
 def sismic_regions() -> Work:
+    """Return two regions in `sismic`."""
     left = [{"name": "la", "transitions": [_guarded("lb")]}, {"name": "lb", "transitions": [_guarded("la")]}]
     right = [
         {"name": one, "transitions": [{"event": "go", "target": other}]} for one, other in (("ra", "rb"), ("rb", "ra"))
@@ -135,11 +143,13 @@ def _sismic(root: dict[str, Any]) -> Work:
 
 
 def port_ring(size: int) -> Work:
+    """Return a ring in `xstate-statemachine`."""
     states = {f"s{i}": {"on": {"GO": _named(f"s{(i + 1) % size}")}} for i in range(size)}
     return _port({"initial": "s0", "states": states})
 
 
 def port_regions() -> Work:
+    """Return two regions in `xstate-statemachine`."""
     left = {"a": {"on": {"GO": _named("b")}}, "b": {"on": {"GO": _named("a")}}}
     right = {"a": {"on": {"GO": "b"}}, "b": {"on": {"GO": "a"}}}
     regions = {"left": {"initial": "a", "states": left}, "right": {"initial": "a", "states": right}}

@@ -78,6 +78,7 @@ class Outcome:
 
     @property
     def lost(self) -> int:
+        """Return the number of events that were sent but not counted."""
         return self.sent - self.counted
 
     @property
@@ -99,6 +100,7 @@ class Told(NamedTuple):
 
 
 def told_of(report: ReloadReport, at: float) -> Told:
+    """Return the verdict in a report that arrived at `at` [s]."""
     own = report.validation.took if report.validation else 0.0
     reason = next(report.lines(), "")
     return Told(at, report.verdict, report.after, own, report.took.get("applying", 0.0), reason)
@@ -136,6 +138,7 @@ class Load(threading.Thread):
         self._own = not url.startswith("memory")
 
     def run(self) -> None:
+        """Send events until `ended` is set."""
         due = time.monotonic()
         while not self.ended.wait(max(0.0, due - time.monotonic())):
             self._bus.publish("lumen.load", {"number": self.sent})
@@ -152,6 +155,7 @@ class LookPart(Part):
         self._look = look
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
+        """Call the function."""
         self._look()
 
 
@@ -273,6 +277,7 @@ class Soak:
             setattr(self.outcome, name, tuple(both))
 
     def run(self) -> Outcome:
+        """Run the show until all edits are made and all events counted; return the observations."""
         show, outcome = self.show, self.outcome
         try:
             show.start()
@@ -301,10 +306,12 @@ class Soak:
         return outcome
 
     def until(self, deadline: float) -> None:
+        """Tick until a time of the monotonic clock [s]."""
         while time.monotonic() < deadline:
             self.show.tick()
 
     def counted(self) -> int:
+        """Return the number of events that the behaviour has counted."""
         return int(self.show.loop.runtime.snapshot.context["loaded"])
 
 

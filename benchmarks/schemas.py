@@ -47,24 +47,28 @@ WRONG = {"x": "left", "y": 120}
 
 
 def by_jsonschema(schema: Any) -> Fits:
+    """Return jsonschema's check of a schema."""
     from jsonschema import Draft202012Validator
 
     return Draft202012Validator(schema).is_valid
 
 
 def by_jsonschema_rs(schema: Any) -> Fits:
+    """Return jsonschema-rs's check of a schema."""
     from jsonschema_rs import Draft202012Validator, RegexOptions
 
     return Draft202012Validator(schema, pattern_options=RegexOptions()).is_valid
 
 
 def by_fastjsonschema(schema: Any) -> Fits:
+    """Return fastjsonschema's check of a schema."""
     import fastjsonschema
 
     return fastjsonschema.compile(schema)  # type: ignore[no-any-return]
 
 
 def by_lumen(schema: Any) -> Fits:
+    """Return Lumen's check of a schema."""
     fits = JsonSchema(schema).fits
     fits(None)  # the first call compiles it
     return fits
@@ -123,6 +127,7 @@ def files(makers: Makers, rounds: int) -> tuple[dict[str, list[float]], dict[str
 
 
 def each(fits: Fits, data: list[Any]) -> None:
+    """Check each of the data."""
     for one in data:
         fits(one)
 
@@ -154,6 +159,7 @@ def explaining(rounds: int) -> None:
 
 
 def message_schema(name: str) -> Any:
+    """Return the schema of a message."""
     return json.loads((ROOT / "schemas/messages" / f"{name}.schema.json").read_text(encoding="utf-8"))
 
 

@@ -138,6 +138,7 @@ def table(project: Project, ear: Ear, began: float, ended: float) -> bool:
 
 
 def worst(times: list[float]) -> float:
+    """Return the greatest gap between consecutive times."""
     return max(after - before for before, after in pairwise(times))
 
 

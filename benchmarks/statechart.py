@@ -60,11 +60,13 @@ def stepping(machine: Machine) -> Work:
 
 
 def ring(size: int) -> Machine:
+    """Return machine (a), a ring of that many states."""
     states = {f"s{i}": {"on": {"go": _row(f"s{(i + 1) % size}")}} for i in range(size)}
     return Machine.from_dict({"context": {"n": 0}, "states": states})
 
 
 def regions() -> Machine:
+    """Return machine (b), with two regions."""
     left = {"a": {"on": {"go": _row("b")}}, "b": {"on": {"go": _row("a")}}}
     right = {"a": {"on": {"go": "b"}}, "b": {"on": {"go": "a"}}}
     both = {"type": "parallel", "states": {"left": {"states": left}, "right": {"states": right}}}
@@ -120,6 +122,7 @@ def _plus(context: dict[str, int]) -> dict[str, int]:
 
 
 def measured(ring: Callable[[int], Work], regions: Callable[[], Work] | None) -> Rates:
+    """Return the rates of both machines in one library; without `regions`, only those of rings."""
     rates = {f"{size:,} states": rate(ring(size)) for size in SIZES}
     if regions:
         rates["regions"] = rate(regions())
@@ -127,6 +130,7 @@ def measured(ring: Callable[[int], Work], regions: Callable[[], Work] | None) ->
 
 
 def ours(way: Callable[[Machine], Work]) -> Rates:
+    """Return the rates of Lumen."""
     return measured(lambda size: way(ring(size)), lambda: way(regions()))
 
 

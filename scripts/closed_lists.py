@@ -77,6 +77,7 @@ def _found(package: Package) -> list[Place]:
 
 
 def tables(package: Package) -> Iterator[Place]:
+    """Yield the tables."""
     imported = _imported(package)
     for row in _literals(package):
         things = imported[row.file.path]
@@ -91,6 +92,7 @@ def tables(package: Package) -> Iterator[Place]:
 
 
 def names(package: Package) -> Iterator[Place]:
+    """Yield the lists of names."""
     folders: dict[str, set[str]] = defaultdict(set)
     for file in package.files:
         folder, _, name = file.path.removesuffix("/__init__.py").removesuffix(".py").rpartition("/")
@@ -105,6 +107,7 @@ def names(package: Package) -> Iterator[Place]:
 
 
 def chains(package: Package) -> Iterator[Place]:
+    """Yield the chains."""
     imported = _imported(package)
     branches: dict[tuple[int, str], list[list[ast.stmt]]] = defaultdict(list)
     around: dict[int, Scoped] = {
@@ -122,6 +125,7 @@ def chains(package: Package) -> Iterator[Place]:
 
 
 def enumerations(package: Package) -> Iterator[Place]:
+    """Yield the enumerations."""
     members = {
         name: {last_word(target) for node in kind.node.body if isinstance(node, ast.Assign) for target in node.targets}
         for name, (kind, *_) in package.classes.items()

@@ -65,14 +65,17 @@ class Shown:
     before: str = ""
 
     def word(self, key: str) -> str:
+        """Return the value of a word `key=VALUE`; empty if there is no such word."""
         return next((word.partition("=")[2] for word in self.words if word.startswith(f"{key}=")), "")
 
     @property
     def needs(self) -> set[str]:
+        """Return the facilities that the block needs."""
         return {"physics", "broker", "robot", "network"} & set(self.words)
 
     @property
     def runs(self) -> bool:
+        """Return True if the runner has something to do with the block."""
         return self.language == "console" or any((self.before, *map(self.word, ("file", "append", "by"))))
 
     def commands(self) -> list[tuple[str, list[str]]]:
@@ -82,6 +85,7 @@ class Shown:
 
 
 def blocks(page: Path) -> Iterator[Shown]:
+    """Yield the blocks of a page."""
     text = page.read_text(encoding="utf-8")
     for found in BLOCK.finditer(text):
         line = text.count("\n", 0, found.start("language")) + 1
@@ -244,6 +248,7 @@ def check(page: Path, there: set[str], bus: str = "") -> tuple[int, list[str], l
 
 
 def all_pages() -> list[Path]:
+    """Return README.md and the pages of docs/. Raises SystemExit if there are no pages."""
     if not (pages := sorted((ROOT / "docs").glob("*.md"))):
         raise SystemExit(f"no page is in {ROOT / 'docs'}: nothing is checked")
     return [ROOT / "README.md", *pages]

@@ -65,6 +65,7 @@ class Mutant(NamedTuple):
 
     @property
     def name(self) -> str:
+        """Return the place of the change, and its text before and after."""
         return f"{self.file}:{self.line} {self.before} -> {self.after}"
 
     def described(self) -> dict[str, Any]:

@@ -48,10 +48,12 @@ def pages(folder: Path) -> dict[str, str]:
 
 
 def name(file: Path) -> str:
+    """Return the name of a schema by its file."""
     return file.name.removesuffix(".schema.json")
 
 
 def load(file: Path) -> Schema:
+    """Return the schema in a file."""
     schema: Schema = json.loads(file.read_text(encoding="utf-8"))
     return schema
 
@@ -97,6 +99,7 @@ def _within(schema: Schema, depth: int, path: tuple[str, ...]) -> Iterator[str]:
 
 
 def alternatives(schema: Schema) -> list[Schema]:
+    """Return the subschemas in `oneOf`, `anyOf` and `allOf`."""
     return [part for word in ("oneOf", "anyOf", "allOf") for part in schema.get(word, ()) if isinstance(part, Mapping)]
 
 
@@ -139,6 +142,7 @@ def _link(reference: str) -> str:
 
 
 def limits(schema: Schema) -> Iterator[str]:
+    """Yield the limits of a value in words."""
     for word, text in LIMITS.items():
         if word in schema:
             yield text.format(str(schema[word]).replace("|", "\\|") if word != "pattern" else schema[word])

@@ -34,6 +34,7 @@ class Scoped(NamedTuple):
     functions: tuple[Function, ...]
 
     def place(self, why: str) -> Place:
+        """Return the place of the node."""
         return Place(self.file.path, self.node.lineno, why)
 
 

@@ -85,6 +85,7 @@ class Group:
         return None
 
     def pids(self) -> set[int]:
+        """Return the ids of the processes in the groups."""
         found: set[int] = set()
         for folder in self.folders:
             with suppress(OSError):
@@ -127,6 +128,8 @@ class Run:
 
 
 class Plan(NamedTuple):
+    """A planned run: `number` counts the runs of its condition from 1 to `of`."""
+
     condition: str
     number: int
     of: int
@@ -155,6 +158,7 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 def parsed(words: Sequence[str]) -> argparse.Namespace:
+    """Return the parsed command line."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name in USUAL:
         parser.add_argument(f"--{name}", type=int, metavar="N", help=f"runs of this kind ({USUAL[name]})")
@@ -174,6 +178,7 @@ def usual(arguments: argparse.Namespace) -> dict[str, int]:
 
 
 def planned(counts: dict[str, int], seed: int) -> list[Plan]:
+    """Return the runs to be made, each with a seed of its own."""
     each = [(name, n + 1, count) for name, count in counts.items() for n in range(count)]
     return [Plan(*one, seed + at) for at, one in enumerate(each)]
 
@@ -254,6 +259,7 @@ def busy(*, alone: bool = False) -> Iterator[None]:
 
 
 def pinned(command: list[object]) -> list[object]:
+    """Return the command, pinned to the first core. Raises SystemExit without taskset."""
     if shutil.which("taskset") is None:
         raise SystemExit(
             "half a core needs a writable cgroup with a quota of processor time, or taskset: neither is here"
@@ -275,6 +281,7 @@ def read(outcomes: Path) -> tuple[int, set[str]]:
 
 
 def told(run: Run) -> str:
+    """Return the result of a run as text."""
     left = f", {run.left} processes left behind" if run.left else ""
     outcome = f"{run.passed} passed, {len(run.failed)} failed{left}"
     where = f"; see {run.log.relative_to(ROOT)}" if run.failed else ""

@@ -31,11 +31,13 @@ Menu = list[Any]
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Set the menu; called by MkDocs."""
     config["nav"] = menu((DOCS / "README.md").read_text(encoding="utf-8"), {*made(), *_written()})
     return config
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the generated pages and their pictures; called by MkDocs."""
     shown = made()
     for path, text in shown.items():
         files.append(File.generated(config, path, content=text))
@@ -45,6 +47,7 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    """Rewrite the links of a page; called by MkDocs."""
     source = page.file.src_uri
     return LINK.sub(lambda found: f"{found[1]}{led(found[2], source)}{found[3] or ''}{found[4]}", markdown)
 

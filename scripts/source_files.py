@@ -16,6 +16,7 @@ class SourceFile(NamedTuple):
 
     @property
     def lines(self) -> int:
+        """Return the number of lines."""
         return len(self.text.splitlines())
 
 

@@ -79,6 +79,7 @@ def folders(costs: dict[str, float]) -> dict[str, tuple[int, float]]:
 
 
 def plain(rows: dict[str, tuple[int, float]], run: Measured) -> list[str]:
+    """Return the lines of a table for the terminal."""
     shared = run.cpu - sum(cost for _, cost in rows.values())
     lines = [f"{cost:8.1f} s  {count:6d} tests  {name}" for name, (count, cost) in rows.items()]
     count = sum(count for count, _ in rows.values())
@@ -90,6 +91,7 @@ def plain(rows: dict[str, tuple[int, float]], run: Measured) -> list[str]:
 
 
 def markdown(rows: dict[str, tuple[int, float]], run: Measured) -> list[str]:
+    """Return the lines of a table in Markdown."""
     shared = run.cpu - sum(cost for _, cost in rows.values())
     lines = [f"| {name} | {count} | {cost:.1f} |" for name, (count, cost) in rows.items()]
     head = ["| folder | tests | processor time [s] |", "| --- | ---: | ---: |"]

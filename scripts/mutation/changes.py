@@ -73,6 +73,7 @@ class Source:
 
     @cached_property
     def statements(self) -> list[Statement]:
+        """Return the statements that may be changed."""
         return list(_statements(self.tree.body, imported=True))
 
     def changed(self, change: Change) -> bytes | None:
@@ -92,6 +93,7 @@ class Source:
         return range(first, first + self.content.count(b"\n", change.start, max(change.start, change.end - 1)) + 1)
 
     def first_line(self, node: ast.stmt) -> str:
+        """Return the first line of a statement."""
         return self.content[self._starts[node.lineno] :].partition(b"\n")[0].decode().strip()
 
     def shown(self, change: Change) -> tuple[str, str]:

@@ -63,6 +63,7 @@ class Tracer:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, bool, bool]:
+        """Record what a test executes, and its processor time."""
         self._take()
         os.environ[CONTEXT] = item.nodeid
         began = sum(os.times()[:4])
@@ -72,6 +73,7 @@ class Tracer:
         return result
 
     def pytest_sessionfinish(self) -> None:
+        """Write the recording of this process."""
         self._coverage.stop()
         self._take()
         content = pickle.dumps((dict(self._arcs), dict(self._tests), self._cpu))
@@ -79,6 +81,7 @@ class Tracer:
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    """Register the tracer in the processes that run tests."""
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         config.pluginmanager.register(Tracer(os.environ[OUT]))
 
@@ -102,6 +105,7 @@ class Recording(NamedTuple):
         return {self.tests[number] for number in found}
 
     def executed(self, file: str) -> set[int]:
+        """Return the lines of a file that were executed."""
         return _lines(self.arcs.get(file, ()))
 
 

@@ -161,6 +161,8 @@ def watch(job: Path) -> Ended:
 
 
 class Stat(NamedTuple):
+    """A process: its parent, its processor time in clock ticks, and its resident memory [bytes]."""
+
     parent: int
     ticks: int
     memory: int
