@@ -86,6 +86,21 @@ def test_a_moment_is_found_by_its_time_and_by_words(viewer: Viewer, own: tuple[H
     assert violations(viewer) == []
 
 
+def test_the_chart_is_drawn_with_the_active_states(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
+    hosted, served = own
+    viewer.open(served.console.address, "robot/NAO", ready=".chart-open")
+    viewer.click(".chart-open")
+    until(lambda: viewer.all(".state-chart rect"), HANG)
+    active = "return [...document.querySelectorAll('.chart-state[data-leaf][data-active]')].map((e) => e.dataset.path)"
+    leaves = "return [...document.querySelectorAll('.leaf .state-name')].map((e) => e.textContent)"
+    until(lambda: len(viewer.run(active)) == len(viewer.run(leaves)), HANG)
+    visit(hosted, "Budi")
+    until(lambda: any(path.endswith("how_are_you") for path in viewer.run(active)), HANG)
+    assert viewer.all(".chart-state[data-been]:not([data-active])")
+    assert violations(viewer) == []
+    assert viewer.complaints() == []
+
+
 def test_the_page_begins_with_the_situation_in_a_sentence(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
     """The deed, for whom, since when, and how long it still takes; then the words, and how sure the ears were."""
     hosted, served = own

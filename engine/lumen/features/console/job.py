@@ -87,6 +87,13 @@ def saying(
     yield orjson.dumps({"file": write_saying(root, Saying(behavior, state, row, language, text), robot).as_posix()})
 
 
+def chart(pipe: AnswerPipe, root: Path, robot: str, hash: str) -> Iterator[bytes]:
+    """The chart of the behaviour that runs, as boxes and lines."""
+    from lumen.features.console.drawn_chart import chart_of
+
+    yield orjson.dumps(chart_of(root, robot, hash))
+
+
 def story(pipe: AnswerPipe, root: Path, robot: str, position: int, visitor: str, name: str) -> Iterator[bytes]:
     """Write the story of a visit, in which the visitor has another name."""
     from lumen.features.console.kept_stories import keep_story
@@ -113,8 +120,8 @@ def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 
 
 JOBS: dict[str, Callable[..., Iterable[bytes]]] = {
-    "day": day, "entries": entries, "why": why, "replay": replay, "saying": saying, "story": story, "shape": shape,
-    "poses": poses,
+    "day": day, "entries": entries, "why": why, "replay": replay, "saying": saying, "story": story, "chart": chart,
+    "shape": shape, "poses": poses,
 }  # fmt: skip
 
 

@@ -78,6 +78,7 @@ class Past:
             Route("/api/entries", self._entries),
             Route("/api/search", self._search),
             Route("/api/files", self._files),
+            Route("/api/chart", self._chart),
             Route("/api/passages", self._passage, methods=["POST"]),
             Route("/api/sayings", self._saying, methods=["POST"]),
             Route("/api/stories", self._story, methods=["POST"]),
@@ -184,6 +185,14 @@ class Past:
         if self._is_ours(view) and changed:
             said["replay"] = orjson.loads(await self._jobs.do("replay", self._home(view)))
         return as_json(said)
+
+    async def _chart(self, request: Request) -> Response:
+        """The chart of the behaviour that runs, by the hash of its files."""
+        view = self._asked(request, Role.SHOW)
+        if not self._is_ours(view):
+            raise DeniedError(400, ELSEWHERE)
+        drawn = await self._jobs.do("chart", self._home(view), str(view.said.get("bundle") or ""))
+        return Response(drawn, headers=NO_STORE, media_type="application/json")
 
     async def _passage(self, request: Request) -> Response:
         """A question that nobody could answer is saved as a passage, and judged as any file that is saved."""

@@ -92,7 +92,8 @@ def _boxes(placed: PlacedBox) -> Iterator[str]:
     yield from (line for inner in placed.within for line in _boxes(inner))
 
 
-def _arrows(arrows: tuple[PlacedArrow, ...]) -> Iterator[str]:
+def arrow_lines(arrows: tuple[PlacedArrow, ...]) -> Iterator[str]:
+    """Yield the line of each arrow, as the `d` of an SVG path."""
     ends = _spread(arrows)
     for number, arrow in enumerate(arrows):
         points = [ends[number, True], *arrow.way, ends[number, False]]
@@ -100,7 +101,12 @@ def _arrows(arrows: tuple[PlacedArrow, ...]) -> Iterator[str]:
         for one, other in itertools.pairwise(points):
             middle = (one.y + other.y) / 2
             path.append(f"C{one.x:.1f} {middle:.1f} {other.x:.1f} {middle:.1f} {other.x:.1f} {other.y:.1f}")
-        yield f'<path d="{" ".join(path)}" fill="none" stroke="{ARROW}" stroke-width="1.4" marker-end="url(#tip)"/>'
+        yield " ".join(path)
+
+
+def _arrows(arrows: tuple[PlacedArrow, ...]) -> Iterator[str]:
+    for line in arrow_lines(arrows):
+        yield f'<path d="{line}" fill="none" stroke="{ARROW}" stroke-width="1.4" marker-end="url(#tip)"/>'
 
 
 def _spread(arrows: tuple[PlacedArrow, ...]) -> dict[tuple[int, bool], Point]:

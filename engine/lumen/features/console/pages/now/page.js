@@ -5,6 +5,7 @@ import { Usable, html, t, useRedraw } from "../ui.js";
 import { Approvals } from "./approvals.js";
 import { Body } from "./body.js";
 import { Buttons } from "./buttons.js";
+import { BehaviorChart } from "./chart.js";
 import { Cues } from "./cues.js";
 import { Entries } from "./entries.js";
 import { Situation } from "./situation.js";
@@ -23,5 +24,6 @@ export function NowPage({ name }) {
     <div class="now" data-stale=${isHere(robot) ? null : "true"}><div class="column"><${Lines} robot=${robot} /><${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} /><${Entries} robot=${robot} /></div>
       <div class="column"><${States} robot=${robot} /><${Ways} robot=${robot} /></div>
       <div class="column"><${Body} robot=${robot} />
-        ${may("author") && html`<${Usable} when=${isHere(robot)}><${Cues} robot=${robot} /></${Usable}>`}</div></div>`;
+        ${may("author") && html`<${Usable} when=${isHere(robot)}><${Cues} robot=${robot} /></${Usable}>`}</div></div>
+    <${BehaviorChart} robot=${robot} />`;
 }

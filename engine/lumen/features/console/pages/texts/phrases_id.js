@@ -28,6 +28,7 @@ export default [
   ["{0} sentences are kept already: remove one first", "sudah ada {0} kalimat: hapus satu dahulu"],
   ["for one visitor: after that visit, the previous files come back", "untuk satu pengunjung: sesudah kunjungan itu berkas sebelumnya kembali"],
   ["the files that were tried for one visitor stay active", "berkas yang dicoba untuk satu pengunjung tetap aktif"],
+  ["the files that run were not kept, and the saved files have errors", "berkas yang berjalan tidak disimpan, dan berkas tersimpan mengandung kesalahan"],
   ["`text` must be a string of 1 to {0} characters", "`text` harus berupa teks dengan 1 sampai {0} karakter"],
   ["`{0}` must be one of {1}", "`{0}` harus salah satu dari {1}"],
   ["the centre sent an answer that cannot be shown", "pusat mengirim jawaban yang tidak dapat ditampilkan"],
