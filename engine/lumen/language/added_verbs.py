@@ -68,6 +68,12 @@ def arguments_of(row: VerbRow, data: Any) -> dict[str, Any]:
     return {name: all[name] for name in (*order, *(name for name in all if name not in order))}
 
 
+def durations_of(row: VerbRow) -> frozenset[str]:
+    """Return the names of the arguments that are durations."""
+    properties = row.arguments.get("properties", {})
+    return frozenset(name for name, schema in properties.items() if schema.get("format") == "duration")
+
+
 def given_arguments(row: VerbRow, data: Any) -> Mapping[str, Any]:
     """Return the arguments that the YAML's data name: a map, or the value of the short form."""
     short = short_argument(row)

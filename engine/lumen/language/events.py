@@ -35,7 +35,7 @@ def _said_by() -> dict[str, object]:
 
 
 CUE = "cue"
-"""The event of a robot at words or a sound in a motion: its `motion`, `kind` (`say`, `sound`) and `value`.
+"""What a robot raises when a motion comes to words, a sound or a skill: its `motion`, `kind` and `value`.
 
 It informs the operator; the behaviour does not receive it.
 """

@@ -4,7 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from lumen.language.commands import Do
 from lumen.language.diagnostics import NodePath
+
+SKILL_CUE = "skill"
+"""The kind of the cues that begin skills."""
 
 
 class Interpolation(StrEnum):
@@ -34,12 +38,28 @@ class Keyframe:
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """At `time` [s] something besides joints: `kind` is `say`, `sound`, `leds` or `hold`, `value` as in the file."""
+    """At `time` [s] something besides joints: `kind` is `say`, `sound`, `leds` or `hold`, `value` as in the file.
+
+    A cue of the kind `skill` begins a skill: `value` has its name, `skill`, and its `arguments`.
+    """
 
     time: float
     kind: str
     value: object
     where: NodePath = field(default=(), compare=False)
+
+
+def skill_cue(command: Do, where: NodePath = ()) -> Cue:
+    """Return the cue at time 0 that begins a skill."""
+    return Cue(0.0, SKILL_CUE, {"skill": command.skill, "arguments": dict(command.arguments)}, where)
+
+
+def skill_of(kind: object, value: object) -> Do | None:
+    """Return the command that a cue of this kind and value begins; None if it begins no skill."""
+    match value:
+        case {"skill": str(name), "arguments": Mapping() as arguments} if kind == SKILL_CUE:
+            return Do(name, arguments)
+    return None
 
 
 @dataclass(frozen=True)

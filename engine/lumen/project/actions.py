@@ -21,7 +21,7 @@ from lumen.language.actions import (
     Wait,
     context_key,
 )
-from lumen.language.added_verbs import arguments_of, with_texts
+from lumen.language.added_verbs import arguments_of, durations_of, with_texts
 from lumen.language.commands import Do, SaysGestures, VerbCommand
 from lumen.language.diagnostics import ERROR, Code, NodePath
 from lumen.language.durations import duration_hint
@@ -111,8 +111,7 @@ class Actions:
                 sound = self.duration(text, place) is not None and sound
             return text
 
-        properties = row.arguments.get("properties", {})
-        durations = {(name,) for name, schema in properties.items() if schema.get("format") == "duration"}
+        durations = {(name,) for name in durations_of(row)}
         arguments = with_texts(arguments_of(row, data), read)
         return Do(verb, arguments, row=self.verbs.rows.get(verb)) if sound else None
 

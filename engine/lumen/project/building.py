@@ -367,7 +367,8 @@ def _read(
 
 def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
     """Return the motions of a folder; none if the robot's body is not known."""
-    read = partial(_each, found, build=lambda data, report, name: None, files={**found.files, **found.lent})
+    files_there = {**found.files, **found.lent}
+    read = partial(_each, found, build=lambda data, report, name: None, files=files_there, verbs=found.verbs)
     files: dict[str, BuiltFile[None]] = read(folder)
     only = next(iter(found.bodies)) if found.settings is None and len(found.bodies) == 1 else ""
     model = found.settings.model if found.settings else only
@@ -384,7 +385,7 @@ def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
         files = {name: file for name, file in files.items() if belongs_to(file.data, body)}
     for file in files.values():
         file.report.lost |= found.report(MODELS, model).lost
-    return build_motions({name: (file.data, file.report) for name, file in files.items()}, body)
+    return build_motions({name: (file.data, file.report) for name, file in files.items()}, body, found.verbs)
 
 
 def _strangers(found: ProjectDraft) -> None:

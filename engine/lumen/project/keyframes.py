@@ -4,12 +4,16 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from lumen.language.added_verbs import arguments_of, durations_of
+from lumen.language.commands import Do
 from lumen.language.diagnostics import ERROR, Code, NodePath, did_you_mean, has_errors
-from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition
+from lumen.language.durations import duration_hint
+from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinition, skill_cue
 from lumen.motion.choreography import at_speed, joined, mirrored, placed
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.document_report import DocumentReport
 from lumen.project.poses import PoseReader
-from lumen.project.units import seconds
+from lumen.project.units import BAD_DURATION, seconds
 
 UNKNOWN_MOTION = Code("unknown-motion", "references", ERROR, "the named motion is not in motions/")
 HANDLES_WITHOUT_KEY = Code("handles-without-key", "motions", ERROR, "a joint has handles but no angle in this keyframe")
@@ -27,6 +31,11 @@ MAX_MOTION_KEYS = 200_000
 """The maximum number of keys of all joints, unrolled; as many as an hour of dancing with every joint on every beat."""
 
 _CUES = ("say", "sound", "leds", "hold")
+_OWN_KEYS = (
+    *("at", "beat", "posture", "pose", "roles", "joints", "hands", "interpolation", "handles", "keyframes", "play"),
+    *("repeat", "speed", "mirror", *_CUES),
+)
+"""The keys of a keyframe or block that have a meaning of their own; a skill of such a name can't be begun here."""
 _SOON = 1e-9
 
 
@@ -34,7 +43,8 @@ _SOON = 1e-9
 class KeyframeReader:
     """Reads the keyframes of one file. `beat` is the length of a beat [s], None without a tempo.
 
-    `motions` are those that `play` may name. The faults of those in `broken` were reported in their own files.
+    `motions` are those that `play` may name. The faults of those in `broken` were reported in their own files. `verbs`
+    are the skills that a keyframe may begin.
     """
 
     report: DocumentReport
@@ -43,6 +53,7 @@ class KeyframeReader:
     beat: float | None
     motions: Mapping[str, MotionDefinition]
     broken: Collection[str] = ()
+    verbs: OwnVerbs = NO_VERBS
 
     def read(self, items: list[Any], path: NodePath, interpolation: Interpolation) -> MotionDefinition:
         """Return the motion of a list of keyframes and blocks; its times count from the beginning of the list [s]."""
@@ -92,9 +103,25 @@ class KeyframeReader:
             if word in item:
                 hint = f"put the joints into a block: write them as a list under `keyframes:`, beside `{word}`"
                 self.report(MIXED_KEYFRAME, (*here, word), f"`{word}` is allowed only in a block", hint=hint, key=True)
-        cues = tuple(Cue(0.0, kind, item[kind], (*here, kind)) for kind in _CUES if kind in item)
-        part = MotionDefinition("", 0.0, tracks, cues)
+        cues = [Cue(0.0, kind, item[kind], (*here, kind)) for kind in _CUES if kind in item]
+        cues += [self._skill(name, item[name], (*here, name)) for name in self._skills_in(item)]
+        part = MotionDefinition("", 0.0, tracks, tuple(cues))
         return mirrored(part, self.poses.mirror) if item.get("mirror") is True else part
+
+    def _skills_in(self, item: Mapping[str, Any]) -> list[str]:
+        """Return the keys of a keyframe that are skills."""
+        return [name for name in item if name not in _OWN_KEYS and name in self.verbs.all]
+
+    def _skill(self, name: str, data: Any, where: NodePath) -> Cue:
+        """Return the cue that begins a skill. Its texts are used as they are: a motion has no expressions."""
+        row = self.verbs.all[name]
+        arguments = arguments_of(row, data)
+        for argument in durations_of(row):
+            text = arguments.get(argument)
+            if isinstance(text, str) and seconds(text) is None:
+                place = (*where, argument) if isinstance(data, Mapping) else where
+                self.report(BAD_DURATION, place, f"`{text}` is not a duration", hint=duration_hint(text))
+        return skill_cue(Do(name, arguments), where)
 
     def _block(self, item: Mapping[str, Any], here: NodePath, interpolation: Interpolation) -> MotionDefinition:
         """Return the motion of a block, or another motion, repeated, scaled and mirrored as the item demands."""
@@ -106,6 +133,7 @@ class KeyframeReader:
             "pose",
             "handles",
             *_CUES,
+            *self._skills_in(item),
             *(("play",) if "keyframes" in item else ()),
         ):
             if word in item:

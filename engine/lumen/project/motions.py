@@ -10,6 +10,7 @@ from lumen.language.diagnostics import NodePath, has_errors
 from lumen.language.motions import Interpolation, MotionDefinition
 from lumen.language.robots import Body
 from lumen.motion.choreography import at_speed, mirrored, returning, trailing
+from lumen.project.added_verbs import NO_VERBS, OwnVerbs
 from lumen.project.built_file import unless_too_deep
 from lumen.project.document_report import DocumentReport
 from lumen.project.keyframes import MOTION_CYCLE, TOO_MANY_KEYS, ZERO_DURATION, KeyframeReader
@@ -31,10 +32,12 @@ def build_motion(
     body: Body,
     motions: Mapping[str, MotionDefinition] | None = None,
     broken: Collection[str] = (),
+    verbs: OwnVerbs = NO_VERBS,
 ) -> MotionDefinition | None:
     """Return the motion that the data of `motions/NAME.yaml` describes; None if it moves nothing.
 
     `motions` are those that it may `play`, built before it; `broken` are names of files that can't be built.
+    `verbs` are the skills that it may begin.
     """
     if not isinstance(data, Mapping) or not data.get("keyframes"):
         return None
@@ -44,7 +47,7 @@ def build_motion(
     poses.define(data.get("poses") or {}, ("poses",))
     tempo = data.get("tempo")
     beat = 60.0 / tempo if tempo and poses.number(tempo, ("tempo",)) else None
-    reader = KeyframeReader(report, name, poses, beat, motions or {}, broken)
+    reader = KeyframeReader(report, name, poses, beat, motions or {}, broken, verbs)
     how = Interpolation(data.get("interpolation", Interpolation.MINIMUM_JERK))
     part = reader.read(data["keyframes"], ("keyframes",), how)
     poses.roles.tell_left_out("this motion")
@@ -59,6 +62,7 @@ def build_motion(
 def build_motions(
     files: Mapping[str, tuple[Any, DocumentReport]],
     body: Body,
+    verbs: OwnVerbs = NO_VERBS,
 ) -> dict[str, MotionDefinition]:
     """Return every motion of a project that can be built, from the data and the report of each by its name.
 
@@ -72,8 +76,10 @@ def build_motions(
     built: dict[str, MotionDefinition] = {}
     for name in order:
         data, report = files[name]
-        given = (body, {played: (built.get(played), played in files) for played in plays[name]})
-        build = partial(build_motion, data, report, name=name, body=body, motions=built, broken=files.keys())
+        given = (body, verbs, {played: (built.get(played), played in files) for played in plays[name]})
+        build = partial(
+            build_motion, data, report, name=name, body=body, motions=built, broken=files.keys(), verbs=verbs
+        )
         motion = report.memoize(("motion", report.document.file), given, partial(unless_too_deep, report, build))
         if motion is not None:
             built[name] = motion

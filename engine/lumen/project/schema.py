@@ -92,8 +92,11 @@ def load_schema(kind: str, verbs: OwnVerbs = NO_VERBS) -> Any:
 
 
 def _add_verbs(schema: Any, kind: str, verbs: Mapping[str, VerbRow]) -> None:
-    """Add verbs to the schema of behaviours or of stories."""
-    if kind == "behavior":
+    """Add verbs to the schema of behaviours, motions or stories."""
+    if kind == "motion":
+        keys = schema["$defs"]["keyframe"]["properties"]
+        keys |= {name: written_schema(row) for name, row in verbs.items() if name not in keys}
+    elif kind == "behavior":
         schema["$defs"]["action"]["properties"] |= {name: written_schema(row) for name, row in verbs.items()}
     elif kind == "story":
         robot = schema["properties"]["robot"]

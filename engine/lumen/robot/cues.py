@@ -1,11 +1,11 @@
-"""The words and sounds of a motion, raised as events as their times come."""
+"""The words, sounds and skills of a motion, raised as events as their times come."""
 
 from collections.abc import Callable
 
 from lumen.language.events import CUE, Event
-from lumen.language.motions import Cue, MotionDefinition
+from lumen.language.motions import SKILL_CUE, Cue, MotionDefinition
 
-NOTIFIED_KINDS = ("say", "sound")
+NOTIFIED_KINDS = ("say", "sound", SKILL_CUE)
 """Kinds of cues that a robot raises as events; the others it performs itself."""
 
 EventSink = Callable[[Event], None]

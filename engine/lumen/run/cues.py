@@ -1,11 +1,12 @@
-"""Cues of motions: their words become `Say` commands, their sounds `PlaySound` commands."""
+"""Cues of motions: their words become `Say` commands, their sounds `PlaySound`, their skills `Do`."""
 
 import logging
 from collections.abc import Mapping
 from pathlib import Path
 
-from lumen.language.commands import Cancel, Command, Play, PlaySound, Say, Start
+from lumen.language.commands import BodyCommand, Cancel, Command, Play, PlaySound, Say, Start
 from lumen.language.events import CUE, Event
+from lumen.language.motions import skill_of
 from lumen.language.projects import Project
 from lumen.project.sounds import sound_duration
 
@@ -15,8 +16,8 @@ _log = logging.getLogger(__name__)
 class MotionCues:
     """A translator from a motion's cue events to commands.
 
-    Words wait for the voice like every `say`, under ids `cue1`, `cue2`, …. If a motion is cancelled or fails, its words
-    and sounds are cancelled. A sound that is missing or can't be played is logged once and left out.
+    Words wait for the voice like every `say`, under ids `cue1`, `cue2`, …. If a motion is cancelled or fails, its
+    words, sounds and skills are cancelled. A sound that is missing or can't be played is logged once and left out.
     """
 
     def __init__(self) -> None:
@@ -45,13 +46,18 @@ class MotionCues:
     def _cue(self, data: Mapping[str, object], project: Project, language: str) -> list[Command]:
         motion, kind, value = str(data.get("motion", "")), data.get("kind"), data.get("value")
         if kind == "say" and (text := words(value, language, project.languages[0])):
-            self._number += 1
-            id = f"cue{self._number}"
-            self._saying[id] = motion
-            return [Start(id, Say(text, language))]
+            return [self._begin(Say(text, language), motion)]
         if kind == "sound":
             return self._sound(str(value), motion, project)
-        return []
+        skill = skill_of(kind, value)
+        return [self._begin(skill, motion)] if skill else []
+
+    def _begin(self, command: BodyCommand, motion: str) -> Start:
+        """Return the command that begins something of a motion, and remember that it ends with the motion."""
+        self._number += 1
+        id = f"cue{self._number}"
+        self._saying[id] = motion
+        return Start(id, command)
 
     def _sound(self, file: str, motion: str, project: Project) -> list[Command]:
         try:
@@ -61,10 +67,7 @@ class MotionCues:
                 self._lacking.add(file)
                 _log.warning("the motion `%s` can't play the sound `%s`: %s", motion, file, error)
             return []
-        self._number += 1
-        id = f"cue{self._number}"
-        self._saying[id] = motion
-        return [Start(id, PlaySound(file))]
+        return [self._begin(PlaySound(file), motion)]
 
 
 def words(value: object, language: str, default: str) -> str:

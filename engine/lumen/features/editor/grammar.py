@@ -201,6 +201,8 @@ def names_verb(kind: str, path: NodePath) -> bool:
     steps = [step for step in path[:-1] if isinstance(step, str)]
     if kind == "story":
         return steps[-1:] in (["skills"], ["did"]) or steps == ["robot"]
+    if kind == "motion":
+        return steps[-1:] == ["keyframes"]
     while steps and steps[-1] in ("then", "else", "parallel", "ask"):
         steps.pop()
     return kind == "behavior" and steps[-1:] in (["do"], ["entry"], ["exit"], ["actions"])
