@@ -156,7 +156,7 @@ def promises(root: Path, name: str) -> tuple[int, str]:
 def test_the_template_keeps_all_promises(root: Path) -> None:
     code, said = promises(root, "printer")
     assert code == 0, said
-    assert "12 passed" in said
+    assert "23 passed" in said
 
 
 @pytest.mark.process

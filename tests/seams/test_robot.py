@@ -1,7 +1,7 @@
-"""One set of promises for every robot; an adapter is a row in `ROBOTS`."""
+"""One set of promises for every robot; an adapter is a row in `ROBOTS`. test_shipped_promises.py has more."""
 
 from collections.abc import Callable, Iterator
-from math import inf, nan
+from math import nan
 from pathlib import Path
 from typing import Protocol
 
@@ -11,7 +11,7 @@ import lumen
 from lumen.bus import connect
 from lumen.bus.validated import validated
 from lumen.features.simulation.offers import SimulatedRobot
-from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume, Wake
+from lumen.language.commands import Leds, Look, Move, Posture, Rest, Say, Stop, Volume
 from lumen.language.events import Event
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Project
@@ -111,13 +111,6 @@ def test_speech_takes_its_time(robot: Body) -> None:
     assert done.at == pytest.approx(1.6, abs=0.1)
 
 
-def test_what_it_can_not_do_is_an_answer_and_not_an_exception(robot: Body) -> None:
-    robot.start("a", Posture("Handstand"))
-    [answer] = live(robot, 0.2)
-    assert answer.name == "error.command.a"
-    assert "Handstand" in answer.data["reason"]
-
-
 @pytest.mark.parametrize("command", [Look(nan), Perform(MotionDefinition("m", 1.0, {"Nose": (Keyframe(1.0, 0.1),)}))])
 def test_what_is_no_goal_for_its_joints_is_refused(robot: Body, command: RobotCommand) -> None:
     robot.start("a", command)
@@ -202,13 +195,6 @@ def test_stop_ends_what_it_names_and_nothing_else(robot: Body, project: Project)
     assert names(live(robot, 4.0)) == ["cancelled.command.dance", "done.command.stop", "done.command.say"]
 
 
-def test_after_rest_it_wakes(robot: Body) -> None:
-    robot.start("rest", Rest())
-    live(robot, 6.0)
-    robot.start("wake", Wake())
-    assert names(live(robot, 6.0)) == ["done.command.wake"]
-
-
 def test_an_aim_moves_the_head_and_is_not_answered(robot: Body) -> None:
     robot.start("", Aim({"HeadYaw": 0.4}, 0.5))
     assert live(robot, 2.0) == []
@@ -284,19 +270,6 @@ def test_a_move_goes_on_until_another_one_or_stop_ends_it(robot: Body) -> None:
     assert sorted(names(live(robot, 1.5))) == ["cancelled.command.b", "done.command.s"]
 
 
-@pytest.mark.parametrize("angle", [nan, inf])
-def test_what_is_no_angle_moves_nothing(robot: Body, angle: float) -> None:
-    live(robot, 3.0)  # until it stands as it stands
-    before = robot.read(Sense.JOINT)
-    robot.start("", Aim({"HeadYaw": angle}, 0.5))
-    robot.start("", Aim({"NoSuchJoint": 0.1}, 0.5))
-    assert live(robot, 1.0) == []
-    after = robot.read(Sense.JOINT)
-    assert isinstance(before, Joints)
-    assert isinstance(after, Joints)
-    assert after.angles == pytest.approx(before.angles, abs=0.05)
-
-
 @pytest.mark.slow
 def test_a_recording_takes_its_time_while_everything_else_goes_on(robot: Body) -> None:
     robot.start("ears", Record("r1", 1.0))
@@ -324,26 +297,6 @@ def test_senses_in_their_order_and_units(robot: Body, project: Project) -> None:
     assert set(tactile.values) == {0}
     assert isinstance(battery, Battery)
     assert 0 <= battery.percentage <= 100
-
-
-def test_a_charger_is_felt(robot: Body) -> None:
-    robot.plug(True)
-    plugged = robot.read(Sense.BATTERY)
-    robot.plug(False)
-    alone = robot.read(Sense.BATTERY)
-    assert isinstance(plugged, Battery)
-    assert isinstance(alone, Battery)
-    assert (plugged.plugged, plugged.charging, alone.plugged) == (True, False, False), "it was full"
-
-
-def test_a_touch_is_noticed_once(robot: Body) -> None:
-    robot.touch("FrontTactil", True)
-    robot.touch("FrontTactil", True)
-    robot.touch("FrontTactil", False)
-    assert [(e.name, e.data) for e in live(robot, 0.1)] == [
-        ("touched", {"sensor": "FrontTactil"}),
-        ("released", {"sensor": "FrontTactil"}),
-    ]
 
 
 def test_a_visitor_is_seen_until_they_leave(robot: Body, project: Project) -> None:

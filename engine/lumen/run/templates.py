@@ -47,7 +47,7 @@ from collections.abc import Sequence
 from lumen.language.commands import Posture, Rest, Say, Stop
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.ports import Aim, Live, Perform, Reading, RobotCommand, Sense
+from lumen.ports import Aim, Live, Perform, Reading, Record, RobotCommand, Sense
 
 
 class {class_name}:
@@ -104,6 +104,8 @@ def seconds(command: RobotCommand) -> float:
     """How long a command takes."""
     if isinstance(command, Say):
         return 0.06 * len(command.text)
+    if isinstance(command, Record):
+        return command.duration
     return command.motion.duration if isinstance(command, Perform) else 0.2
 
 

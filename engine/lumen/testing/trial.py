@@ -11,7 +11,7 @@ import pytest
 from lumen.errors import LumenError
 from lumen.language.events import Event
 from lumen.language.projects import Project
-from lumen.ports import Advances, Reading, RobotCommand, Sense
+from lumen.ports import Advances, Joints, Reading, Robot, RobotCommand, Sense
 from lumen.robot.bounded_robot import BoundedRobot
 from lumen.run.driver import fault_of, make_robot
 
@@ -27,11 +27,12 @@ class RobotTrial:
     """A new robot of a driver, as an exhibition uses it.
 
     A robot with a method `advance` runs in its own time, any other in real time. `now` is the time since its start [s].
+    `robot` is one that was made already; `driver` is then only the name in sentences.
     """
 
-    def __init__(self, driver: str, project: Project) -> None:
+    def __init__(self, driver: str, project: Project, robot: Robot | None = None) -> None:
         self.driver, self.project = driver, project
-        self.own = make_robot(driver, project)
+        self.own = make_robot(driver, project) if robot is None else robot
         self._robot = BoundedRobot(self.own, project.body, fault_of(driver))
         self.now, self._began = 0.0, time.monotonic()
         self.events: list[Event] = []
@@ -51,6 +52,11 @@ class RobotTrial:
         """Return the reading of a sense, None without that sense."""
         with self._calling("read"):
             return self._robot.read(sense)
+
+    def angles(self) -> dict[str, float]:
+        """Return the angles of its joints now [rad; a hand 0..1]; empty for a robot that does not sense them."""
+        joints = self.read(Sense.JOINT)
+        return dict(zip(joints.names, joints.angles, strict=True)) if isinstance(joints, Joints) else {}
 
     def begun(self) -> list[str]:
         """Return the ids of commands that began since the last call."""
