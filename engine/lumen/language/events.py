@@ -81,6 +81,8 @@ _ROBOT_EVENTS: Mapping[str, Mapping[str, object]] = {
     "brain.lost": _object(seconds={"type": "number"}),
     "robot.lost": _object(seconds={"type": "number"}),
     "robot.back": _object(seconds={"type": "number"}),
+    "robot.taken": _object(reason={"type": "string"}),
+    "robot.free": _object(seconds={"type": "number"}),
     "motion.lost": _object(seconds={"type": "number"}),
     "motion.back": _object(seconds={"type": "number"}),
     "stop": _said_by(),

@@ -40,7 +40,8 @@ class ReachyRobot(ExecutingRobot):
     `voice` is the row of `voices` that it speaks with, or `none`; sound files are in `root`. If the connection breaks,
     all commands have failed and `robot.lost` is noticed; after it was made again the robot is woken if it was awake,
     and `robot.back` is noticed. While another program moves the robot, nothing is sent and commands that move it are
-    refused. Raises RobotError if there is no robot, UsageError if `url` is no address or there is no such voice.
+    refused; `robot.taken` is noticed when that begins, `robot.free` when it has ended. Raises RobotError if there is no
+    robot, UsageError if `url` is no address or there is no such voice.
     """
 
     def __init__(
@@ -68,7 +69,7 @@ class ReachyRobot(ExecutingRobot):
         self._life = LifeLayer(body)
         self._last, self._seen = clock(), 0.0
         self._yields = self._was_awake = False
-        self._away = 0.0
+        self._away = self._taken_at = 0.0
         try:
             self._link.open()
             self._find_awake()
@@ -186,10 +187,14 @@ class ReachyRobot(ExecutingRobot):
         taken = self._mover.awake and (self._moves.foreign or self._strays.taken)
         if taken and not self._yields:
             _log.warning("%s; Lumen sends nothing until that has ended", self._other())
+            self._taken_at = now
+            self._events.append(Event("robot.taken", {"reason": self._other()}, now))
             self._executor.fail(self._other())
             self._life.still()
         if self._yields and not taken and self._mover.awake and joints:
             _log.warning("nothing else moves the robot any more: Lumen goes on")
+        if self._yields and not taken:
+            self._events.append(Event("robot.free", {"seconds": round(now - self._taken_at, 3)}, now))
         if joints and (taken or self._yields):
             self._mover.stand(joints)
         self._yields = taken
