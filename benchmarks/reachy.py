@@ -4,12 +4,14 @@
 
 It prints the processor time of streaming 50 targets a second, in per cent of one core, for Lumen (with its life, its
 limits and the messages that come back) and for `reachy_mini.ReachyMini.set_target`; and the time from a face message
-to the first target that moves the head, and to the first measured movement.
+to the first target that moves the head, and to the first measured movement. Then it prints how long a rest lasts until
+the robot is asleep, and how long after a kill of the daemon in a dance the robot is reported lost.
 """
 
 import argparse
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 
@@ -20,9 +22,10 @@ from tests.guarded import run_guarded
 
 import lumen
 from lumen.clock.real import RealClock
-from lumen.features.reachy.robot import ReachyRobot
-from lumen.language.commands import Wake
-from lumen.ports import Joints, Live, Sense
+from lumen.features.reachy.offers import ReachyRobot
+from lumen.language.commands import Rest, Wake
+from lumen.language.projects import Project
+from lumen.ports import Joints, Live, Perform, Sense
 from lumen.project.chosen_model import choose
 
 LOOKS = 20
@@ -84,6 +87,25 @@ def looks(url: str) -> tuple[list[float], list[float]]:
     return sent, moved
 
 
+def asleep(robot: Driven) -> float:
+    """From the command `rest` to its end, when the head lies [s]."""
+    robot.answer("wake again", Wake())
+    begin = time.monotonic()
+    robot.answer("rest", Rest())
+    return time.monotonic() - begin
+
+
+def lost(robot: Driven, project: Project, kill: Callable[[], None]) -> float:
+    """From the end of the daemon, in a dance, to `robot.lost` [s]."""
+    robot.answer("wake for a dance", Wake())
+    robot.robot.start("dance", Perform(project.motions["dance"]))
+    robot.until(lambda: abs(robot.joints()["head_roll"]) > 0.1, "it dances")
+    begin = time.monotonic()
+    kill()
+    robot.until(lambda: "robot.lost" in robot.names(), "it is lost")
+    return time.monotonic() - begin
+
+
 def _yaw(robot: ReachyRobot) -> float:
     reading = robot.read(Sense.JOINT)
     assert isinstance(reading, Joints)
@@ -114,6 +136,12 @@ def main() -> None:
             for what, times in (("a new target", sent), ("a measured movement", moved)):
                 most = f"longest of {LOOKS}: {1000 * max(times):.0f}"
                 print(f"from a face to {what:<20} {1000 * median(times):12.0f} ms ({most})")
+            robot = Driven(project, daemon.url)
+            print(f"from rest to asleep {1000 * asleep(robot):30.0f} ms (limit 5000)")
+            print(
+                f"from a kill in a dance to robot.lost {1000 * lost(robot, project, daemon.kill):13.0f} ms (limit 500)"
+            )
+            robot.close()
         finally:
             daemon.close()
 
