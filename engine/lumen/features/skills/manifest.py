@@ -134,7 +134,8 @@ def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report:
     if properties:  # a value of an enumeration of texts can be written short, as every text can
         plain["properties"] = properties = {name: _typed(inner) for name, inner in properties.items()}
     defaults = {name: inner["default"] for name, inner in properties.items() if _has_default(inner)}
-    fits = not faults(defaults, {**plain, "required": []})
+    clear = all(_is_clear(properties[name]) for name in defaults) and "additionalProperties" not in plain
+    fits = clear or not faults(defaults, {**plain, "required": []})
     for name in defaults:
         _check_default(properties[name], (key, "properties", name, "default"), report, fits=fits)
     return plain
@@ -148,6 +149,23 @@ def _typed(schema: Any) -> Any:
 
 def _has_default(schema: Any) -> bool:
     return isinstance(schema, Mapping) and "default" in schema
+
+
+def _is_clear(schema: Mapping[str, Any]) -> bool:
+    """Whether a default certainly fits its schema; to check a whole schema costs more than the rest of a manifest."""
+    default, kind, values = schema["default"], schema.get("type"), schema.get("enum")
+    known = schema.keys() <= {"type", "enum", "default", "description", "format"}
+    typed = isinstance(kind, str) and type(default) in _TYPES.get(kind, ())
+    listed = values is None or any(type(value) is type(default) and value == default for value in values)
+    return known and typed and listed and schema.get("format", "duration") == "duration"
+
+
+_TYPES: Mapping[str, tuple[type, ...]] = {
+    "string": (str,),
+    "integer": (int,),
+    "number": (int, float),
+    "boolean": (bool,),
+}
 
 
 def _check_default(schema: Mapping[str, Any], where: NodePath, report: DocumentReport, *, fits: bool) -> None:

@@ -1,7 +1,7 @@
 """The Python file of a skill, read without running it: its function, and that function's parameters."""
 
 import ast
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from lumen.language.diagnostics import did_you_mean
@@ -46,7 +46,7 @@ def code_faults(content: bytes, file: str, skill: str, arguments: Mapping[str, A
     if isinstance(read, CodeFault):
         yield read
         return
-    functions = [node for node in ast.walk(read) if isinstance(node, _FUNCTIONS) and _marked(node)]
+    functions = [node for node in _functions(read.body) if _marked(node)]
     function = next((each for each in functions if each.name == skill), None)
     if function is None:
         message, example = (
@@ -66,6 +66,20 @@ def code_faults(content: bytes, file: str, skill: str, arguments: Mapping[str, A
 
 
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+
+
+def _functions(statements: Iterable[ast.AST]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
+    """Iterate over all functions in statements, also those in classes, branches and functions."""
+    for statement in statements:
+        if isinstance(statement, _FUNCTIONS):
+            yield statement
+        for block in _BLOCKS:
+            if inner := getattr(statement, block, None):
+                yield from _functions(inner)
+
+
+_BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
+"""The fields of statements that hold statements."""
 
 
 def _marked(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
