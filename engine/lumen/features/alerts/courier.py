@@ -46,7 +46,7 @@ class Ration:
             yield self._held.pop(next(iter(self._held)))
 
     def wait(self, now: float) -> float | None:
-        """Return the time until an alert may be due [s], None if none is held back."""
+        """Return the time until an alert may be due [s]; None without one that is held back."""
         if not self._held:
             return None
         soonest = min(self._given.get(key, now) + self._interval * (key in self._given) for key in self._held)

@@ -15,7 +15,7 @@ def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> 
     """Deliver an alert, waiting for the network. Raises UndeliveredError with the reason."""
     match channel:
         case Webhook(url):
-            from lumen.features.alerts.webhook import post  # each with libraries that few exhibitions need
+            from lumen.features.alerts.webhook import post  # imported here, because few exhibitions need its libraries
 
             post(url, origin.body(alert))
         case Mail():
@@ -75,8 +75,9 @@ class AlertDesk:
             courier.end(time.monotonic() + CLOSE_TIMEOUT)
 
     def test(self) -> Iterator[tuple[str, str]]:
-        """Send a test alert to each recipient, also in quiet hours, and wait; yield the address and the error, empty if
-        none.
+        """Send a test alert to each recipient, even in quiet hours, and wait.
+
+        Yield each address with the error, empty for a success.
         """
         now = time.time()
         alert = Alert(TEST, "this is a test: you will receive this robot's alerts", "", now, now)

@@ -117,9 +117,9 @@ BRAIN_PATIENCE = 5.0
 class AlertPart(Part, Observer):
     """Reports trouble with the robot, the brain, the broker and the disk to an alert desk, which it owns.
 
-    It watches the loop of the brain, where that is here. A robot whose brain is somewhere else tells of itself only
-    where there is none. `own` are the modules of the project's own. `kept` says why the records of the run can't be
-    written, `stopped` whether a person stopped the robot.
+    It watches the brain's loop if the brain is in this process. A process with only the robot reports the robot's
+    events itself only while no brain is connected. `own` are the project's own modules. `kept` returns why the records
+    of the run can't be written, `stopped` whether a person stopped the robot.
     """
 
     patient = True
@@ -285,8 +285,9 @@ def make(services: Services) -> AlertPart:
 
 
 def tell_of_failure(failure: RunFailure) -> Callable[[], None]:
-    """Send an alert that a run failed, to the recipients in the present files or the last good ones; return its
-    `close`.
+    """Send an alert that a run failed, and return the function that closes its desk.
+
+    The recipients are those of the present files, else those of the last good ones.
     """
     alerts = failure.settings.section(Alerts) if failure.settings else Alerts()
     if not alerts.to and (good := failure.last_good()):
@@ -316,7 +317,7 @@ def told_of(event: Event) -> tuple[str, str, str] | None:
 
 
 def told_of_own(event: Event, modules: Collection[str]) -> tuple[str, str, str] | None:
-    """As `told_of`, of the loss and the return of a module of the project's own."""
+    """Return the alert about the loss or the return of one of the project's own modules, in the form of `told_of`."""
     module, _, what = event.name.partition(".")
     if module not in modules:
         return None

@@ -29,7 +29,7 @@ SMTP_PORTS: Mapping[str, int] = {"starttls": 587, "tls": 465, "none": 25}
 
 @dataclass(frozen=True, slots=True)
 class Webhook:
-    """A POST with JSON to `url`; `$NAME` stands for the URL in the environment variable of that name."""
+    """A POST with JSON to `url`, or to the URL in the environment variable NAME if that is `$NAME`."""
 
     url: str
 

@@ -17,7 +17,7 @@ from lumen.language.iso_time import iso_time
 from lumen.statechart.nesting import active_names
 
 LOOKED_BACK = 60.0
-"""How long before the moment in question `why_not` searches for decisions [s]."""
+"""The period before the moment in question that `why_not` searches for decisions [s]."""
 
 
 @dataclass(frozen=True, slots=True)

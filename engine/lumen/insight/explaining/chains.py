@@ -134,7 +134,7 @@ class Chain:
             yield self._link(
                 number, "activity", f"the `do` of {prefix_of(owner)}{name} {_ended(kind)}", values=brought(event)
             )
-            until = raised.microstep  # None if the `do` has run since an earlier step
+            until = raised.microstep  # it has none if the `do` has run since an earlier step
             go_on = partial(self.doing, number, owner, name, until)
             yield go_on if until else partial(self.trigger, number, owner)
         elif thing == "invoke" and not raised.where:

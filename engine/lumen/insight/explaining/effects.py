@@ -26,7 +26,7 @@ class Link:
     kind: LinkKind
     """The kind of link."""
     text: str
-    """What happened, in words."""
+    """The event, command or other occurrence, in words."""
     at: float
     """When it happened [s since 1970, in UTC]."""
     place: Place | None = None

@@ -40,7 +40,7 @@ class WayOut(NamedTuple):
     guard: GuardTruth | None
     """Its guard at this moment; None if it has none."""
     why: str
-    """What prevents it or what it waits for, in words."""
+    """The condition that prevents it or that it waits for, in words."""
     due: float | None = None
     """When its timer ends [s]; None without one."""
 

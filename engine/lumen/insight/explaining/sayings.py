@@ -19,7 +19,7 @@ class TriedSaying(NamedTuple):
     saying: Saying
     """The saying."""
     took: str
-    """The key of the row that takes it; empty if none does."""
+    """The key of the row that matches it; empty if none does."""
     wrong: str
     """The difference from the expected result, in words; empty if there is none."""
 

@@ -35,9 +35,8 @@ Happens = Callable[[StepSituation], bool]
 
 
 def taken(machine: MachineDefinition, owner: str, transition: Transition, goal: str) -> Happens:
-    """Return a test of whether a step takes that transition of the behaviour `owner`, and enters `goal` if it is given.
-
-    The goal is checked too, because a transition to a history state may enter any of several states.
+    """Return a test of whether a step includes that transition of the behaviour `owner`, and enters `goal` if it is
+    given.
     """
 
     def happens(situation: StepSituation) -> bool:

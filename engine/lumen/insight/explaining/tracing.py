@@ -131,12 +131,14 @@ class TracedContext(ExecutionContext):
         return self
 
     def take_internal(self) -> Event:
+        """Return the next internal event, and record the decision on it."""
         self._settle()
         event = super().take_internal()
         self._decide(eventless=False)
         return event
 
     def leave(self, transitions: tuple[Transition, ...], exited: tuple[str, ...], entered: tuple[str, ...]) -> None:
+        """Record the transitions taken and the states left and entered."""
         self._settle(transitions)
         if self.last:
             self.last.exited += exited
@@ -144,6 +146,7 @@ class TracedContext(ExecutionContext):
         super().leave(transitions, exited, entered)
 
     def reach(self, target: Configuration) -> None:
+        """Enter the target configuration, and record the decision without an event that follows."""
         super().reach(target)
         self._decide(eventless=True)
 
@@ -176,35 +179,42 @@ class TracedContext(ExecutionContext):
     def within(
         self, id: str, machine: CompiledMachine, snapshot: Snapshot, event: Event | None, invocations: InvocationHandler
     ) -> Self:
+        """Return the context of an invoked behaviour, which records into the same trace."""
         assert self.trace is not None
         owner = outer_id(id, self.owner) if self.owner else id
         return super().within(id, machine, snapshot, event, invocations).begin(self.trace, owner)
 
     def step(self) -> Step:
+        """Record the last decision, and return the step."""
         self._settle()
         return super().step()
 
     def emit(self, command: Command) -> None:
+        """Issue a command, and record it as a deed."""
         super().emit(command)
         self._note(outer_command(command, self.owner) if self.owner else command)
 
     def start(self, command: BodyCommand, *, awaited: bool = False) -> str:
+        """Start a command; after one that is awaited, no action is running."""
         id = super().start(command, awaited=awaited)
         if awaited:
             self.acting = ()
         return id
 
     def raise_event(self, event: Event) -> None:
+        """Raise an internal event, and record it as a deed."""
         super().raise_event(event)
         self._note(event)
 
     def send(self, id: str, delay: float, event: str, data: Any, to: str) -> None:
+        """Send an event, and record its id as a deed if it waits for a timer."""
         before = len(self.timers)
         super().send(id, delay, event, data, to)
         if len(self.timers) > before:
             self._note(self.timers[-1].id)
 
     def hand_over(self, to: str, event: Event) -> None:
+        """Pass an event to another behaviour, and record it as a deed."""
         super().hand_over(to, event)
         self._note(event)
 

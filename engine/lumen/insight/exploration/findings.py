@@ -18,7 +18,7 @@ class PathStep:
     """A step of the path to a finding."""
 
     stimulus: Stimulus | None
-    """What happened; None at the beginning."""
+    """The stimulus that led to the states; None at the beginning."""
     states: tuple[str, ...]
     """The innermost states active after it, those of invoked behaviours (`quiz/ask`) included."""
 
@@ -38,7 +38,7 @@ class ExplorationFinding:
     where: NodePath = ()
     """The place of the property in the file; empty for other faults."""
     patience: float = 0.0
-    """How long to wait at the end of the path to see the property fail [s]."""
+    """The time to wait at the end of the path until the property fails [s]."""
 
 
 def findings(machine: MachineDefinition, search: StateSpaceSearch, home: str = "") -> list[ExplorationFinding]:

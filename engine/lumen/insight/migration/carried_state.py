@@ -37,8 +37,9 @@ def carried_round(old: MachineDefinition, new: MachineDefinition, loop: ForEach,
 
 
 def _now(entry: Any, before: list[Any], after: list[Any]) -> Any:
-    """Return an old entry's form in the new list: the same if it is still there, else the new entry at its index, or
-    None.
+    """Return an old entry's form in the new list: itself if it is still there, else the new entry at its index.
+
+    It is None if that place has no new entry.
     """
     if entry in after or entry not in before:
         return entry if entry in after else None

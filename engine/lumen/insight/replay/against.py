@@ -29,7 +29,7 @@ Duration = Callable[[Project, BodyCommand], float]
 """The duration of a command [s] for which the journal has none."""
 
 GRACE = 120.0
-"""How much longer than recorded a visit may take to return home [s]."""
+"""The additional time, beyond the recorded one, that a visit may take to return home [s]."""
 MORE_STEPS, MOST_TIMES = 20_000, 10
 """The most additional steps of a visit, and per recorded input: other files may never come to rest."""
 
@@ -148,7 +148,7 @@ class OtherPlay:
 
     @property
     def at(self) -> float:
-        """How far the play has come, by the exhibition's clock [s]."""
+        """The time up to which the play has come, by the exhibition's clock [s]."""
         return self._stands.at if self._stands else self._began
 
     @property
@@ -157,7 +157,7 @@ class OtherPlay:
         return self._stands is not None and self.home in self._stands.configuration
 
     def attend(self, old: Project, home: JournalJump, visit: RecordedVisit, hurry: Callable[[], None]) -> None:
-        """Change to these files where the behaviour was at home, and play the visit."""
+        """Change to these files at the moment when the behaviour was at home, and play the visit."""
         self._began, self._hurry = home.at, hurry
         self._most = MORE_STEPS + MOST_TIMES * len(visit.inputs)
         try:
