@@ -44,8 +44,8 @@ class LegGeometry:
     """The dimensions of a pair of legs, and the names and conventions of its joints.
 
     Three axes meet in the hip (yaw, roll, pitch from the torso down), two in the ankle, with the knee between them:
-    such a leg has inverse kinematics in closed form. A joint of `names` has the angle `signs` * (angle - `offsets`),
-    for each side in the order of `LEG_ROLES`.
+    such a leg has inverse kinematics in closed form. For each side, in the order of `LEG_ROLES`, the robot's own angle
+    of a joint in `names` is `signs` * (angle - `offsets`).
     """
 
     hip_ahead: float

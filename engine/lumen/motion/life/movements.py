@@ -118,15 +118,16 @@ NOD_TIME = 0.7
 
 
 class Attention(NamedTuple):
-    """Attention to something at `yaw` to the left and `pitch` down [rad, of the head], since `at` [s].
-
-    `latest` is the time of the newest stimulus [s], if there were several.
-    """
+    """A direction that has the robot's attention."""
 
     yaw: float
+    """To the left [rad, of the head]."""
     pitch: float
+    """Down [rad, of the head]."""
     at: float
+    """Since when it has attention [s]."""
     latest: float = -inf
+    """The time of the newest stimulus, if there were several [s]."""
 
     def again(self, yaw: float, pitch: float, lasts: float, now: float) -> "Attention":
         """Return the attention to a new place; a head that has already turned does not return first."""
