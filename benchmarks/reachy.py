@@ -15,7 +15,6 @@ from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 
-from lumen.features.reachy.offers import ReachyRobot
 from tests import ROOT
 from tests.features.reachy.driving import Driven, reachy_project
 from tests.features.reachy.real_daemon import PROGRAM, RealDaemon
@@ -23,6 +22,7 @@ from tests.guarded import run_guarded
 
 import lumen
 from lumen.clock.real import RealClock
+from lumen.features.reachy.robot import ReachyRobot
 from lumen.language.commands import Rest, Wake
 from lumen.language.projects import Project
 from lumen.ports import Joints, Live, Perform, Sense
