@@ -86,6 +86,17 @@ def test_a_moment_is_found_by_its_time_and_by_words(viewer: Viewer, own: tuple[H
     assert violations(viewer) == []
 
 
+def test_regions_in_which_nothing_has_changed_are_folded(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
+    hosted, served = own
+    viewer.open(served.console.address, "robot/NAO", ready=".still")
+    before = viewer.text(".still summary")
+    names = before.removeprefix("Nothing has changed in:").strip().split(", ")
+    assert names
+    assert len(names) < len(viewer.run("return [...document.querySelectorAll('.leaf')].map((e) => e.textContent)"))
+    viewer.click(".still summary")
+    viewer.shows(names[0], ".still .boxes")
+
+
 def test_the_chart_is_drawn_with_the_active_states(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
     hosted, served = own
     viewer.open(served.console.address, "robot/NAO", ready=".chart-open")

@@ -37,6 +37,7 @@ export default {
   "now.play": "Plays {name}", "now.posture": "Takes the posture {name}", "now.walk": "Walks", "now.move": "Moves", "now.goto": "Walks to {name}",
   "now.wake": "Wakes up", "now.rest": "Lies down to rest",
   "chart": "Chart of the behaviour", "chart.show": "Show", "chart.hide": "Hide", "chart.active": "Active states", "chart.more": "Filled: active now. Thick border: was active since this page was opened, or shortly before.",
+  "states.still": "Nothing has changed in:",
   "where": "Active states", "since": "active for", "timers": "Timers",
   "ways": "What can happen next", "ways.open": "{open} of {all} open", "ways.none": "No transition leads out of the active states.",
   "ways.all": "All transitions", "next.or": " or ", "next.none": "Nothing that a visitor or you could do now changes anything.",

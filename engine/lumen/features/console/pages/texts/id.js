@@ -36,6 +36,7 @@ export default {
   "now.play": "Memainkan {name}", "now.posture": "Mengambil sikap {name}", "now.walk": "Berjalan", "now.move": "Bergerak", "now.goto": "Berjalan ke {name}",
   "now.wake": "Bangun", "now.rest": "Mulai beristirahat",
   "chart": "Bagan perilaku", "chart.show": "Tampilkan", "chart.hide": "Sembunyikan", "chart.active": "Keadaan yang aktif", "chart.more": "Terisi: aktif sekarang. Tepi tebal: pernah aktif sejak halaman ini dibuka, atau sesaat sebelumnya.",
+  "states.still": "Belum ada perubahan di:",
   "where": "Keadaan yang aktif", "since": "aktif selama", "timers": "Pewaktu",
   "ways": "Yang dapat terjadi berikutnya", "ways.open": "{open} dari {all} terbuka", "ways.none": "Tidak ada jalan keluar dari keadaan yang aktif.",
   "ways.all": "Semua peralihan", "next.or": " atau ", "next.none": "Saat ini tidak ada perbuatan pengunjung atau Anda yang mengubah sesuatu.",
