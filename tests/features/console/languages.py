@@ -34,7 +34,7 @@ def texts(code: str) -> dict[str, str]:
 
 def phrases() -> list[tuple[str, str]]:
     """The sentences of the console and the engine that have Indonesian."""
-    return re.findall(r'\["((?:[^"\\]|\\.)*)", "((?:[^"\\]|\\.)*)"\]', (TEXTS / "phrases_id.js").read_text("utf-8"))
+    return re.findall(r'\["((?:[^"\\]|\\.)*)",\s+"((?:[^"\\]|\\.)*)"\]', (TEXTS / "phrases_id.js").read_text("utf-8"))
 
 
 def english_on(viewer: Viewer) -> list[str]:

@@ -86,8 +86,7 @@ def test_a_moment_is_found_by_its_time_and_by_words(viewer: Viewer, own: tuple[H
     assert violations(viewer) == []
 
 
-def test_regions_in_which_nothing_has_changed_are_folded(viewer: Viewer, own: tuple[Hosted, Served]) -> None:
-    hosted, served = own
+def test_regions_in_which_nothing_has_changed_are_folded(viewer: Viewer, served: Served) -> None:
     viewer.open(served.console.address, "robot/NAO", ready=".still")
     before = viewer.text(".still summary")
     names = before.removeprefix("Nothing has changed in:").strip().split(", ")

@@ -1,7 +1,8 @@
 // An alarm where a person looks elsewhere: in the window's title and icon, and as a sound if the person wants one.
 import { kept, t } from "./ui.js";
 
-const TONES = [880, 660, 880], TONE = 0.18; // [Hz], [s] each
+const TONES = [880, 660, 880],
+  TONE = 0.18; // [Hz], [s] each
 const HEARD = "lumen.alarms"; // those that this window has sounded for, on this page or the one before
 
 function heard(now) {
@@ -9,16 +10,19 @@ function heard(now) {
     const before = new Set((sessionStorage.getItem(HEARD) ?? "").split("\n"));
     sessionStorage.setItem(HEARD, [...now].join("\n"));
     return now.every((one) => before.has(one));
-  } catch { return false; /* a private window */ }
+  } catch {
+    return false; /* a private window */
+  }
 }
 
 function sound() {
   const player = new AudioContext();
   TONES.forEach((pitch, n) => {
-    const tone = player.createOscillator(), volume = player.createGain();
-    tone.frequency.value = pitch, volume.gain.value = 0.2;
+    const tone = player.createOscillator(),
+      volume = player.createGain();
+    ((tone.frequency.value = pitch), (volume.gain.value = 0.2));
     tone.connect(volume).connect(player.destination);
-    tone.start(n * TONE), tone.stop((n + 1) * TONE);
+    (tone.start(n * TONE), tone.stop((n + 1) * TONE));
     if (n === TONES.length - 1) tone.onended = () => player.close();
   });
 }
@@ -29,7 +33,8 @@ function show(alarms, title) {
   if (unheard && kept("lumen.sound") === "on") sound();
   const [first] = alarms ?? [];
   document.title = first ? `⚠ ${first[0]}: ${t(`alarm.${first[1]}`)} · ${title}` : title;
-  const icon = document.querySelector("link[rel=icon]"), wanted = `/pages/look/icon${first ? "-alarm" : ""}.svg`;
+  const icon = document.querySelector("link[rel=icon]"),
+    wanted = `/pages/look/icon${first ? "-alarm" : ""}.svg`;
   if (icon.getAttribute("href") !== wanted) icon.setAttribute("href", wanted);
 }
 

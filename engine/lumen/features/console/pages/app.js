@@ -9,16 +9,25 @@ import { Wall } from "./wall.js";
 
 // Loaded when they are looked at: what comes first is Rest and what happens now.
 const LATER = {
-  day: () => import("./day/page.js"), files: () => import("./files/page.js"),
-  fleet: () => import("./fleet/page.js"), see: () => import("./see/page.js"), subtitles: () => import("./see/subtitles.js"),
+  day: () => import("./day/page.js"),
+  files: () => import("./files/page.js"),
+  fleet: () => import("./fleet/page.js"),
+  see: () => import("./see/page.js"),
+  subtitles: () => import("./see/subtitles.js"),
 };
 
 const FLEET = location.pathname === "/fleet"; // many houses: of no robot here
 if (FLEET) lumen.page = "fleet";
 
 function Later({ page, name }) {
-  const [Page, set] = useState(null), [failed, fail] = useState(false);
-  useEffect(() => { LATER[page]().then((found) => set(() => found.default), () => fail(true)); }, []);
+  const [Page, set] = useState(null),
+    [failed, fail] = useState(false);
+  useEffect(() => {
+    LATER[page]().then(
+      (found) => set(() => found.default),
+      () => fail(true),
+    );
+  }, []);
   if (failed) return html`<p class="notice">${t("page.failed")}</p>`;
   return Page ? html`<${Page} name=${name} />` : html`<p class="notice">${t("loading")}</p>`;
 }
@@ -32,7 +41,8 @@ function Main() {
       <button type="button" class="strong" onClick=${askPin}>${t("sign.in")}</button></div>`;
   }
   if (FLEET) return html`<${Later} page="fleet" />`;
-  const names = [...live.robots.keys()], name = lumen.robot ?? (names.length === 1 ? names[0] : null);
+  const names = [...live.robots.keys()],
+    name = lumen.robot ?? (names.length === 1 ? names[0] : null);
   const here = [...live.robots.values()].some((robot) => robot.connected !== false);
   if (live.fleet && !lumen.robot && !here) return html`<${Later} page="fleet" />`; // a centre has no robot of its own
   if (!names.length) return html`<p class="notice">${t("no.robots")}</p>`;

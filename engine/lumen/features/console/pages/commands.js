@@ -34,7 +34,9 @@ function sentence({ label, state, answer }) {
 
 export function Told() {
   useRedraw();
-  return html`<div class="told" role="status">${told.map((one) => html`<p key=${one.key} data-state=${one.state}>
+  return html`<div class="told" role="status">${told.map(
+    (one) => html`<p key=${one.key} data-state=${one.state}>
     <span class="sign" aria-hidden="true">${SIGNS[one.state] ?? "?"}</span><span>${sentence(one)}</span>
-    <button type="button" class="plain" onClick=${() => dismiss(one)}>${t("close")}</button></p>`)}</div>`;
+    <button type="button" class="plain" onClick=${() => dismiss(one)}>${t("close")}</button></p>`,
+  )}</div>`;
 }

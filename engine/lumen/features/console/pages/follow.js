@@ -1,35 +1,76 @@
 // Follows a stream of server-sent events, over one connection for all pages of this browser where it can share.
 import { blocks } from "./blocks.js";
 
-const SILENCE = 4000, HERE = 5000; // [ms] without a word from what is shared; between two words of ours
+const SILENCE = 4000,
+  HERE = 5000; // [ms] without a word from what is shared; between two words of ours
 const followed = new Map();
-let worker = null, shares = typeof SharedWorker !== "undefined";
+let worker = null,
+  shares = typeof SharedWorker !== "undefined";
 
-/** Tell `take` of each block; `lost` is called once it has ended. Those with the same `who` share. What is returned leaves it. */
+/**
+ * Tell `take` of each block; `lost` is called once it has ended. Those with the same `who` share. What is returned
+ * leaves it.
+ */
 export function follow(path, who, take, lost) {
-  const id = `${who} ${path}`, ending = new AbortController();
+  const id = `${who} ${path}`,
+    ending = new AbortController();
   let silent = 0;
-  const end = () => { clearTimeout(silent); ending.abort(); if (followed.get(id) === mine) followed.delete(id); };
-  const over = () => { if (!ending.signal.aborted) { end(); lost(); } };
-  const alive = () => { clearTimeout(silent); silent = setTimeout(() => { unshare(); over(); }, SILENCE); };
-  const mine = { lost: over, take: (block) => { alive(); take(block); } };
+  const end = () => {
+    clearTimeout(silent);
+    ending.abort();
+    if (followed.get(id) === mine) followed.delete(id);
+  };
+  const over = () => {
+    if (!ending.signal.aborted) {
+      end();
+      lost();
+    }
+  };
+  const alive = () => {
+    clearTimeout(silent);
+    silent = setTimeout(() => {
+      unshare();
+      over();
+    }, SILENCE);
+  };
+  const mine = {
+    lost: over,
+    take: (block) => {
+      alive();
+      take(block);
+    },
+  };
   const port = shared();
   if (!port) {
-    blocks(path, take, ending.signal).catch(() => {}).finally(over);
+    blocks(path, take, ending.signal)
+      .catch(() => {})
+      .finally(over);
     return end;
   }
   followed.set(id, mine);
   alive();
   port.postMessage({ follow: path, id });
-  return () => { port.postMessage({ leave: true, id }); end(); };
+  return () => {
+    port.postMessage({ leave: true, id });
+    end();
+  };
 }
 
 /** The way to what is shared; null where this browser has no such thing. */
 function shared() {
   if (worker || !shares) return worker?.port;
-  try { worker = new SharedWorker("/pages/shared.js", { type: "module", name: "lumen" }); } catch { shares = false; return null; }
-  worker.onerror = () => { shares = false; unshare(); };
-  worker.port.onmessage = ({ data: { id, block, lost } }) => (lost ? followed.get(id)?.lost() : followed.get(id)?.take(block));
+  try {
+    worker = new SharedWorker("/pages/shared.js", { type: "module", name: "lumen" });
+  } catch {
+    shares = false;
+    return null;
+  }
+  worker.onerror = () => {
+    shares = false;
+    unshare();
+  };
+  worker.port.onmessage = ({ data: { id, block, lost } }) =>
+    lost ? followed.get(id)?.lost() : followed.get(id)?.take(block);
   return worker.port;
 }
 
@@ -41,4 +82,6 @@ function unshare() {
 }
 
 setInterval(() => worker?.port.postMessage({}), HERE);
-addEventListener("pagehide", () => { for (const id of followed.keys()) worker?.port.postMessage({ leave: true, id }); });
+addEventListener("pagehide", () => {
+  for (const id of followed.keys()) worker?.port.postMessage({ leave: true, id });
+});

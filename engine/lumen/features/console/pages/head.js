@@ -6,14 +6,30 @@ import { inPageLanguage } from "./quoted.js";
 import { Resume } from "./resume.js";
 import { ROLES, askPin, leave, mode, show } from "./session.js";
 import {
-  LANGUAGES, Since, html, keep, kept, language, redraw, speak, t, useEffect, useRedraw, useRef, useState,
+  LANGUAGES,
+  Since,
+  html,
+  keep,
+  kept,
+  language,
+  redraw,
+  speak,
+  t,
+  useEffect,
+  useRedraw,
+  useRef,
+  useState,
 } from "./ui.js";
 
 const PAGES = ["", "day", "files", "see"];
 
 /** The alarms of robots, `[robot, kind, when]` each: another fall is another alarm. Mild ones are left out. */
-const wrong = (robots) => robots.flatMap((one) => alarmsOf(one).filter((kind) => !MILD.includes(kind))
-  .map((kind) => [one.robot, kind, live.alarms.get(`${one.robot} ${kind}`)?.at_time ?? ""]));
+const wrong = (robots) =>
+  robots.flatMap((one) =>
+    alarmsOf(one)
+      .filter((kind) => !MILD.includes(kind))
+      .map((kind) => [one.robot, kind, live.alarms.get(`${one.robot} ${kind}`)?.at_time ?? ""]),
+  );
 
 /** How the page and its robot are, in a word. */
 function connection(robot, alarms) {
@@ -24,65 +40,103 @@ function connection(robot, alarms) {
 }
 
 function Connection({ robot, alarms }) {
-  const state = connection(robot, alarms), away = state === "robot-away";
+  const state = connection(robot, alarms),
+    away = state === "robot-away";
   const at = away ? robot.heard : new Date(live.since).toISOString();
-  return html`<p class="connection" data-state=${state} role="status"><span class="dot" aria-hidden="true"></span>${t(`connection.${state}`)}
-    ${["live", "alarm", "robot-lost"].includes(state) ? null
-      : html`<span aria-hidden="true"> <${Since} at=${at} now=${away ? consoleNow : Date.now} /></span>`}</p>`;
+  return html`<p class="connection" data-state=${state} role="status"><span class="dot" aria-hidden="true">
+    </span>${t(`connection.${state}`)}
+    ${
+      ["live", "alarm", "robot-lost"].includes(state)
+        ? null
+        : html`<span aria-hidden="true"> <${Since} at=${at} now=${away ? consoleNow : Date.now} /></span>`
+    }</p>`;
 }
 
 /** The alarms in the header of a page that does not show them itself; each leads to the page that says what to do. */
 function Alarms({ alarms, name }) {
   const shown = name !== null && lumen.page !== "" ? alarms : [];
-  return html`<div class="alarms" role="alert">${shown.map(([robot, kind]) => html`
-    <p key=${robot + kind}><b>${robot}: ${t(`alarm.${kind}`)}.</b> <a href="/robot/${encodeURIComponent(robot)}">${t("alarm.open")}</a></p>`)}</div>`;
+  return html`<div class="alarms" role="alert">${shown.map(
+    ([robot, kind]) => html`
+    <p key=${robot + kind}><b>${robot}: ${t(`alarm.${kind}`)}.</b> <a
+      href="/robot/${encodeURIComponent(robot)}">${t("alarm.open")}</a></p>`,
+  )}</div>`;
 }
 
 function Stopped({ robot }) {
-  const waits = robot && waitsForResume(robot), by = inPageLanguage(robot?.stopped_by ?? "?");
+  const waits = robot && waitsForResume(robot),
+    by = inPageLanguage(robot?.stopped_by ?? "?");
   if (!robot?.stopped && !waits) return null;
-  return html`<div class="stopped"><p role="status"><strong>${t(waits ? "waits" : "stopped")}</strong> ${t(waits ? "waits.more" : "stopped.by", { by })}</p>
+  return html`<div class="stopped"><p role="status">
+    <strong>${t(waits ? "waits" : "stopped")}</strong> ${t(waits ? "waits.more" : "stopped.by", { by })}</p>
     <${Resume} robot=${robot} /></div>`;
 }
 
 function Theme() {
   const now = kept("lumen.theme") ?? "auto";
   const set = (theme) => {
-    if (theme === "auto") delete document.documentElement.dataset.theme; else document.documentElement.dataset.theme = theme;
+    if (theme === "auto") delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = theme;
     keep("lumen.theme", theme === "auto" ? null : theme);
     redraw();
   };
   return html`<label>${t("theme")}<select value=${now} onChange=${(e) => set(e.target.value)}>
-    ${["auto", "light", "dark"].map((theme) => html`<option value=${theme} selected=${theme === now}>${t(`theme.${theme}`)}</option>`)}</select></label>`;
+    ${["auto", "light", "dark"].map(
+      (theme) => html`<option value=${theme}
+      selected=${theme === now}>${t(`theme.${theme}`)}</option>`,
+    )}</select></label>`;
 }
 
 /** A sound as an alarm begins: this browser makes it, so each person decides for themselves. */
 function Sound() {
   const on = kept("lumen.sound") === "on";
-  const set = (wanted) => { keep("lumen.sound", wanted ? "on" : null); if (wanted) alarm.sound(); redraw(); };
+  const set = (wanted) => {
+    keep("lumen.sound", wanted ? "on" : null);
+    if (wanted) alarm.sound();
+    redraw();
+  };
   return html`<label class="check">
     <input type="checkbox" checked=${on} onChange=${(e) => set(e.target.checked)} /> ${t("sound")}</label>`;
 }
 
 function Settings() {
-  const [open, set] = useState(false), button = useRef(null);
+  const [open, set] = useState(false),
+    button = useRef(null);
   useEffect(() => {
     if (!open) return undefined;
-    const typed = (event) => { if (event.key === "Escape" && !event.repeat) { set(false); button.current.focus(); } };
+    const typed = (event) => {
+      if (event.key === "Escape" && !event.repeat) {
+        set(false);
+        button.current.focus();
+      }
+    };
     addEventListener("keydown", typed);
     return () => removeEventListener("keydown", typed);
   }, [open]);
   const modes = ROLES.slice(1, ROLES.indexOf(live.role ?? "nobody") + 1);
-  return html`<div class="settings"><button type="button" class="plain" ref=${button} aria-expanded=${open} aria-controls="settings" onClick=${() => set(!open)}>
+  return html`<div class="settings"><button type="button" class="plain" ref=${button} aria-expanded=${open}
+    aria-controls="settings" onClick=${() => set(!open)}>
       <span aria-hidden="true">☰</span> <span class="word">${t("settings")}</span></button>
     <div id="settings" hidden=${!open} class="sheet">
-      ${modes.length > 1 && html`<label>${t("mode")}<select value=${mode()} onChange=${(e) => show(e.target.value)}>
-        ${modes.map((one) => html`<option value=${one} selected=${one === mode()}>${t(`mode.${one}`)}</option>`)}</select></label>`}
+      ${
+        modes.length > 1 &&
+        html`<label>${t("mode")}<select value=${mode()} onChange=${(e) => show(e.target.value)}>
+        ${modes.map(
+          (one) => html`<option value=${one}
+          selected=${one === mode()}>${t(`mode.${one}`)}</option>`,
+        )}</select></label>`
+      }
       <label>${t("language")}<select value=${language()} onChange=${(e) => speak(e.target.value)}>
-        ${Object.entries(LANGUAGES).map(([code, name]) => html`<option value=${code} lang=${code} selected=${code === language()}>${name}</option>`)}</select></label>
+        ${Object.entries(LANGUAGES).map(
+          ([code, name]) => html`<option value=${code} lang=${code}
+          selected=${code === language()}>${name}</option>`,
+        )}</select></label>
       <${Theme} /><${Sound} />
-      ${live.role === "nobody" ? html`<button type="button" onClick=${askPin}>${t("sign.in")}</button>`
-        : html`<button type="button" onClick=${askPin}>${t("sign.other")}</button><button type="button" onClick=${leave}>${t("sign.out")}</button>`}
+      ${
+        live.role === "nobody"
+          ? html`<button type="button" onClick=${askPin}>${t("sign.in")}</button>`
+          : html`<button type="button" onClick=${askPin}>${t("sign.other")}</button>
+            <button type="button" onClick=${leave}>${t("sign.out")}</button>`
+      }
     </div></div>`;
 }
 
@@ -90,15 +144,18 @@ function Links({ name, several }) {
   const base = `/robot/${encodeURIComponent(name)}`;
   return html`<nav aria-label=${t("pages")}><ul>
     ${several && html`<li><a href="/">${t("page.wall")}</a></li>`}
-    ${PAGES.map((page) => html`<li><a href=${page ? `${base}/${page}` : base}
-      aria-current=${page === lumen.page ? "page" : null}>${t(`page.${page || "now"}`)}</a></li>`)}
+    ${PAGES.map(
+      (page) => html`<li><a href=${page ? `${base}/${page}` : base}
+      aria-current=${page === lumen.page ? "page" : null}>${t(`page.${page || "now"}`)}</a></li>`,
+    )}
     ${live.fleet && html`<li><a href="/fleet">${t("page.fleet")}</a></li>`}
     <li><a href="${base}/subtitles" target="_blank">${t("page.subtitles")}</a></li></ul></nav>`;
 }
 
 export function Head() {
   useRedraw();
-  const names = [...live.robots.keys()], name = lumen.robot ?? (names.length === 1 ? names[0] : null);
+  const names = [...live.robots.keys()],
+    name = lumen.robot ?? (names.length === 1 ? names[0] : null);
   const robot = name === null ? null : live.robots.get(name);
   const looks = live.state === "live" && live.role !== "nobody";
   const alarms = looks ? wrong(robot ? [robot] : [...live.robots.values()]) : [];
@@ -108,7 +165,8 @@ export function Head() {
     document.getElementById("skip").textContent = t("skip");
     document.querySelector("rest-button[main]").toggleAttribute("several", name === null && names.length > 1);
   });
-  return html`<div class="who"><p class="name">${name ?? "Lumen"}</p><${Connection} robot=${robot} alarms=${alarms} /></div>
+  return html`<div class="who"><p class="name">${name ?? "Lumen"}</p><${Connection} robot=${robot} alarms=${alarms} />
+    </div>
     ${name !== null && live.role !== "nobody" && html`<${Links} name=${name} several=${names.length > 1} />`}
     <${Settings} /><${Alarms} alarms=${alarms} name=${name} /><${Stopped} robot=${robot} />`;
 }

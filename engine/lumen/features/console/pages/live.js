@@ -4,29 +4,51 @@ import { blocks, parsed } from "./blocks.js";
 import { follow } from "./follow.js";
 import { redraw } from "./ui.js";
 
-const AGAIN = 500, ANSWER = 2500, QUESTION = 30000, BEFORE = 600, MOST = 300; // [ms], [ms], [ms], entries, entries
+const AGAIN = 500,
+  ANSWER = 2500,
+  QUESTION = 30000,
+  BEFORE = 600,
+  MOST = 300; // [ms], [ms], [ms], entries, entries
 export const JOB = 250000; // [ms] longer than the console gives a process that computes something
 
 export const live = {
-  state: "connecting", since: Date.now(), role: null, fleet: false, robots: new Map(), entries: [], told: [], commands: [], skew: 0,
+  state: "connecting",
+  since: Date.now(),
+  role: null,
+  fleet: false,
+  robots: new Map(),
+  entries: [],
+  told: [],
+  commands: [],
+  skew: 0,
   alarms: new Map(), // the last entry of each alarm of each robot: busy ones don't push it out
 };
 /** Events of a robot's body that people have to see. */
 export const ALARMS = ["fallen", "motors.hot", "battery.low"];
-const seen = new Map(), heard = new Set();
-let stream = null, timer = 0;
+const seen = new Map(),
+  heard = new Set();
+let stream = null,
+  timer = 0;
 
 /** Have `handler(kind, data)` told of each `entry`, `now` and `command`; what it returns ends that. */
-export function listen(handler) { heard.add(handler); return () => heard.delete(handler); }
+export function listen(handler) {
+  heard.add(handler);
+  return () => heard.delete(handler);
+}
 
-const params = (values) => new URLSearchParams(Object.entries(values).filter(([, value]) => value != null && value !== "")).toString();
+const params = (values) =>
+  new URLSearchParams(Object.entries(values).filter(([, value]) => value != null && value !== "")).toString();
 
 /** JSON of one of the console's paths; the error has what it says. */
 export async function get(path, values = {}, limit = QUESTION) {
   const query = params(values);
-  const answer = await fetch(query ? `${path}?${query}` : path, { signal: AbortSignal.timeout(limit), cache: "no-store" });
+  const answer = await fetch(query ? `${path}?${query}` : path, {
+    signal: AbortSignal.timeout(limit),
+    cache: "no-store",
+  });
   const data = await answer.json().catch(() => ({}));
-  if (!answer.ok) throw Object.assign(new Error(data.reason ?? data.detail ?? `${answer.status}`), { status: answer.status });
+  if (!answer.ok)
+    throw Object.assign(new Error(data.reason ?? data.detail ?? `${answer.status}`), { status: answer.status });
   return data;
 }
 
@@ -69,11 +91,15 @@ export async function connect() {
     live.skew = Date.parse(now.time) - Date.now();
     live.robots.clear();
     now.robots.forEach(took);
-    if (live.role === "nobody" && lumen.page !== "subtitles") return become("live"), again(mine, 2000);
+    if (live.role === "nobody" && lumen.page !== "subtitles") return (become("live"), again(mine, 2000));
     await read(mine, now.robots);
   } catch (error) {
     if (mine.signal.aborted) return;
-    if (error.status === 401 || error.status === 403) { live.role = "nobody"; become("live"); return again(mine, 2000); }
+    if (error.status === 401 || error.status === 403) {
+      live.role = "nobody";
+      become("live");
+      return again(mine, 2000);
+    }
   }
   again(mine, AGAIN);
 }
@@ -84,31 +110,49 @@ function again(mine, after) {
   timer = setTimeout(connect, after);
 }
 
-/** Where to go on: what was seen last of each robot, also of one that a new console has not found yet, else a few entries before now. */
+/**
+ * Where to continue: what was seen last of each robot, also of one that a new console has not found yet, else a few
+ * entries before now.
+ */
 function after(robots) {
   const known = new Map();
   for (const { robot, position } of robots) if (position != null) known.set(robot, Math.max(-1, position - BEFORE));
   for (const [robot, [position]] of seen) known.set(robot, position);
-  return [...known].filter(([robot]) => !lumen.robot || robot === lumen.robot).map(([robot, position]) => `${robot}:${position}`).join(",");
+  return [...known]
+    .filter(([robot]) => !lumen.robot || robot === lumen.robot)
+    .map(([robot, position]) => `${robot}:${position}`)
+    .join(",");
 }
 
 /** Follow what happens until that is lost. What was before is asked for by itself; what comes meanwhile waits. */
 async function read(mine, robots) {
-  let waiting = [], lose = () => {};
-  const lost = new Promise((done) => { lose = done; });
+  let waiting = [],
+    lose = () => {};
+  const lost = new Promise((done) => {
+    lose = done;
+  });
   const leave = follow("/api/events", live.role, (block) => (waiting ? waiting.push(block) : take(block, mine)), lose);
   mine.signal.addEventListener("abort", lose);
   try {
-    await blocks(`/api/events?${params({ robot: lumen.robot, after: after(robots), once: 1 })}`, (block) => take(block), mine.signal);
+    await blocks(
+      `/api/events?${params({ robot: lumen.robot, after: after(robots), once: 1 })}`,
+      (block) => take(block),
+      mine.signal,
+    );
     become("live");
     const came = waiting;
     waiting = null;
     for (const block of came) take(block, mine);
     await lost;
-  } finally { leave(); }
+  } finally {
+    leave();
+  }
 }
 
-const add = (list, entry) => { list.push(entry); if (list.length > MOST) list.shift(); };
+const add = (list, entry) => {
+  list.push(entry);
+  if (list.length > MOST) list.shift();
+};
 
 /** What a block says. Where entries are missing before one that comes `live` they are asked for, and it with them. */
 function take(block, shared = null) {
@@ -118,7 +162,10 @@ function take(block, shared = null) {
     if (lumen.robot && body.robot !== lumen.robot) return;
     const [last, when] = seen.get(body.robot) ?? [-1, ""]; // a journal that begins anew counts anew, later
     if (body.position <= last && body.at_time <= when) return;
-    if (shared && body.position > last + 1) { connect(); return; }
+    if (shared && body.position > last + 1) {
+      connect();
+      return;
+    }
     seen.set(body.robot, [body.position, body.at_time]);
     add(live.entries, body);
     if (ALARMS.includes(body.heard)) live.alarms.set(`${body.robot} ${body.heard}`, body);
@@ -131,9 +178,18 @@ function take(block, shared = null) {
 
 // A page that nobody sees leaves its connection to those that are seen: a browser has six for one server.
 document.addEventListener("visibilitychange", () => {
-  if (document.hidden) timer = setTimeout(() => { if (document.hidden) { stream?.abort(); stream = null; become("asleep"); } }, 10000);
+  if (document.hidden)
+    timer = setTimeout(() => {
+      if (document.hidden) {
+        stream?.abort();
+        stream = null;
+        become("asleep");
+      }
+    }, 10000);
   else if (live.state !== "live") connect();
   else clearTimeout(timer);
 });
 addEventListener("online", connect);
-addEventListener("pageshow", (event) => { if (event.persisted) connect(); });
+addEventListener("pageshow", (event) => {
+  if (event.persisted) connect();
+});

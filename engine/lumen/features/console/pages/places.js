@@ -3,14 +3,20 @@ import { may } from "./session.js";
 import { html, place } from "./ui.js";
 
 /** `behaviors/tour.yaml:205`; nothing for people who write no files. */
-export const Place = ({ file, line }) => (file && may("author")
-  ? html`<span class="place">${place(file, line)}</span>` : null);
+export const Place = ({ file, line }) =>
+  file && may("author") ? html`<span class="place">${place(file, line)}</span>` : null;
 
 /** Values by their names: as JSON for authors; for others those that are texts or numbers, in words. */
 export function Values({ values }) {
   const all = Object.entries(values ?? {});
-  const shown = may("author") ? all.map(([name, value]) => [name, JSON.stringify(value)])
+  const shown = may("author")
+    ? all.map(([name, value]) => [name, JSON.stringify(value)])
     : all.filter(([, value]) => ["string", "number"].includes(typeof value));
-  return shown.length > 0 && html`<p class="values">${shown.map(([name, value]) => html`
-    <span key=${name}>${name} = <b>${value}</b></span> `)}</p>`;
+  return (
+    shown.length > 0 &&
+    html`<p class="values">${shown.map(
+      ([name, value]) => html`
+    <span key=${name}>${name} = <b>${value}</b></span> `,
+    )}</p>`
+  );
 }

@@ -1,14 +1,21 @@
-// Sentences of the console and the engine, which send English: in the page's language if their phrase is known, else marked as English.
+// Sentences of the console and the engine, which send English: in the page's language if their phrase is known, else
+// marked as English.
 import en from "./texts/en.js";
 import indonesian from "./texts/phrases_id.js";
 import { html, language, t } from "./ui.js";
 
-const PLACE = /\{(\d)([#_]?)\}/g, KINDS = { "": "(.*?)", "#": "([\\d.,]+)", _: "(\\S+)" };
-const SENTENCES = new Map(Object.entries(en).filter(([, text]) => text.split(" ").length > 3).map(([key, text]) => [text, key]));
+const PLACE = /\{(\d)([#_]?)\}/g,
+  KINDS = { "": "(.*?)", "#": "([\\d.,]+)", _: "(\\S+)" };
+const SENTENCES = new Map(
+  Object.entries(en)
+    .filter(([, text]) => text.split(" ").length > 3)
+    .map(([key, text]) => [text, key]),
+);
 const literal = (text) => text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
 
 function pattern(english) {
-  const between = english.split(/\{\d[#_]?\}/).map(literal), kinds = [...english.matchAll(PLACE)].map(([, , kind]) => KINDS[kind]);
+  const between = english.split(/\{\d[#_]?\}/).map(literal),
+    kinds = [...english.matchAll(PLACE)].map(([, , kind]) => KINDS[kind]);
   return new RegExp(`^${between.map((text, n) => text + (kinds[n] ?? "")).join("")}$`, "s");
 }
 const PHRASES = { id: indonesian.map(([english, other]) => [pattern(english), other]) };
@@ -25,7 +32,7 @@ export function translated(text) {
 }
 
 /** The same; the English where its phrase is not known. */
-export const inPageLanguage = (text) => (typeof text === "string" ? translated(text) ?? text : text);
+export const inPageLanguage = (text) => (typeof text === "string" ? (translated(text) ?? text) : text);
 globalThis.lumen.inPageLanguage = inPageLanguage; // for rest.js, which needs nothing else of the page
 
 /** A sentence of the console or the engine; English is marked as such, and `named` as English for people, too. */
@@ -39,4 +46,5 @@ export function Quote({ text, named = true }) {
 export const InEnglish = () => (language() === "en" ? null : html`<p class="quiet">${t("quoted.part")}</p>`);
 
 /** Why a request failed, as a sentence in English: what the console says, else that it does not answer. */
-export const reasonOf = (error) => (error instanceof TypeError || error.name === "TimeoutError" ? en["server.away"] : error.message);
+export const reasonOf = (error) =>
+  error instanceof TypeError || error.name === "TimeoutError" ? en["server.away"] : error.message;

@@ -1,9 +1,12 @@
-// Rest. The first thing that loads, and it needs nothing else of the page: the button is made here, so that there is none
-// which does nothing. Each press is a message of its own and says what became of it, also when nobody answers.
+// Rest. The first thing that loads, and it needs nothing else of the page: the button is made here, so that there is
+// none which does nothing. Each press is a message of its own and says what became of it, also when nobody answers.
 (() => {
   const WORDS = {
     en: {
-      rest: "Rest", all: "all robots", again: "Escape once more: rest", dismiss: "Close",
+      rest: "Rest",
+      all: "all robots",
+      again: "Escape once more: rest",
+      dismiss: "Close",
       sending: "Sending …",
       unsent: "NOT SENT. The robot did not get it. Press again, or stop it by hand.",
       sent: "Sent; the robot has not answered yet.",
@@ -13,7 +16,10 @@
       after_all: "Rests after all: the robot reports it now.",
     },
     id: {
-      rest: "Istirahat", all: "semua robot", again: "Escape sekali lagi: istirahat", dismiss: "Tutup",
+      rest: "Istirahat",
+      all: "semua robot",
+      again: "Escape sekali lagi: istirahat",
+      dismiss: "Tutup",
       sending: "Mengirim …",
       unsent: "TIDAK TERKIRIM. Robot tidak menerimanya. Tekan lagi, atau hentikan dengan tangan.",
       sent: "Terkirim; robot belum menjawab.",
@@ -23,17 +29,27 @@
       after_all: "Akhirnya beristirahat: robot melaporkannya sekarang.",
     },
   };
-  const LIMIT = 1000, SILENT = 12000, TWICE = 1500; // [ms]: an answer's first bytes, all of it; two presses of Escape
+  const LIMIT = 1000,
+    SILENT = 12000,
+    TWICE = 1500; // [ms]: an answer's first bytes, all of it; two presses of Escape
   const NEW = 5000; // [ms] after a press what a robot says of itself is newer than it
   const MOVES = 30000; // [ms] after a press a robot that moves does so again, even if this page never saw it at rest
   const SIGNS = { sending: "…", unsent: "✕", failed: "✕", unknown: "?", sent: "→", finished: "✓", after_all: "✓" };
-  const ALARMS = ["unsent", "failed", "unknown"], RESTS = ["finished", "after_all"];
+  const ALARMS = ["unsent", "failed", "unknown"],
+    RESTS = ["finished", "after_all"];
   const PRESSED = "lumen.pressed"; // a press whose answer nobody can have read yet
-  const FRESH = 10000, TOLD = 600000; // for so long the next page sends it again, and reports what became of it [ms]
+  const FRESH = 10000,
+    TOLD = 600000; // for so long the next page sends it again, and reports what became of it [ms]
   const SEEN = 2000; // for which its answer stands on a page until it counts as seen there [ms]
   const root = document.documentElement;
 
-  const kept = (key) => { try { return localStorage.getItem(key); } catch { return null; } };
+  const kept = (key) => {
+    try {
+      return localStorage.getItem(key);
+    } catch {
+      return null;
+    }
+  };
   const language = kept("lumen.language") ?? (navigator.language.startsWith("id") ? "id" : "en");
   root.lang = language in WORDS ? language : "en";
   if (kept("lumen.theme")) root.dataset.theme = kept("lumen.theme");
@@ -43,40 +59,57 @@
   const robot = location.pathname.startsWith("/robot/") ? decodeURIComponent(name) : "*";
   const forVisitors = page === "subtitles";
 
-  const newId = () => Array.from(crypto.getRandomValues(new Uint8Array(16)), (b) => b.toString(16).padStart(2, "0")).join("");
+  const newId = () =>
+    Array.from(crypto.getRandomValues(new Uint8Array(16)), (b) => b.toString(16).padStart(2, "0")).join("");
 
   /** Keep a press of Rest until it is known what became of it, in this window only; null forgets it. */
   function remember(press) {
-    try { press ? sessionStorage.setItem(PRESSED, JSON.stringify(press)) : sessionStorage.removeItem(PRESSED); } catch { /* a private window */ }
+    try {
+      press ? sessionStorage.setItem(PRESSED, JSON.stringify(press)) : sessionStorage.removeItem(PRESSED);
+    } catch {
+      /* a private window */
+    }
   }
   function remembered() {
     try {
       const press = JSON.parse(sessionStorage.getItem(PRESSED));
       return press && Date.now() - press.at < TOLD ? press : null;
-    } catch { return null; }
+    } catch {
+      return null;
+    }
   }
 
-  /** Send a command, and tell how it stands: sending, unsent, sent, unknown, then finished or failed, with the answer. */
+  /** Send a command, and report its state: sending, unsent, sent, unknown, then finished or failed, with the answer. */
   async function post(fields, tell) {
-    const began = performance.now(), passed = () => (performance.now() - began) / 1000;
+    const began = performance.now(),
+      passed = () => (performance.now() - began) / 1000;
     tell("sending", {});
     const late = setTimeout(() => tell("unsent", { seconds: passed() }), LIMIT);
-    let sent = false, silent = 0;
+    let sent = false,
+      silent = 0;
     try {
       const answer = await fetch("/api/commands", {
-        method: "POST", keepalive: true, cache: "no-store",
-        headers: { "Content-Type": "application/json" }, body: JSON.stringify({ id: newId(), ...fields }),
+        method: "POST",
+        keepalive: true,
+        cache: "no-store",
+        headers: { "Content-Type": "application/json" },
+        body: JSON.stringify({ id: newId(), ...fields }),
       });
       clearTimeout(late);
       sent = answer.ok && answer.headers.get("Lumen-State") !== "unsent";
       if (sent) tell("sent", { seconds: passed() });
       if (sent && fields.command === "rest") silent = setTimeout(() => tell("unknown", { seconds: passed() }), SILENT);
-      const said = await answer.json().catch((error) => { if (sent) throw error; return {}; });
+      const said = await answer.json().catch((error) => {
+        if (sent) throw error;
+        return {};
+      });
       tell(sent ? said.state : "unsent", { reason: "", ...said, seconds: passed(), status: answer.status });
     } catch {
       clearTimeout(late);
       tell(sent ? "unknown" : "unsent", { seconds: passed() });
-    } finally { clearTimeout(silent); }
+    } finally {
+      clearTimeout(silent);
+    }
   }
 
   class RestButton extends HTMLElement {
@@ -85,27 +118,35 @@
       const make = (tag, properties = {}) => Object.assign(document.createElement(tag), properties);
       this.presses = 0;
       this.button = make("button", { type: "button", className: "rest" });
-      this.label = make("span"), this.whom = make("span", { className: "whom" });
+      ((this.label = make("span")), (this.whom = make("span", { className: "whom" })));
       this.whom.setAttribute("aria-hidden", "true"); // a description says it: the button's name is Rest
       this.button.append(this.label, this.whom);
       this.button.addEventListener("click", () => this.press());
       this.said = make("div", { className: "rest-said", hidden: true });
-      this.calm = make("p"), this.alarm = make("p"), this.sign = make("span", { className: "sign" });
-      this.calm.setAttribute("role", "status"), this.alarm.setAttribute("role", "alert"), this.sign.setAttribute("aria-hidden", "true");
+      ((this.calm = make("p")), (this.alarm = make("p")), (this.sign = make("span", { className: "sign" })));
+      (this.calm.setAttribute("role", "status"),
+        this.alarm.setAttribute("role", "alert"),
+        this.sign.setAttribute("aria-hidden", "true"));
       this.close = make("button", { type: "button", className: "plain" });
-      this.close.addEventListener("click", () => { this.said.hidden = true; this.forget(this.sent); this.button.focus(); });
+      this.close.addEventListener("click", () => {
+        this.said.hidden = true;
+        this.forget(this.sent);
+        this.button.focus();
+      });
       this.said.append(this.sign, this.calm, this.alarm, this.close);
       this.replaceChildren(this.button, this.said);
       this.speak();
       const before = this.hasAttribute("main") && remembered();
       if (!before) return;
-      if (Date.now() - before.at < FRESH) this.press(before); // the same message, which the console accepts once
+      if (Date.now() - before.at < FRESH)
+        this.press(before); // the same message, which the console accepts once
       else this.recall(before);
     }
 
-    speak() { // in the page's language
+    speak() {
+      // in the page's language
       if (!this.button) return;
-      this.label.textContent = words().rest, this.close.textContent = words().dismiss;
+      ((this.label.textContent = words().rest), (this.close.textContent = words().dismiss));
       const whom = this.getAttribute("robot") ?? robot;
       this.whom.textContent = whom === "*" ? words().all : whom;
       this.button.setAttribute("aria-description", this.whom.textContent);
@@ -115,24 +156,26 @@
     press(again = null) {
       const press = ++this.presses;
       const sent = again ?? { id: newId(), robot: this.getAttribute("robot") ?? robot, at: Date.now() };
-      this.sent = sent, this.rested = false;
+      ((this.sent = sent), (this.rested = false));
       remember(sent);
       post({ id: sent.id, robot: sent.robot, command: "rest" }, (state, answer) => {
         sent.told = [state, answer];
-        if (answer.status) sent.answered = true, setTimeout(() => this.forget(sent), SEEN);
+        if (answer.status) ((sent.answered = true), setTimeout(() => this.forget(sent), SEEN));
         if (remembered()?.id === sent.id) remember(sent);
         if (press === this.presses || (state === "finished" && !again)) this.show(state, answer);
       });
     }
 
-    recall(sent) { // an older press, not sent again: what the page before reported, if that was more than its being sent
+    recall(sent) {
+      // an older press, not sent again: what the page before reported, if that was more than its being sent
       const [state, answer] = sent.told ?? [];
-      this.sent = sent, this.rested = false, sent.answered = true;
+      ((this.sent = sent), (this.rested = false), (sent.answered = true));
       this.show([...ALARMS, ...RESTS].includes(state) ? state : "unknown", answer);
       setTimeout(() => this.forget(sent), SEEN);
     }
 
-    forget(sent) { // the next page need not tell of it
+    forget(sent) {
+      // the next page need not tell of it
       if (sent?.answered && remembered()?.id === sent.id) remember(null);
     }
 
@@ -140,29 +183,38 @@
     heed(robots = this.robots) {
       this.robots = robots;
       if (!robots || !this.sent || this.said.hidden) return;
-      const passed = Date.now() - this.sent.at, meant = robots.filter((one) => this.sent.robot === "*" || one.robot === this.sent.robot);
+      const passed = Date.now() - this.sent.at,
+        meant = robots.filter((one) => this.sent.robot === "*" || one.robot === this.sent.robot);
       const rest = meant.length > 0 && meant.every((one) => one.stopped && one.connected);
-      if (ALARMS.includes(this.told[0])) { if (rest && passed >= NEW) this.show("after_all"); }
-      else if (RESTS.includes(this.told[0])) {
+      if (ALARMS.includes(this.told[0])) {
+        if (rest && passed >= NEW) this.show("after_all");
+      } else if (RESTS.includes(this.told[0])) {
         // A report from before the press may come late: a robot moves again only if it was at rest in a report before.
         if (rest) this.rested = true;
-        else if (passed >= (this.rested ? NEW : MOVES) && meant.some((one) => !one.stopped && one.connected)) this.said.hidden = true;
+        else if (passed >= (this.rested ? NEW : MOVES) && meant.some((one) => !one.stopped && one.connected))
+          this.said.hidden = true;
       }
     }
 
-    hint() { // after one Escape, for as long as the second counts; it hides nothing that was told
+    hint() {
+      // after one Escape, for as long as the second counts; it hides nothing that was told
       if (!this.said.hidden) return;
       this.show("again");
-      setTimeout(() => { if (this.told[0] === "again") this.said.hidden = true; }, TWICE);
+      setTimeout(() => {
+        if (this.told[0] === "again") this.said.hidden = true;
+      }, TWICE);
     }
 
     show(state, answer = {}) {
       this.told = [state, answer];
-      const seconds = (answer.seconds ?? 0).toLocaleString(root.lang, { minimumFractionDigits: 1, maximumFractionDigits: 1 });
+      const seconds = (answer.seconds ?? 0).toLocaleString(root.lang, {
+        minimumFractionDigits: 1,
+        maximumFractionDigits: 1,
+      });
       const reason = globalThis.lumen.inPageLanguage?.(answer.reason ?? "") ?? answer.reason ?? "";
       const text = (words()[state] ?? state).replace("{seconds}", seconds).replace("{reason}", () => reason);
       const alarming = ALARMS.includes(state);
-      this.said.hidden = false, this.said.dataset.state = state, this.sign.textContent = SIGNS[state] ?? "";
+      ((this.said.hidden = false), (this.said.dataset.state = state), (this.sign.textContent = SIGNS[state] ?? ""));
       this.calm.textContent = alarming ? "" : text;
       this.alarm.textContent = alarming ? text + (state === "unsent" && reason ? ` (${reason})` : "") : "";
       if (alarming) setTimeout(() => this.heed(), NEW); // the robots may report nothing new meanwhile
@@ -173,16 +225,24 @@
 
   const CLOSES = "dialog[open], .sheet:not([hidden])"; // what a press of Escape closes
   let escaped = -Infinity;
-  addEventListener("keydown", (event) => {
-    if (event.key !== "Escape" || event.repeat || forVisitors) return;
-    if (document.querySelector(CLOSES)) { escaped = -Infinity; return; } // it closes that, and asks for no rest
-    const main = document.querySelector("rest-button[main]"), at = event.timeStamp; // a busy page hears keys late
-    const twice = at - escaped < TWICE;
-    escaped = twice ? -Infinity : at;
-    if (twice && main) main.press();
-    else if (twice) post({ robot, command: "rest" }, () => {});
-    else main?.hint();
-  }, true);
+  addEventListener(
+    "keydown",
+    (event) => {
+      if (event.key !== "Escape" || event.repeat || forVisitors) return;
+      if (document.querySelector(CLOSES)) {
+        escaped = -Infinity;
+        return;
+      } // it closes that, and asks for no rest
+      const main = document.querySelector("rest-button[main]"),
+        at = event.timeStamp; // a busy page hears keys late
+      const twice = at - escaped < TWICE;
+      escaped = twice ? -Infinity : at;
+      if (twice && main) main.press();
+      else if (twice) post({ robot, command: "rest" }, () => {});
+      else main?.hint();
+    },
+    true,
+  );
 
-  globalThis.lumen = { post, robot: robot === "*" ? null : robot, page: robot === "*" ? "" : page ?? "" };
+  globalThis.lumen = { post, robot: robot === "*" ? null : robot, page: robot === "*" ? "" : (page ?? "") };
 })();

@@ -2,18 +2,23 @@
 import { blocks } from "./blocks.js";
 
 const GONE = 60000; // [ms] after which a page that says nothing any more was closed without a word
-const streams = new Map(), heard = new Map(); // who follows, by the stream's id; when a page was heard last
+const streams = new Map(),
+  heard = new Map(); // who follows, by the stream's id; when a page was heard last
 
 function join(page, id, path) {
   let one = streams.get(id);
   if (!one) {
     const made = (one = { pages: new Set(), ending: new AbortController() });
-    const tell = (what) => { for (const each of made.pages) each.postMessage({ id, ...what }); };
+    const tell = (what) => {
+      for (const each of made.pages) each.postMessage({ id, ...what });
+    };
     streams.set(id, made);
-    blocks(path, (block) => tell({ block }), made.ending.signal).catch(() => {}).finally(() => {
-      if (streams.get(id) === made) streams.delete(id);
-      tell({ lost: true });
-    });
+    blocks(path, (block) => tell({ block }), made.ending.signal)
+      .catch(() => {})
+      .finally(() => {
+        if (streams.get(id) === made) streams.delete(id);
+        tell({ lost: true });
+      });
   }
   one.pages.add(page);
 }

@@ -1,4 +1,5 @@
-// What all pages build with: elements from data (text is never markup), texts, and state that lives as long as the page.
+// What all pages build with: elements from data (text is never markup), texts, and state that lives as long as the
+// page.
 import { html, render, useEffect, useLayoutEffect, useRef, useState } from "./vendor/htm-preact.js";
 import en from "./texts/en.js";
 import id from "./texts/id.js";
@@ -11,23 +12,37 @@ const redraws = new Set();
 export const language = () => document.documentElement.lang;
 export const LANGUAGES = { en: "English", id: "Bahasa Indonesia" };
 
-/** The text of that name in the page's language; {name} is filled in, and {count|robot|robots} by whether the count is 1. */
+/**
+ * The text of that name in the page's language; {name} is filled in, and {count|robot|robots} by whether the count
+ * is 1.
+ */
 export function t(name, values = {}) {
   const text = TEXTS[language()]?.[name] ?? en[name] ?? name;
-  return text.replace(/\{(\w+)(?:\|([^|}]*)\|([^}]*))?\}/g, (all, key, one, many) => (one === undefined ? values[key] ?? all : `${values[key]}` === "1" ? one : many));
+  return text.replace(/\{(\w+)(?:\|([^|}]*)\|([^}]*))?\}/g, (all, key, one, many) =>
+    one === undefined ? (values[key] ?? all) : `${values[key]}` === "1" ? one : many,
+  );
 }
 
 /** A map of texts by language, as YAML writes them: the page's, else the first. */
-export const inLanguage = (texts) => (typeof texts === "object" && texts ? texts[language()] ?? Object.values(texts)[0] : texts) ?? "";
+export const inLanguage = (texts) =>
+  (typeof texts === "object" && texts ? (texts[language()] ?? Object.values(texts)[0]) : texts) ?? "";
 
 /** The line about an entry of the journal, in the page's language where there is one. */
 export const lineOf = (entry) => entry.texts?.[language()] ?? entry.text;
 
 export function keep(key, value) {
-  try { value === null ? localStorage.removeItem(key) : localStorage.setItem(key, value); } catch { /* a private window */ }
+  try {
+    value === null ? localStorage.removeItem(key) : localStorage.setItem(key, value);
+  } catch {
+    /* a private window */
+  }
 }
 export function kept(key) {
-  try { return localStorage.getItem(key); } catch { return null; }
+  try {
+    return localStorage.getItem(key);
+  } catch {
+    return null;
+  }
 }
 
 export function speak(code) {
@@ -42,11 +57,17 @@ let asked = false;
 export function redraw() {
   if (asked) return;
   asked = true;
-  requestAnimationFrame(() => { asked = false; for (const one of redraws) one({}); });
+  requestAnimationFrame(() => {
+    asked = false;
+    for (const one of redraws) one({});
+  });
 }
 export function useRedraw() {
   const [, set] = useState({});
-  useEffect(() => { redraws.add(set); return () => redraws.delete(set); }, []);
+  useEffect(() => {
+    redraws.add(set);
+    return () => redraws.delete(set);
+  }, []);
 }
 
 const number = (digits) => ({ minimumFractionDigits: digits, maximumFractionDigits: digits });
@@ -55,19 +76,30 @@ export const percent = (value) => `${fixed(value)}%`;
 
 /** What people call a language: `en` is English, or Inggris. */
 export function languageName(code) {
-  try { return new Intl.DisplayNames([language()], { type: "language" }).of(code) ?? code; } catch { return code; }
+  try {
+    return new Intl.DisplayNames([language()], { type: "language" }).of(code) ?? code;
+  } catch {
+    return code;
+  }
 }
 
 /** A full hour: 09:00, or 09.00. */
 export const fullHour = (hour) => `${String(hour).padStart(2, "0")}${language() === "id" ? "." : ":"}00`;
 
 /** 14:03:20 where the console is looked at. */
-export const clock = (iso, seconds = true) => iso ? new Date(iso).toLocaleTimeString(language() === "id" ? "id-ID" : "en-GB",
-  { hour: "2-digit", minute: "2-digit", ...(seconds ? { second: "2-digit" } : {}) }) : "";
+export const clock = (iso, seconds = true) =>
+  iso
+    ? new Date(iso).toLocaleTimeString(language() === "id" ? "id-ID" : "en-GB", {
+        hour: "2-digit",
+        minute: "2-digit",
+        ...(seconds ? { second: "2-digit" } : {}),
+      })
+    : "";
 
 /** 0:07, 12:31 or 3:04:05 of seconds. */
 export function span(seconds) {
-  const whole = Math.max(0, Math.floor(seconds)), pad = (n) => String(n).padStart(2, "0");
+  const whole = Math.max(0, Math.floor(seconds)),
+    pad = (n) => String(n).padStart(2, "0");
   const [h, m, s] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, whole % 60];
   return h ? `${h}:${pad(m)}:${pad(s)}` : `${m}:${pad(s)}`;
 }
@@ -75,7 +107,10 @@ export function span(seconds) {
 /** Redraws each half second; used by what counts. `now` returns the time of the clock of `at` [ms since 1970]. */
 export function useSeconds() {
   const [, set] = useState(0);
-  useEffect(() => { const timer = setInterval(() => set((n) => n + 1), 500); return () => clearInterval(timer); }, []);
+  useEffect(() => {
+    const timer = setInterval(() => set((n) => n + 1), 500);
+    return () => clearInterval(timer);
+  }, []);
 }
 export function Since({ at, now = Date.now }) {
   useSeconds();
@@ -99,23 +134,30 @@ export function Part({ title, kind = "", aside = null, children }) {
 /** Controls that can be used only `when` that is so; else they are grey. */
 export const Usable = ({ when, children }) => html`<fieldset class="bare" disabled=${!when}>${children}</fieldset>`;
 
-/** A dialog that is open as long as it is drawn; Escape and the button close it. Not modal: Rest stays in reach above it. */
+/**
+ * A dialog that is open as long as it is drawn; Escape and the button close it. Not modal: Rest stays in reach above
+ * it.
+ */
 export function Dialog({ title, onClose, children, actions = null }) {
-  const box = useRef(null), heading = useId();
+  const box = useRef(null),
+    heading = useId();
   useEffect(() => {
     const before = document.activeElement;
     (box.current.querySelector("[autofocus]") ?? box.current).focus();
     return () => before?.focus?.();
   }, []);
   useEffect(() => {
-    const typed = (event) => { if (event.key === "Escape" && !event.repeat) onClose(); };
+    const typed = (event) => {
+      if (event.key === "Escape" && !event.repeat) onClose();
+    };
     addEventListener("keydown", typed);
     return () => removeEventListener("keydown", typed);
   });
   return html`<div class="scrim" onClick=${onClose}></div>
     <dialog open ref=${box} tabindex="-1" aria-labelledby=${heading}><h2 id=${heading}>${title}</h2>${children}
-      <div class="actions">${actions}<button type="button" onClick=${onClose}>${t(actions ? "cancel" : "close")}</button></div></dialog>`;
+      <div class="actions">${actions}<button type="button"
+        onClick=${onClose}>${t(actions ? "cancel" : "close")}</button></div></dialog>`;
 }
 
 /** `behaviors/tour.yaml:205`, short enough to stand beside something. */
-export const place = (file, line) => file ? `${file}${line ? `:${line}` : ""}` : "";
+export const place = (file, line) => (file ? `${file}${line ? `:${line}` : ""}` : "");

@@ -15,8 +15,11 @@ function badges(robot) {
 }
 
 function Tile({ robot }) {
-  const { robot: name, saying } = robot, link = `/robot/${encodeURIComponent(name)}`, battery = batteryOf(robot);
-  const said = badges(robot), leaf = innermost(robot.states ?? []);
+  const { robot: name, saying } = robot,
+    link = `/robot/${encodeURIComponent(name)}`,
+    battery = batteryOf(robot);
+  const said = badges(robot),
+    leaf = innermost(robot.states ?? []);
   return html`<li class="tile" data-state=${said[0][0]} aria-label=${name}>
     <div class="tile-head"><h2><a href=${link}>${name}</a></h2><rest-button robot=${name}></rest-button></div>
     ${said.map(([state, text]) => html`<p class="badge" key=${text} data-state=${state}>${text}</p>`)}
@@ -27,13 +30,21 @@ function Tile({ robot }) {
     <p class="line">${saying ? html`“${saying.text}”` : html`<span class="quiet">${t("says.nothing")}</span>`}</p>
     <dl class="facts"><div><dt>${t("visitor")}</dt><dd>${robot.visitor || t("nobody.here")}</dd></div>
       <div><dt>${t("battery")}</dt><dd>${battery === null ? t("unknown") : percent(battery)}
-        ${battery !== null && battery < LOW && html` <span class="badge" data-state="bad">
-          ${t("battery.low")}</span>`}</dd></div>
-      <div><dt>${t("realtime")}</dt><dd>${robot.realtime == null ? t("unknown") : percent(robot.realtime * 100)}</dd></div></dl></li>`;
+        ${
+          battery !== null &&
+          battery < LOW &&
+          html` <span class="badge" data-state="bad">
+          ${t("battery.low")}</span>`
+        }</dd></div>
+      <div><dt>${t("realtime")}</dt><dd>${robot.realtime == null ? t("unknown") : percent(robot.realtime * 100)}</dd>
+        </div></dl></li>`;
 }
 
 export function Wall() {
   useRedraw();
   const robots = [...live.robots.values()].sort((a, b) => a.robot.localeCompare(b.robot));
-  return html`<h1 class="hidden">${t("page.wall")}</h1><ul class="wall">${robots.map((robot) => html`<${Tile} key=${robot.robot} robot=${robot} />`)}</ul>`;
+  return html`<h1 class="hidden">${t("page.wall")}</h1><ul class="wall">${robots.map(
+    (robot) => html`<${Tile}
+    key=${robot.robot} robot=${robot} />`,
+  )}</ul>`;
 }

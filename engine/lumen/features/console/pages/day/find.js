@@ -13,7 +13,8 @@ export function momentOf(date, text) {
 }
 
 function GoTo({ date, scrub }) {
-  const [text, write] = useState(""), [wrong, complain] = useState("");
+  const [text, write] = useState(""),
+    [wrong, complain] = useState("");
   const go = (submitted) => {
     submitted.preventDefault();
     const at = momentOf(date, text);
@@ -27,28 +28,39 @@ function GoTo({ date, scrub }) {
 }
 
 function Search({ name, first, last, open }) {
-  const [text, write] = useState(""), [found, show] = useState(null), [wrong, complain] = useState("");
+  const [text, write] = useState(""),
+    [found, show] = useState(null),
+    [wrong, complain] = useState("");
   const search = async (submitted) => {
     submitted.preventDefault();
     complain("");
     if (!text.trim()) return show(null);
     try {
       show(await get("/api/search", { robot: name, from: first, to: last, text }, JOB));
-    } catch (error) { complain(reasonOf(error)); }
+    } catch (error) {
+      complain(reasonOf(error));
+    }
   };
-  const told = () => (found.more ? t("find.more", { n: found.entries.length }) : t("find.count", { n: found.entries.length }));
+  const told = () =>
+    found.more ? t("find.more", { n: found.entries.length }) : t("find.count", { n: found.entries.length });
   return html`<form class="search" role="search" onSubmit=${search}>
       <label class="grow"><span>${t("find.text")}</span><input type="search" value=${text} maxlength="200"
         autocomplete="off" onInput=${(e) => write(e.target.value)} /></label>
       <button>${t("find.text.go")}</button></form>
     <p role="status">${found ? told() : ""}</p><p class="bad" role="alert"><${Quote} text=${wrong} /></p>
-    ${found?.entries.length > 0 && html`<ol class="entry-list bounded found" tabindex="0" aria-label=${t("find")}>
-      ${found.entries.map((entry) => html`<${Entry} key=${entry.position} entry=${entry} onOpen=${open} />`)}</ol>`}`;
+    ${
+      found?.entries.length > 0 &&
+      html`<ol class="entry-list bounded found" tabindex="0" aria-label=${t("find")}>
+      ${found.entries.map((entry) => html`<${Entry} key=${entry.position} entry=${entry} onOpen=${open} />`)}</ol>`
+    }`;
 }
 
 /** `scrub(at)` looks at a moment [ms since 1970], `open(entry)` at an entry; `parts` are the stretches of the day. */
 export function Find({ name, date, parts, scrub, open }) {
   return html`<${Part} title=${t("find")} kind="find"><${GoTo} date=${date} scrub=${scrub} />
-    ${parts.length > 0 && html`<${Search} key=${date} name=${name} first=${parts[0].from}
-      last=${Math.max(...parts.map((one) => one.to))} open=${open} />`}</${Part}>`;
+    ${
+      parts.length > 0 &&
+      html`<${Search} key=${date} name=${name} first=${parts[0].from}
+      last=${Math.max(...parts.map((one) => one.to))} open=${open} />`
+    }</${Part}>`;
 }

@@ -4,7 +4,12 @@ import { Part, clock, html, lineOf, t, useEffect, useRef, useState } from "../ui
 import { Instead, blank, eventOf } from "./instead.js";
 
 async function ask(body) {
-  const answer = await fetch("/api/fork", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body), signal: AbortSignal.timeout(60000) });
+  const answer = await fetch("/api/fork", {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(body),
+    signal: AbortSignal.timeout(60000),
+  });
   const said = await answer.json().catch(() => ({}));
   if (!answer.ok || said.reason) throw new Error(said.reason ?? `${answer.status}`);
   return said;
@@ -13,8 +18,17 @@ async function ask(body) {
 function Column({ title, entries, other, from }) {
   const when = (one) => new Date(Date.parse(from.at_time) + 1000 * (one.at - from.at)).toISOString();
   const there = new Set(other.map((entry) => entry.text));
-  return html`<div><h3>${title}</h3><ol>${entries.filter((entry) => entry.text).map((entry) => html`<li class=${there.has(entry.text) ? "" : "differs"}>
-    <time>${clock(when(entry))}</time> ${there.has(entry.text) ? "" : html`<span class="badge" data-state="warn">≠</span> `}${lineOf(entry)}</li>`)}</ol></div>`;
+  return html`<div><h3>${title}</h3><ol>${entries
+    .filter((entry) => entry.text)
+    .map(
+      (entry) => html`<li class=${there.has(entry.text) ? "" : "differs"}>
+    <time>${clock(when(entry))}</time> ${
+      there.has(entry.text)
+        ? ""
+        : html`<span class="badge"
+      data-state="warn">≠</span> `
+    }${lineOf(entry)}</li>`,
+    )}</ol></div>`;
 }
 
 /** What a visitor said by an entry, as `{result, language}`; null if it is no speech. */
@@ -22,30 +36,47 @@ export const speechOf = (entry) => (entry?.heard && typeof entry.data?.result ==
 
 /** `asked`: a person wants other words than those of the entry, so their field has the focus. */
 export function Fork({ name, entry, asked = false }) {
-  const speech = asked ? speechOf(entry) : null, box = useRef(null);
-  const [form, set] = useState(() => blank(speech?.result, speech?.language)), [saved, setSaved] = useState(false);
-  const [found, show] = useState(null), [wrong, tell] = useState(""), [busy, wait] = useState(false);
-  useEffect(() => { if (speech) box.current?.querySelector("input.words")?.select(); }, []);
+  const speech = asked ? speechOf(entry) : null,
+    box = useRef(null);
+  const [form, set] = useState(() => blank(speech?.result, speech?.language)),
+    [saved, setSaved] = useState(false);
+  const [found, show] = useState(null),
+    [wrong, tell] = useState(""),
+    [busy, wait] = useState(false);
+  useEffect(() => {
+    if (speech) box.current?.querySelector("input.words")?.select();
+  }, []);
   const go = async (submitted) => {
     submitted.preventDefault();
-    tell(""), wait(true), show(null);
+    (tell(""), wait(true), show(null));
     const body = { robot: name, position: entry.position, event: eventOf(form), bundle: saved ? "saved" : null };
-    try { show({ ...(await ask(body)), from: entry }); } catch (error) { tell(reasonOf(error)); }
+    try {
+      show({ ...(await ask(body)), from: entry });
+    } catch (error) {
+      tell(reasonOf(error));
+    }
     wait(false);
   };
-  const same = found && found.was.length === found.would.length
-    && found.was.every((one, n) => one.text === found.would[n].text);
+  const same =
+    found && found.was.length === found.would.length && found.was.every((one, n) => one.text === found.would[n].text);
   return html`<${Part} title=${t("fork")} kind="fork"><p class="quiet">${entry ? t("fork.more") : t("fork.choose")}</p>
-    ${entry && html`<form class="cue" ref=${box} onSubmit=${go}>
+    ${
+      entry &&
+      html`<form class="cue" ref=${box} onSubmit=${go}>
       <p class="grow"><b>${clock(entry.at_time)}</b> ${lineOf(entry)}</p>
       <${Instead} name=${name} form=${form} write=${(changes) => set((now) => ({ ...now, ...changes }))} />
       <label class="check"><input type="checkbox" checked=${saved} onChange=${(e) => setSaved(e.target.checked)} />
         ${" "}${t("fork.files")}</label>
-      <button class="strong" disabled=${busy}>${t("fork.go")}</button></form>`}
-    <div role="status">${busy ? t("loading") : same ? t("fork.same") : ""} <${Quote} text=${found?.trouble ?? ""} /></div>
+      <button class="strong" disabled=${busy}>${t("fork.go")}</button></form>`
+    }
+    <div role="status">${busy ? t("loading") : same ? t("fork.same") : ""} <${Quote} text=${found?.trouble ?? ""} />
+      </div>
     <p class="bad" role="alert"><${Quote} text=${wrong} /></p>
-    ${found && html`<div class="beside" tabindex="0" role="group" aria-label=${t("fork")}>
+    ${
+      found &&
+      html`<div class="beside" tabindex="0" role="group" aria-label=${t("fork")}>
       <${Column} title=${t("fork.was")} entries=${found.was} other=${found.would} from=${found.from} />
-      <${Column} title=${t("fork.would")} entries=${found.would} other=${found.was} from=${found.from} /></div>`}
+      <${Column} title=${t("fork.would")} entries=${found.would} other=${found.was} from=${found.from} /></div>`
+    }
     </${Part}>`;
 }

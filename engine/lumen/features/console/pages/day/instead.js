@@ -4,7 +4,11 @@ import { html, languageName, t } from "../ui.js";
 
 /** Of a form that nobody has filled in; `says` is what the visitor said then. */
 export const blank = (says = null, language = "") => ({
-  kind: says === null ? "same" : "says", words: says ?? "", language, event: "", values: [{ name: "", value: "" }],
+  kind: says === null ? "same" : "says",
+  words: says ?? "",
+  language,
+  event: "",
+  values: [{ name: "", value: "" }],
 });
 
 /** A value as it is typed: a number, true or false, else a text. */
@@ -27,18 +31,25 @@ function Words({ languages, form, write }) {
   return html`<label class="grow"><span>${t("fork.words")}</span>
       <input class="words" value=${form.words} maxlength="500" required autocomplete="off" lang=${spoken}
         onInput=${(e) => write({ words: e.target.value, language: spoken })} /></label>
-    ${languages.length > 1 && html`<label><span>${t("language")}</span>
-      <select value=${spoken} onChange=${(e) => write({ language: e.target.value })}>${languages.map((one) => html`
-        <option value=${one} selected=${one === spoken}>${languageName(one)}</option>`)}</select></label>`}`;
+    ${
+      languages.length > 1 &&
+      html`<label><span>${t("language")}</span>
+      <select value=${spoken} onChange=${(e) => write({ language: e.target.value })}>${languages.map(
+        (one) => html`
+        <option value=${one} selected=${one === spoken}>${languageName(one)}</option>`,
+      )}</select></label>`
+    }`;
 }
 
 function Values({ values, write }) {
   const change = (at, more) => write({ values: values.map((one, n) => (n === at ? { ...one, ...more } : one)) });
-  return html`<ul class="plain-list event-values">${values.map((one, n) => html`<li key=${n}>
+  return html`<ul class="plain-list event-values">${values.map(
+    (one, n) => html`<li key=${n}>
       <label><span>${t("fork.value.name")}</span><input class="value-name" value=${one.name} autocomplete="off"
         spellcheck=${false} onInput=${(e) => change(n, { name: e.target.value })} /></label>
       <label><span>${t("fork.value")}</span><input class="value" value=${one.value} autocomplete="off"
-        onInput=${(e) => change(n, { value: e.target.value })} /></label></li>`)}</ul>
+        onInput=${(e) => change(n, { value: e.target.value })} /></label></li>`,
+  )}</ul>
     <button type="button" onClick=${() => write({ values: [...values, { name: "", value: "" }] })}>
       ${t("fork.value.add")}</button>`;
 }
@@ -52,11 +63,14 @@ function Other({ events, form, write }) {
 
 /** `form` is as `blank` makes it; `write(changes)` changes some of it. */
 export function Instead({ name, form, write }) {
-  const robot = robotOf(name), languages = robot?.languages?.length ? robot.languages : [robot?.language ?? "en"];
+  const robot = robotOf(name),
+    languages = robot?.languages?.length ? robot.languages : [robot?.language ?? "en"];
   return html`<label><span>${t("fork.instead")}</span>
       <select class="instead" value=${form.kind} onChange=${(e) => write({ kind: e.target.value })}>
-        ${["same", "says", "event"].map((one) => html`
-          <option value=${one} selected=${one === form.kind}>${t(`fork.${one}`)}</option>`)}</select></label>
+        ${["same", "says", "event"].map(
+          (one) => html`
+          <option value=${one} selected=${one === form.kind}>${t(`fork.${one}`)}</option>`,
+        )}</select></label>
     ${form.kind === "says" && html`<${Words} languages=${languages} form=${form} write=${write} />`}
     ${form.kind === "event" && html`<${Other} events=${robot?.events ?? []} form=${form} write=${write} />`}`;
 }

@@ -1,20 +1,32 @@
 // The day from left to right: hours, visits, marks, and the moment that is looked at.
 import { clock, html, span, t } from "../ui.js";
 
-const HOUR = 3600e3, STEP = 1000, WIDE = 1000, HIGH = 84; // [ms], [ms], of the picture
+const HOUR = 3600e3,
+  STEP = 1000,
+  WIDE = 1000,
+  HIGH = 84; // [ms], [ms], of the picture
 
 /** What a day consists of, in its order: visits, and what happened between them. */
 export const stretches = (day) => [...day.visits, ...(day.between ?? [])].sort((one, other) => one.from - other.from);
 
 /** From the full hour before the first of what happened to the one after the last [ms since 1970]. */
 export function bounds(day) {
-  const times = stretches(day).flatMap((one) => [one.began, one.ended]).concat(day.marks?.map((one) => one.at) ?? []).filter(Boolean).map(Date.parse);
+  const times = stretches(day)
+    .flatMap((one) => [one.began, one.ended])
+    .concat(day.marks?.map((one) => one.at) ?? [])
+    .filter(Boolean)
+    .map(Date.parse);
   if (!times.length) return [Date.now() - HOUR, Date.now()];
   return [Math.floor(Math.min(...times) / HOUR) * HOUR, Math.ceil((Math.max(...times) + 1) / HOUR) * HOUR];
 }
 
+/** What happens at the moment: a visit, or something between visits. */
+const around = (visit) =>
+  visit.n ? `${t("day.visit", { n: visit.n })}, ${span(visit.seconds ?? 0)}` : t("day.between");
+
 export function Line({ day, bounds: [begin, end], visit, moment, scrub, look }) {
-  const x = (at) => ((at - begin) / (end - begin)) * WIDE, hours = [];
+  const x = (at) => ((at - begin) / (end - begin)) * WIDE,
+    hours = [];
   const each = Math.max(1, Math.ceil((end - begin) / HOUR / 12)) * HOUR;
   for (let at = begin; at <= end; at += each) hours.push(at);
   const iso = (at) => new Date(at).toISOString();
@@ -25,15 +37,37 @@ export function Line({ day, bounds: [begin, end], visit, moment, scrub, look }) 
     }}>
       <rect class="road" x="0" y="22" width=${WIDE} height="40" rx="6" />
       ${hours.map((at) => html`<line class="hour" x1=${x(at)} x2=${x(at)} y1="14" y2="70" />`)}
-      ${day.between?.map((one) => html`<rect class="between ${one.from === visit?.from ? "now" : ""}" x=${x(Date.parse(one.began))} y="38" rx="2" height="8"
-        width=${Math.max(3, x(Date.parse(one.ended)) - x(Date.parse(one.began)))} />`)}
-      ${day.visits.map((one) => html`<rect class="bar ${one.from === visit?.from ? "now" : ""}" x=${x(Date.parse(one.began))} y="26" rx="3" height="32"
-        width=${Math.max(3, x(Date.parse(one.ended ?? iso(end))) - x(Date.parse(one.began)))} onClick=${(e) => { e.stopPropagation(); look(one); }} />`)}
+      ${day.between?.map(
+        (
+          one,
+        ) => html`<rect class="between ${one.from === visit?.from ? "now" : ""}" x=${x(Date.parse(one.began))} y="38"
+          rx="2" height="8"
+        width=${Math.max(3, x(Date.parse(one.ended)) - x(Date.parse(one.began)))} />`,
+      )}
+      ${day.visits.map(
+        (
+          one,
+        ) => html`<rect class="bar ${one.from === visit?.from ? "now" : ""}" x=${x(Date.parse(one.began))} y="26" rx="3"
+          height="32"
+        width=${Math.max(3, x(Date.parse(one.ended ?? iso(end))) - x(Date.parse(one.began)))} onClick=${(e) => {
+          e.stopPropagation();
+          look(one);
+        }} />`,
+      )}
       ${day.marks?.map((one) => html`<path class="flag" d="M${x(Date.parse(one.at))} 12 v52 m0 -52 l14 7 l-14 7 z" />`)}
       <line class="moment" x1=${x(moment)} x2=${x(moment)} y1="6" y2="78" /></svg>
     <ol class="hours" aria-hidden="true">${hours.map((at) => html`<li>${clock(iso(at), false)}</li>`)}</ol>
-    <label><span class="hidden">${t("day.scrub")}</span><input type="range" min=${begin} max=${end} step=${STEP} value=${moment}
-      aria-valuetext="${clock(iso(moment))}${visit ? `, ${visit.n ? `${t("day.visit", { n: visit.n })}, ${span(visit.seconds ?? 0)}` : t("day.between")}` : ""}" onInput=${(e) => scrub(Number(e.target.value))} /></label>
-    ${day.marks?.length > 0 && html`<ul class="marks">${day.marks.map((one) => html`<li><button type="button" class="plain" onClick=${() => scrub(Date.parse(one.at))}>⚑ ${clock(one.at)} ${one.text ?? ""}</button></li>`)}</ul>`}
+    <label><span class="hidden">${t("day.scrub")}</span><input type="range" min=${begin} max=${end} step=${STEP}
+      value=${moment}
+      aria-valuetext="${clock(iso(moment))}${visit ? `, ${around(visit)}` : ""}"
+      onInput=${(e) => scrub(Number(e.target.value))} /></label>
+    ${
+      day.marks?.length > 0 &&
+      html`<ul class="marks">${day.marks.map(
+        (one) => html`<li>
+      <button type="button" class="plain"
+      onClick=${() => scrub(Date.parse(one.at))}>⚑ ${clock(one.at)} ${one.text ?? ""}</button></li>`,
+      )}</ul>`
+    }
   </section>`;
 }

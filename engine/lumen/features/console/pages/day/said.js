@@ -4,38 +4,82 @@ import { may } from "../session.js";
 import { fixed, html, languageName, t, useEffect, useRef, useState } from "../ui.js";
 
 /** The rows that could have taken a sentence, as the values of a choice. */
-const choices = (one, rows) => one.states.flatMap(([behavior, state]) => (rows[`${behavior} ${state}`] ?? []).map((row) => ({ behavior, state, row })));
+const choices = (one, rows) =>
+  one.states.flatMap(([behavior, state]) =>
+    (rows[`${behavior} ${state}`] ?? []).map((row) => ({ behavior, state, row })),
+  );
 
 function Row({ name, one, rows, saved }) {
-  const could = choices(one, rows), several = one.states.length > 1;
-  const [open, setOpen] = useState(false), [text, setText] = useState(one.text), [chosen, choose] = useState(""), [busy, wait] = useState(false), [wrong, complain] = useState("");
+  const could = choices(one, rows),
+    several = one.states.length > 1;
+  const [open, setOpen] = useState(false),
+    [text, setText] = useState(one.text),
+    [chosen, choose] = useState(""),
+    [busy, wait] = useState(false),
+    [wrong, complain] = useState("");
   const field = useRef(null);
+  const states = one.states.map(([, state]) => state).join(", ");
+  const about = [states, one.row || t("day.said.none"), languageName(one.language), `${fixed(one.count)}×`];
   useEffect(() => field.current?.focus(), [open]);
   const save = async (submitted) => {
     submitted.preventDefault();
-    wait(true), complain("");
+    (wait(true), complain(""));
     try {
       const body = JSON.stringify({ robot: name, ...could[Number(chosen)], language: one.language, text });
-      const sent = await fetch("/api/sayings", { method: "POST", headers: { "Content-Type": "application/json" }, body, signal: AbortSignal.timeout(60000) });
+      const sent = await fetch("/api/sayings", {
+        method: "POST",
+        headers: { "Content-Type": "application/json" },
+        body,
+        signal: AbortSignal.timeout(60000),
+      });
       const said = await sent.json().catch(() => ({}));
       if (sent.ok) return saved(said.file);
       complain(said.reason ?? `${sent.status}`);
-    } catch (error) { complain(reasonOf(error)); }
+    } catch (error) {
+      complain(reasonOf(error));
+    }
     wait(false);
   };
-  return html`<li><span>${one.text}</span> <span class="quiet">${one.states.map(([, state]) => state).join(", ")} · ${one.row || t("day.said.none")} · ${languageName(one.language)} · ${fixed(one.count)}×</span>
-    ${may("author") && html`<button type="button" aria-expanded=${open} onClick=${() => setOpen(!open)}>${t("day.said.should")}</button>`}
-    ${open && html`<form class="cue" onSubmit=${save}><label><span>${t("day.said.row")}</span><select ref=${field} value=${chosen} onChange=${(e) => choose(e.target.value)} required><option value=""></option>
-      ${could.map(({ state, row }, n) => html`<option value=${n} selected=${`${n}` === chosen}>${several ? `${row} (${state})` : row}</option>`)}</select></label>
-      <label class="grow"><span>${t("day.said.text")} (${languageName(one.language)})</span><input value=${text} onInput=${(e) => setText(e.target.value)} maxlength="1000" required autocomplete="off" /></label>
-      <button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`}
+  return html`<li><span>${one.text}</span> <span
+    class="quiet">${about.join(" · ")}</span>
+    ${
+      may("author") &&
+      html`<button type="button" aria-expanded=${open}
+      onClick=${() => setOpen(!open)}>${t("day.said.should")}</button>`
+    }
+    ${
+      open &&
+      html`<form class="cue" onSubmit=${save}><label><span>${t("day.said.row")}</span>
+        <select ref=${field} value=${chosen} onChange=${(e) => choose(e.target.value)} required><option value="">
+        </option>
+      ${could.map(
+        ({ state, row }, n) => html`<option value=${n}
+        selected=${`${n}` === chosen}>${several ? `${row} (${state})` : row}</option>`,
+      )}</select></label>
+      <label class="grow"><span>${t("day.said.text")} (${languageName(one.language)})</span>
+        <input value=${text} onInput=${(e) => setText(e.target.value)} maxlength="1000" required autocomplete="off" />
+        </label>
+      <button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`
+    }
     <p class="bad" role="alert"><${Quote} text=${wrong} /></p></li>`;
 }
 
 export function Said({ name, said, rows }) {
-  const [files, tell] = useState({}), key = (one) => JSON.stringify([one.language, one.text, one.states]);
-  const left = said.filter((one) => !files[key(one)]), file = Object.values(files).at(-1);
-  return (said.length > 0 || file) && html`<section class="said"><h3>${t("day.said")}</h3>
-    ${left.length > 0 && html`<ul class="plain-list bounded" tabindex="0" aria-label=${t("day.said")}>${left.map((one) => html`<${Row} key=${key(one) + one.row} name=${name} one=${one} rows=${rows} saved=${(file) => tell((before) => ({ ...before, [key(one)]: file }))} />`)}</ul>`}
-    <p role="status">${file ? t("day.passage.saved", { file }) : ""}</p></section>`;
+  const [files, tell] = useState({}),
+    key = (one) => JSON.stringify([one.language, one.text, one.states]);
+  const left = said.filter((one) => !files[key(one)]),
+    file = Object.values(files).at(-1);
+  return (
+    (said.length > 0 || file) &&
+    html`<section class="said"><h3>${t("day.said")}</h3>
+    ${
+      left.length > 0 &&
+      html`<ul class="plain-list bounded" tabindex="0"
+      aria-label=${t("day.said")}>${left.map(
+        (one) => html`<${Row} key=${key(one) + one.row} name=${name} one=${one}
+      rows=${rows} saved=${(file) => tell((before) => ({ ...before, [key(one)]: file }))} />`,
+      )}</ul>`
+    }
+    <p role="status">${file ? t("day.passage.saved", { file }) : ""}</p></section>`
+  );
 }

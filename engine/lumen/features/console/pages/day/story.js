@@ -4,38 +4,53 @@ import { Quote, reasonOf } from "../quoted.js";
 import { Dialog, html, t, useState } from "../ui.js";
 
 async function keep(body) {
-  const answer = await fetch("/api/stories", { method: "POST", headers: { "Content-Type": "application/json" },
-    body: JSON.stringify(body), signal: AbortSignal.timeout(JOB) });
+  const answer = await fetch("/api/stories", {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify(body),
+    signal: AbortSignal.timeout(JOB),
+  });
   const said = await answer.json().catch(() => ({}));
   if (!answer.ok) throw new Error(said.reason ?? `${answer.status}`);
   return said;
 }
 
 function KeepDialog({ name, visit, onClose, kept }) {
-  const [other, write] = useState(""), [wrong, complain] = useState(""), [busy, wait] = useState(false);
+  const [other, write] = useState(""),
+    [wrong, complain] = useState(""),
+    [busy, wait] = useState(false);
   const save = async (submitted) => {
     submitted.preventDefault();
-    complain(""), wait(true);
+    (complain(""), wait(true));
     try {
       kept(await keep({ robot: name, position: visit.from, visitor: visit.visitor ?? "", name: other }));
       onClose();
-    } catch (error) { complain(reasonOf(error)); }
+    } catch (error) {
+      complain(reasonOf(error));
+    }
     wait(false);
   };
   const button = html`<button form="keep-story" class="strong" disabled=${busy}>${t("day.passage.save")}</button>`;
   return html`<${Dialog} title=${t("story.keep")} onClose=${onClose} actions=${button}>
     <p>${t("story.more")}</p><form id="keep-story" class="fields" onSubmit=${save}>
-      ${visit.visitor && html`<label>${t("story.name", { name: visit.visitor })}<input autofocus required maxlength="60"
-        autocomplete="off" value=${other} onInput=${(e) => write(e.target.value)} /></label>`}
+      ${
+        visit.visitor &&
+        html`<label>${t("story.name", { name: visit.visitor })}<input autofocus required maxlength="60"
+        autocomplete="off" value=${other} onInput=${(e) => write(e.target.value)} /></label>`
+      }
       <p role="status">${busy ? t("loading") : ""}</p>
       <p class="bad" role="alert"><${Quote} text=${wrong} /></p></form></${Dialog}>`;
 }
 
 /** A button for a visit that is over, and what became of it. */
 export function KeepStory({ name, visit }) {
-  const [open, setOpen] = useState(false), [found, tell] = useState(null);
+  const [open, setOpen] = useState(false),
+    [found, tell] = useState(null);
   return html`<div class="keep-story"><button type="button" onClick=${() => setOpen(true)}>${t("story.keep")}</button>
-    <p role="status">${found && html`${t("day.passage.saved", { file: found.file })}
-      ${found.remark && html` <span>${t("story.differs")} <${Quote} text=${found.remark} named=${false} /></span>`}`}</p>
+    <p role="status">${
+      found &&
+      html`${t("day.passage.saved", { file: found.file })}
+      ${found.remark && html` <span>${t("story.differs")} <${Quote} text=${found.remark} named=${false} /></span>`}`
+    }</p>
     ${open && html`<${KeepDialog} name=${name} visit=${visit} kept=${tell} onClose=${() => setOpen(false)} />`}</div>`;
 }

@@ -8,46 +8,76 @@ const LIMIT = 15000; // [ms]
 
 /** The question and the answer in one language; the visitor asked in `own`, so there is a question in that one. */
 function Pair({ code, own, texts, write, first = null }) {
-  const name = languageName(code), field = (what, ref) => html`<label class="grow">
-    <span>${t(`day.passage.${what}`)} (${name})</span><input ref=${ref} lang=${code} value=${texts[what] ?? ""} maxlength="1000"
+  const name = languageName(code),
+    field = (what, ref) => html`<label class="grow">
+    <span>${t(`day.passage.${what}`)} (${name})</span><input ref=${ref} lang=${code} value=${texts[what] ?? ""}
+      maxlength="1000"
       required=${own || Boolean(texts.question || texts.answer)} autocomplete="off"
       onInput=${(e) => write({ ...texts, [what]: e.target.value })} /></label>`;
   return html`${!own && field("question", null)}${field("answer", first)}`;
 }
 
 function Row({ name, one, saved }) {
-  const [open, setOpen] = useState(false), [busy, wait] = useState(false), [wrong, complain] = useState("");
-  const [texts, write] = useState({ [one.language]: { question: one.text } }), field = useRef(null);
+  const [open, setOpen] = useState(false),
+    [busy, wait] = useState(false),
+    [wrong, complain] = useState("");
+  const [texts, write] = useState({ [one.language]: { question: one.text } }),
+    field = useRef(null);
   useEffect(() => field.current?.focus(), [open]);
   const languages = [one.language, ...(robotOf(name)?.languages ?? []).filter((code) => code !== one.language)];
   const save = async (submitted) => {
     submitted.preventDefault();
-    wait(true), complain("");
+    (wait(true), complain(""));
     const { [one.language]: own, ...others } = texts;
     const also = Object.fromEntries(Object.entries(others).filter(([, pair]) => pair.question || pair.answer));
     try {
       const body = JSON.stringify({ robot: name, ...own, language: one.language, also });
-      const sent = await fetch("/api/passages", { method: "POST", headers: { "Content-Type": "application/json" },
-        body, signal: AbortSignal.timeout(LIMIT) });
+      const sent = await fetch("/api/passages", {
+        method: "POST",
+        headers: { "Content-Type": "application/json" },
+        body,
+        signal: AbortSignal.timeout(LIMIT),
+      });
       const said = await sent.json().catch(() => ({}));
       if (sent.ok) return saved(said.file);
       complain(said.reason ?? `${sent.status}`);
-    } catch (error) { complain(reasonOf(error)); }
+    } catch (error) {
+      complain(reasonOf(error));
+    }
     wait(false);
   };
-  return html`<li><span>${one.text}</span> <span class="quiet">${languageName(one.language)} · ${fixed(one.count)}×</span>
-    ${may("author") && html`<button type="button" aria-expanded=${open} onClick=${() => setOpen(!open)}>${t("day.passage")}</button>`}
-    ${open && html`<form class="cue" onSubmit=${save}>${languages.map((code, n) => html`
-        <${Pair} key=${code} code=${code} own=${n === 0} texts=${texts[code] ?? {}} write=${(pair) => write({ ...texts, [code]: pair })} first=${n === 0 ? field : null} />`)}
+  return html`<li><span>${one.text}</span> <span
+    class="quiet">${languageName(one.language)} · ${fixed(one.count)}×</span>
+    ${
+      may("author") &&
+      html`<button type="button" aria-expanded=${open}
+      onClick=${() => setOpen(!open)}>${t("day.passage")}</button>`
+    }
+    ${
+      open &&
+      html`<form class="cue" onSubmit=${save}>${languages.map(
+        (code, n) => html`
+        <${Pair} key=${code} code=${code} own=${n === 0} texts=${texts[code] ?? {}}
+          write=${(pair) => write({ ...texts, [code]: pair })} first=${n === 0 ? field : null} />`,
+      )}
       ${languages.length > 1 && html`<p class="quiet">${t("day.passage.more")}</p>`}
-      <button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`}
+      <button class="strong" disabled=${busy}>${t("day.passage.save")}</button></form>`
+    }
     <p class="bad" role="alert"><${Quote} text=${wrong} /></p></li>`;
 }
 
 export function Unanswered({ name, rows }) {
-  const [files, tell] = useState({}), key = (one) => `${one.language} ${one.text}`;
-  const left = rows.filter((one) => !files[key(one)]), file = Object.values(files).at(-1);
-  return html`<section class="unanswered"><h3>${t("day.unanswered")}</h3>${left.length === 0 ? html`<p class="quiet">${t("day.none.numbers")}</p>`
-    : html`<ul class="plain-list">${left.map((one) => html`<${Row} key=${key(one)} name=${name} one=${one} saved=${(file) => tell((before) => ({ ...before, [key(one)]: file }))} />`)}</ul>`}
+  const [files, tell] = useState({}),
+    key = (one) => `${one.language} ${one.text}`;
+  const left = rows.filter((one) => !files[key(one)]),
+    file = Object.values(files).at(-1);
+  return html`<section class="unanswered"><h3>${t("day.unanswered")}</h3>${
+    left.length === 0
+      ? html`<p class="quiet">${t("day.none.numbers")}</p>`
+      : html`<ul class="plain-list">${left.map(
+          (one) => html`<${Row} key=${key(one)} name=${name} one=${one}
+        saved=${(file) => tell((before) => ({ ...before, [key(one)]: file }))} />`,
+        )}</ul>`
+  }
     <p role="status">${file ? t("day.passage.saved", { file }) : ""}</p></section>`;
 }

@@ -8,15 +8,23 @@ import { Dialog, Part, clock, fixed, html, place, t, useEffect, useRedraw, useSt
 const LEVELS = { error: "bad", warning: "warn", info: "kind" };
 
 function Findings({ findings }) {
-  return html`<${Part} title=${t("files.findings")} kind="findings">${findings.length === 0 ? html`<p class="quiet">${t("files.findings.none")}</p>`
-    : html`<${InEnglish} /><ul class="plain-list">${findings.map((one) => html`<li class="finding">
-      <p><span class="badge" data-state=${LEVELS[one.severity] ?? "kind"}>${t(`severity.${one.severity}`)}</span> <span class="place">${place(one.file, one.line)}${one.column ? `:${one.column}` : ""}</span></p>
-      <p lang="en"><b>${one.message}</b></p>${one.hint && html`<p lang="en">${one.hint}</p>`}<p class="place">${one.code}</p></li>`)}</ul>`}</${Part}>`;
+  return html`<${Part} title=${t("files.findings")} kind="findings">${
+    findings.length === 0
+      ? html`<p class="quiet">${t("files.findings.none")}</p>`
+      : html`<${InEnglish} /><ul class="plain-list">${findings.map(
+          (one) => html`<li class="finding">
+      <p><span class="badge" data-state=${LEVELS[one.severity] ?? "kind"}>${t(`severity.${one.severity}`)}</span> <span
+        class="place">${place(one.file, one.line)}${one.column ? `:${one.column}` : ""}</span></p>
+      <p lang="en"><b>${one.message}</b></p>${one.hint && html`<p lang="en">${one.hint}</p>`}<p
+        class="place">${one.code}</p></li>`,
+        )}</ul>`
+  }</${Part}>`;
 }
 
 /** What two texts begin and end with alike, and what differs between. */
 function differing(was, now) {
-  let begin = 0, end = 0;
+  let begin = 0,
+    end = 0;
   while (begin < Math.min(was.length, now.length) && was[begin] === now[begin]) begin++;
   while (end < Math.min(was.length, now.length) - begin && was.at(-1 - end) === now.at(-1 - end)) end++;
   const cut = (text) => [text.slice(0, begin), text.slice(begin, text.length - end), text.slice(text.length - end)];
@@ -31,23 +39,45 @@ function Change({ change, detail }) {
     ${detail?.now && html`<p>+ ${now[0]}<ins>${now[1]}</ins>${now[2]}</p>`}</li>`;
 }
 
-/** The text for a report without changes: files with errors, or that nobody watches, were not compared with those that run. */
+/**
+ * The text for a report without changes: files with errors, or that nobody watches, were not compared with those that
+ * run.
+ */
 const noChanges = (report, mode) => (mode === "off" || report.verdict === "refused" ? "files.unread" : "files.nothing");
 
 function Changes({ report, mode }) {
   const changes = report.changes ?? [];
-  return html`<${Part} title=${t("files.diff")} kind="changes" aside=${report.risk && html`<span class="badge" data-state=${report.risk === "cosmetic" ? "open" : "warn"}>${t("files.risk", { risk: t(`risk.${report.risk}`) })}</span>`}>
-    ${changes.length ? html`<${InEnglish} /><ul class="diff" lang="en">${changes.map((change, n) => html`
-        <${Change} change=${change} detail=${report.details?.[n]} />`)}</ul>`
-      : html`<p class="quiet">${t(noChanges(report, mode))}</p>`}
-    ${report.restart?.length > 0 && html`<ul class="diff" lang="en">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`}</${Part}>`;
+  return html`<${Part} title=${t("files.diff")} kind="changes" aside=${
+    report.risk &&
+    html`<span class="badge"
+    data-state=${report.risk === "cosmetic" ? "open" : "warn"}
+    >${t("files.risk", { risk: t(`risk.${report.risk}`) })}</span>`
+  }>
+    ${
+      changes.length
+        ? html`<${InEnglish} /><ul class="diff" lang="en">${changes.map(
+            (change, n) => html`
+        <${Change} change=${change} detail=${report.details?.[n]} />`,
+          )}</ul>`
+        : html`<p class="quiet">${t(noChanges(report, mode))}</p>`
+    }
+    ${
+      report.restart?.length > 0 &&
+      html`<ul class="diff"
+      lang="en">${report.restart.map((line) => html`<li>${line}</li>`)}</ul>`
+    }</${Part}>`;
 }
 
 function Replay({ replay }) {
   if (!replay) return null;
-  return html`<${Part} title=${t("files.replay")} kind="replay"><p>${t("files.visits", { visits: fixed(replay.visits), steps: fixed(replay.steps), same: fixed(replay.same) })}</p>
-    <ul class="plain-list">${(replay.differ ?? []).map((one) => html`<li class="finding"><p><b>${t("day.visit", { n: one.visit })}</b> <span class="quiet">${clock(one.at)}</span></p>
-      <dl class="differ"><dt>${t("files.was")}</dt><dd><${Quote} text=${one.was} named=${false} /></dd><dt>${t("files.here")}</dt><dd><${Quote} text=${one.is} named=${false} /></dd></dl></li>`)}</ul></${Part}>`;
+  return html`<${Part} title=${t("files.replay")} kind="replay">
+    <p>${t("files.visits", { visits: fixed(replay.visits), steps: fixed(replay.steps), same: fixed(replay.same) })}</p>
+    <ul class="plain-list">${(replay.differ ?? []).map(
+      (one) => html`<li class="finding"><p><b>${t("day.visit", { n: one.visit })}</b> <span
+        class="quiet">${clock(one.at)}</span></p>
+      <dl class="differ"><dt>${t("files.was")}</dt><dd><${Quote} text=${one.was} named=${false} /></dd>
+        <dt>${t("files.here")}</dt><dd><${Quote} text=${one.is} named=${false} /></dd></dl></li>`,
+    )}</ul></${Part}>`;
 }
 
 const ASKED = new Set(["apply", "rollback"]); // what is asked once more before it is done
@@ -65,7 +95,10 @@ function Actions({ name, files }) {
   const waits = Boolean(files.staged?.length || files.waiting);
   const nothing = waits ? null : t(files.mode === "off" ? "files.grey.off" : "files.grey.nothing");
   const keeps = Boolean(files.trial) && !waits; // newer files that wait are what Apply means
-  const go = () => { command(name, asking); ask(null); };
+  const go = () => {
+    command(name, asking);
+    ask(null);
+  };
   const action = (verb, label, more = {}) => html`<${Action} name=${name} verb=${verb} label=${label} ask=${ask}
     ...${more} />`;
   return html`<ul class="file-actions">
@@ -73,31 +106,68 @@ function Actions({ name, files }) {
       ${action("apply", keeps ? "files.keep" : "files.apply", { strong: true, grey: keeps ? null : nothing })}
       ${action("try", "files.try", { grey: nothing })}${action("refuse", "files.refuse", { grey: nothing })}
       ${action("rollback", "files.back")}</ul>
-    ${asking && html`<${Dialog} title=${t(asking === "rollback" ? "files.back.ask" : keeps ? "files.keep.ask" : "files.apply.ask")}
+    ${
+      asking &&
+      html`<${Dialog}
+        title=${t(asking === "rollback" ? "files.back.ask" : keeps ? "files.keep.ask" : "files.apply.ask")}
       onClose=${() => ask(null)} actions=${html`<button type="button" class="strong" onClick=${go}>
         ${t(asking === "rollback" ? "files.back" : keeps ? "files.keep" : "files.apply")}</button>`}>
-      <p><${Quote} text=${files.waiting || files.reason || ""} /></p></${Dialog}>`}`;
+      <p><${Quote} text=${files.waiting || files.reason || ""} /></p></${Dialog}>`
+    }`;
 }
 
 export default function FilesPage({ name }) {
   useRedraw();
-  const [files, set] = useState(null), [failed, fail] = useState("");
+  const [files, set] = useState(null),
+    [failed, fail] = useState("");
   const known = JSON.stringify([robotOf(name)?.files, robotOf(name)?.last_reload]);
-  const look = () => get("/api/files", { robot: name }, JOB).then((found) => { set(found); fail(""); }, (error) => fail(reasonOf(error)));
-  useEffect(() => { look(); }, [known]);
+  const look = () =>
+    get("/api/files", { robot: name }, JOB).then(
+      (found) => {
+        set(found);
+        fail("");
+      },
+      (error) => fail(reasonOf(error)),
+    );
+  useEffect(() => {
+    look();
+  }, [known]);
   useEffect(() => listen((kind) => kind === "command" && look()), []);
   if (!files && !failed) return html`<p class="notice">${t("loading")}</p>`;
-  if (!files) return html`<h1>${t("page.files")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;
-  const report = files.last ?? files, verdict = files.last?.verdict ?? "applied"; // nothing was saved: what runs is active
+  if (!files)
+    return html`<h1>${t("page.files")}</h1><p class="notice bad" role="alert"><${Quote} text=${failed} /></p>`;
+  const report = files.last ?? files,
+    verdict = files.last?.verdict ?? "applied"; // nothing was saved: what runs is active
   const lines = [...(files.last?.lines ?? []), ...(files.last?.notes ?? [])];
   return html`<h1>${t("page.files")}</h1>
-    <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge" data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}>${t(`verdict.${verdict}`)}</span>
-        ${" "}${holds("author") && html`<${Quote} text=${files.last?.reason ?? ""} /> <${Quote} text=${report.hint ?? ""} />`} ${verdict === "refused" && t("files.goes.on")}</p>
-      ${holds("author") && lines.length > 0 && html`<${InEnglish} />
-        <ul class="lines" lang="en">${lines.map((line) => html`<li>${line}</li>`)}</ul>`}
-      ${may("author") ? html`<p class="quiet"><${Quote} text=${files.reason ?? ""} /></p>
-        <${Actions} name=${name} files=${files} />` : !holds("author") && html`<p class="quiet">${t("files.authors")}</p>`}</${Part}>
-    <div class="files">${holds("author") && html`
-      <${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} />`}
-      ${(holds("author") || !report.changes?.length) && html`<${Changes} report=${report} mode=${files.mode} />`}<${Replay} replay=${files.replay} /></div>`;
+    <${Part} title=${t("files.saved")} kind="saved"><p><span class="badge"
+      data-state=${verdict === "refused" ? "bad" : verdict === "waiting" || verdict === "staged" ? "warn" : "open"}
+      >${t(`verdict.${verdict}`)}</span>
+        ${" "}${
+          holds("author") &&
+          html`<${Quote} text=${files.last?.reason ?? ""} /> <${Quote}
+          text=${report.hint ?? ""} />`
+        } ${verdict === "refused" && t("files.goes.on")}</p>
+      ${
+        holds("author") &&
+        lines.length > 0 &&
+        html`<${InEnglish} />
+        <ul class="lines" lang="en">${lines.map((line) => html`<li>${line}</li>`)}</ul>`
+      }
+      ${
+        may("author")
+          ? html`<p class="quiet"><${Quote} text=${files.reason ?? ""} /></p>
+        <${Actions} name=${name} files=${files} />`
+          : !holds("author") && html`<p class="quiet">${t("files.authors")}</p>`
+      }</${Part}>
+    <div class="files">${
+      holds("author") &&
+      html`
+      <${Findings} findings=${report.diagnostics ?? files.diagnostics ?? []} />`
+    }
+      ${
+        (holds("author") || !report.changes?.length) &&
+        html`<${Changes} report=${report}
+        mode=${files.mode} />`
+      }<${Replay} replay=${files.replay} /></div>`;
 }

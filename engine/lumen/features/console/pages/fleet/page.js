@@ -9,16 +9,27 @@ const LEVELS = { proved: "open", away: "warn", unknown: "warn", refused: "bad", 
 const VERDICTS = { going: "open", finished: "open", aborted: "bad", paused: "warn", "a person decides": "warn" };
 
 async function decide(decision) {
-  const answer = await fetch("/api/fleet", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ decision }) });
+  const answer = await fetch("/api/fleet", {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ decision }),
+  });
   if (!answer.ok) throw new Error((await answer.json()).reason);
 }
 
 function Steps({ rollout }) {
   return html`<ol class="steps">${rollout.steps.map((step, i) => {
     const now = i === rollout.step && !step.done;
-    return html`<li aria-current=${now ? "step" : null}><b>${inPageLanguage(step.to)}</b> ${t("fleet.most", { count: step.most })}
-      ${" "}<span class="badge" data-state=${step.done ? "open" : now ? VERDICTS[rollout.state] : "kind"}>${t(step.done ? "fleet.good" : now ? `fleet.${rollout.state}` : "fleet.later")}</span>
-      ${now && html` <span class="quiet">${t("fleet.watched", { watched: span(rollout.watched), pause: span(rollout.pause) })}</span>`}</li>`;
+    return html`<li aria-current=${now ? "step" : null}>
+      <b>${inPageLanguage(step.to)}</b> ${t("fleet.most", { count: step.most })}
+      ${" "}<span class="badge"
+        data-state=${step.done ? "open" : now ? VERDICTS[rollout.state] : "kind"}
+        >${t(step.done ? "fleet.good" : now ? `fleet.${rollout.state}` : "fleet.later")}</span>
+      ${
+        now &&
+        html` <span
+        class="quiet">${t("fleet.watched", { watched: span(rollout.watched), pause: span(rollout.pause) })}</span>`
+      }</li>`;
   })}</ol>`;
 }
 
@@ -28,39 +39,75 @@ function Actions({ rollout, act }) {
   return html`<div class="actions">
     <button type="button" onClick=${() => act(waits ? "go" : "pause")}>${t(waits ? "fleet.go" : "fleet.pause")}</button>
     <button type="button" class="strong" onClick=${() => ask(true)}>${t("fleet.abort")}</button></div>
-    ${asking && html`<${Dialog} title=${t("fleet.abort.ask")} onClose=${() => ask(false)}
-      actions=${html`<button type="button" class="strong" onClick=${() => { ask(false); act("abort"); }}>${t("fleet.abort")}</button>`}>
-      <p>${t("fleet.abort.more", { count: rollout.assigned.length })}</p></${Dialog}>`}`;
+    ${
+      asking &&
+      html`<${Dialog} title=${t("fleet.abort.ask")} onClose=${() => ask(false)}
+      actions=${html`<button type="button" class="strong" onClick=${() => {
+        ask(false);
+        act("abort");
+      }}>${t("fleet.abort")}</button>`}>
+      <p>${t("fleet.abort.more", { count: rollout.assigned.length })}</p></${Dialog}>`
+    }`;
 }
 
 function Rollout({ rollout, act }) {
-  if (!rollout) return html`<${Part} title=${t("fleet.rollout")} kind="rollout"><p class="quiet">${t("fleet.none")}</p></${Part}>`;
+  if (!rollout)
+    return html`<${Part} title=${t("fleet.rollout")} kind="rollout"><p class="quiet">${t("fleet.none")}</p></${Part}>`;
   const under = ["going", "paused", "a person decides"].includes(rollout.state);
-  return html`<${Part} title=${t("fleet.rollout")} kind="rollout" aside=${html`<span class="badge" data-state=${VERDICTS[rollout.state]}>${t(`fleet.${rollout.state}`)}</span>`}>
-    <p>${t("fleet.bundle")} <span class="place">${rollout.bundle.slice(0, 12)}</span> <${Quote} text=${rollout.reason} /></p>
+  return html`<${Part} title=${t("fleet.rollout")} kind="rollout" aside=${html`<span class="badge"
+    data-state=${VERDICTS[rollout.state]}>${t(`fleet.${rollout.state}`)}</span>`}>
+    <p>${t("fleet.bundle")} <span class="place">${rollout.bundle.slice(0, 12)}</span> <${Quote}
+      text=${rollout.reason} /></p>
     <${Steps} rollout=${rollout} />
     ${rollout["abort-if"] && html`<p class="quiet">${t("fleet.abort.if")} <code>${rollout["abort-if"]}</code></p>`}
     ${under && may("operator") && html`<${Actions} rollout=${rollout} act=${act} />`}</${Part}>`;
 }
 
 function House({ house, robots }) {
-  return html`<${Part} title=${house.name} kind="house" aside=${html`<span class="quiet">${t("fleet.here", { here: house.here, robots: house.robots })}</span>`}>
-    <ul class="plain-list">${robots.map((robot) => html`<li key=${robot.name}><b>${robot.name}</b>
+  return html`<${Part} title=${house.name} kind="house" aside=${html`<span
+    class="quiet">${t("fleet.here", { here: house.here, robots: house.robots })}</span>`}>
+    <ul class="plain-list">${robots.map(
+      (robot) => html`<li key=${robot.name}><b>${robot.name}</b>
       ${" "}<span class="badge" data-state=${LEVELS[robot.state] ?? "kind"}>${t(`fleet.${robot.state}`)}</span>
-      ${" "}<span class="place">${robot.bundle.slice(0, 12)}</span>${robot.pinned && html` <span class="badge" data-state="kind">${t("fleet.pinned")}</span>`}
-      ${robot.trouble && html`<p><${Quote} text=${robot.trouble} /></p>`}</li>`)}</ul></${Part}>`;
+      ${" "}<span class="place">${robot.bundle.slice(0, 12)}</span>${
+        robot.pinned &&
+        html` <span class="badge"
+        data-state="kind">${t("fleet.pinned")}</span>`
+      }
+      ${robot.trouble && html`<p><${Quote} text=${robot.trouble} /></p>`}</li>`,
+    )}</ul></${Part}>`;
 }
 
 export default function FleetPage() {
-  const [fleet, set] = useState(null), [failed, fail] = useState("");
-  const look = () => get("/api/fleet").then((found) => { set(found); fail(""); }, (error) => fail(reasonOf(error)));
-  useEffect(() => { look(); const timer = setInterval(look, PERIOD); return () => clearInterval(timer); }, []);
+  const [fleet, set] = useState(null),
+    [failed, fail] = useState("");
+  const look = () =>
+    get("/api/fleet").then(
+      (found) => {
+        set(found);
+        fail("");
+      },
+      (error) => fail(reasonOf(error)),
+    );
+  useEffect(() => {
+    look();
+    const timer = setInterval(look, PERIOD);
+    return () => clearInterval(timer);
+  }, []);
   const act = (decision) => decide(decision).then(look, (error) => fail(reasonOf(error)));
+  const here = (fleet?.robots ?? []).filter((one) => one.here).length;
   const trouble = failed || fleet?.trouble || fleet?.centre?.overruled;
   return html`<h1>${t("page.fleet")}</h1>
     ${trouble && html`<p class="notice bad" role="alert"><${Quote} text=${trouble} /></p>`}
-    ${!fleet ? !failed && html`<p class="notice">${t("loading")}</p>` : html`
-      <p class="quiet">${t("fleet.here", { here: fixed(fleet.robots.filter((one) => one.here).length), robots: fixed(fleet.robots.length) })}</p>
+    ${
+      !fleet
+        ? !failed && html`<p class="notice">${t("loading")}</p>`
+        : html`
+      <p class="quiet">${t("fleet.here", { here: fixed(here), robots: fixed(fleet.robots.length) })}</p>
       <${Rollout} rollout=${fleet.rollout} act=${act} />
-      <div class="wall">${fleet.houses.map((house) => html`<${House} key=${house.name} house=${house} robots=${fleet.robots.filter((one) => one.house === house.name)} />`)}</div>`}`;
+      <div class="wall">${fleet.houses.map(
+        (house) => html`<${House} key=${house.name} house=${house}
+        robots=${fleet.robots.filter((one) => one.house === house.name)} />`,
+      )}</div>`
+    }`;
 }

@@ -1,4 +1,5 @@
-// Transitions that wait for a person's GO, with the time after which they go or don't; and how far the robot goes alone.
+// Transitions that wait for a person's GO, with the time after which they go or don't; and how far the robot goes
+// alone.
 import { command } from "../commands.js";
 import { Place, Values } from "../places.js";
 import { inPageLanguage } from "../quoted.js";
@@ -14,21 +15,43 @@ function named({ verb, ...fields }) {
 
 /** What a person decides on: the visitor's words or other data, what the robot will do, and what happens by itself. */
 function Matter({ robot, one }) {
-  const { result, ...data } = one.data ?? {}, would = one.would ?? [];
-  return html`${typeof result === "string" && html`<p class="bubble visitor-said">
-      <span class="speaker">${t("visitor.said")}</span> <span>“${result}”</span></p>`}
+  const { result, ...data } = one.data ?? {},
+    would = one.would ?? [];
+  return html`${
+    typeof result === "string" &&
+    html`<p class="bubble visitor-said">
+      <span class="speaker">${t("visitor.said")}</span> <span>“${result}”</span></p>`
+  }
     <${Values} values=${data} />
     <p>${t(would.length ? "approve.would" : "approve.would.nothing")}</p>
-    ${would.length > 0 && html`<ul class="would">${would.map((deed) => html`<li>
-      ${deed.verb === "say" ? html`${t("approve.says")} <b lang=${deed.language}>“${deed.text}”</b>`
-        : named(deed)}</li>`)}</ul>`}
-    <p class="countdown">${one.until ? html`${t(one.else === "go" ? "approve.goes" : "approve.stays")}
-      <strong><${Until} at=${one.until} now=${robot.now} /></strong>` : t("approve.waits")}</p>`;
+    ${
+      would.length > 0 &&
+      html`<ul class="would">${would.map(
+        (deed) => html`<li>
+      ${
+        deed.verb === "say" ? html`${t("approve.says")} <b lang=${deed.language}>“${deed.text}”</b>` : named(deed)
+      }</li>`,
+      )}</ul>`
+    }
+    <p class="countdown">${
+      one.until
+        ? html`${t(one.else === "go" ? "approve.goes" : "approve.stays")}
+      <strong><${Until} at=${one.until} now=${robot.now} /></strong>`
+        : t("approve.waits")
+    }</p>`;
 }
 
 function Waiting({ robot, one }) {
-  const answer = (go) => command(robot.robot, "approve", { approval: one.id, go }, `${inPageLanguage(one.event)} → ${one.targets.join(", ")}: ${t(go ? "approve.go" : "approve.stay")}`);
-  return html`<li class="approval"><p><b>${inPageLanguage(one.event)}</b>: ${one.source} → ${one.targets.join(", ")} <${Place} file=${one.file} line=${one.line} /></p>
+  const answer = (go) =>
+    command(
+      robot.robot,
+      "approve",
+      { approval: one.id, go },
+      `${inPageLanguage(one.event)} → ${one.targets.join(", ")}: ${t(go ? "approve.go" : "approve.stay")}`,
+    );
+  return html`<li class="approval"><p>
+    <b>${inPageLanguage(one.event)}</b>: ${one.source} → ${one.targets.join(", ")} <${Place} file=${one.file}
+    line=${one.line} /></p>
     <${Matter} robot=${robot} one=${one} />
     <${Usable} when=${isHere(robot)}><div class="actions">
       <button type="button" class="go" onClick=${() => answer(true)}>${t("approve.go")}</button>
@@ -37,23 +60,37 @@ function Waiting({ robot, one }) {
 
 export function Approvals({ robot }) {
   const waiting = robot.waiting ?? [];
-  return html`<div role="status" class="hidden">${waiting.length > 0 && t("approvals.count", { count: waiting.length })}</div>
-    ${waiting.length > 0 && html`<${Part} title=${t("approvals")} kind="approvals">
-      <ul class="plain-list">${waiting.map((one) => html`<${Waiting} key=${one.id} robot=${robot} one=${one} />`)}</ul></${Part}>`}`;
+  return html`<div role="status"
+    class="hidden">${waiting.length > 0 && t("approvals.count", { count: waiting.length })}</div>
+    ${
+      waiting.length > 0 &&
+      html`<${Part} title=${t("approvals")} kind="approvals">
+      <ul class="plain-list">${waiting.map((one) => html`<${Waiting} key=${one.id} robot=${robot} one=${one} />`)}</ul>
+        </${Part}>`
+    }`;
 }
 
 /** Whether transitions that are marked wait for a person. */
 export function Autonomy({ robot }) {
   if (!robot.autonomy || !may("operator")) return null;
-  const set = (level) => level !== robot.autonomy && command(robot.robot, "autonomy", { level }, t(`autonomy.${level}`));
-  return html`<fieldset class="choice"><legend>${t("autonomy")}</legend>${["ask", "alone"].map((level) => html`<label>
-    <input type="radio" name="autonomy-${robot.robot}" value=${level} checked=${robot.autonomy === level} onChange=${() => set(level)} /><span>${t(`autonomy.${level}`)}</span></label>`)}</fieldset>`;
+  const set = (level) =>
+    level !== robot.autonomy && command(robot.robot, "autonomy", { level }, t(`autonomy.${level}`));
+  return html`<fieldset class="choice"><legend>${t("autonomy")}</legend>${["ask", "alone"].map(
+    (level) => html`<label>
+    <input type="radio" name="autonomy-${robot.robot}" value=${level} checked=${robot.autonomy === level}
+      onChange=${() => set(level)} /><span>${t(`autonomy.${level}`)}</span></label>`,
+  )}</fieldset>`;
 }
 
 /** Whether a language model may answer visitors. */
 export function Model({ robot }) {
   if (!robot.model || !may("operator")) return null;
-  const set = (on) => on !== (robot.model === "on") && command(robot.robot, "model", { on }, `${t("model")} ${t(on ? "model.on" : "model.off")}`);
-  return html`<fieldset class="choice"><legend>${t("model")}</legend>${[true, false].map((on) => html`<label>
-    <input type="radio" name="model-${robot.robot}" value=${on} checked=${(robot.model === "on") === on} onChange=${() => set(on)} /><span>${t(on ? "model.on" : "model.off")}</span></label>`)}</fieldset>`;
+  const set = (on) =>
+    on !== (robot.model === "on") &&
+    command(robot.robot, "model", { on }, `${t("model")} ${t(on ? "model.on" : "model.off")}`);
+  return html`<fieldset class="choice"><legend>${t("model")}</legend>${[true, false].map(
+    (on) => html`<label>
+    <input type="radio" name="model-${robot.robot}" value=${on} checked=${(robot.model === "on") === on}
+      onChange=${() => set(on)} /><span>${t(on ? "model.on" : "model.off")}</span></label>`,
+  )}</fieldset>`;
 }

@@ -9,21 +9,33 @@ import { HOT, LOW, batteryOf, greatest, processesOf } from "./troubles.js";
 const SLOW = 0.95; // of real time
 
 function Fact({ name, value, level = 0, state = "well", words = "", full = null }) {
-  return html`<div class="fact" data-state=${state}><dt>${name}</dt><dd><b>${value}</b>${words && html` <span class="badge" data-state=${state === "well" ? "open" : "bad"}>${words}</span>`}
+  return html`<div class="fact" data-state=${state}><dt>${name}</dt><dd>
+    <b>${value}</b>${
+      words &&
+      html` <span class="badge"
+    data-state=${state === "well" ? "open" : "bad"}>${words}</span>`
+    }
     ${full !== null && html`<meter min="0" max="1" value=${level} aria-label=${name} ></meter>`}</dd></div>`;
 }
 
 function Senses({ robot }) {
-  const { senses = {}, realtime } = robot, hot = greatest(senses.temperatures);
-  const battery = batteryOf(robot), sonar = senses.sonar ?? {};
+  const { senses = {}, realtime } = robot,
+    hot = greatest(senses.temperatures);
+  const battery = batteryOf(robot),
+    sonar = senses.sonar ?? {};
   const heat = Array.isArray(hot) ? hot[1] : hot;
-  const metres = (value) => value == null ? t("unknown") : `${fixed(value, 2)} m`;
+  const metres = (value) => (value == null ? t("unknown") : `${fixed(value, 2)} m`);
+  const unknown = sonar.leftSensor == null && sonar.rightSensor == null;
+  const sides = [`${t("left")} ${metres(sonar.leftSensor)}`, `${t("right")} ${metres(sonar.rightSensor)}`];
   return html`<dl class="body-facts">
-    <${Fact} name=${t("battery")} value=${battery === null ? t("unknown") : percent(battery)} full=${battery === null ? null : true}
-      level=${(battery ?? 0) / 100} state=${battery !== null && battery < LOW ? "bad" : "well"} words=${battery !== null && battery < LOW ? t("battery.low") : ""} />
-    <${Fact} name=${t("heat")} value=${heat === null ? t("unknown") : `${fixed(heat)} °C${Array.isArray(hot) ? ` ${hot[0]}` : ""}`}
+    <${Fact} name=${t("battery")} value=${battery === null ? t("unknown") : percent(battery)}
+      full=${battery === null ? null : true}
+      level=${(battery ?? 0) / 100} state=${battery !== null && battery < LOW ? "bad" : "well"}
+        words=${battery !== null && battery < LOW ? t("battery.low") : ""} />
+    <${Fact} name=${t("heat")}
+      value=${heat === null ? t("unknown") : `${fixed(heat)} °C${Array.isArray(hot) ? ` ${hot[0]}` : ""}`}
       state=${heat > HOT ? "bad" : "well"} words=${heat > HOT ? t("heat.high") : ""} />
-    <${Fact} name=${t("sonar")} value=${sonar.leftSensor == null && sonar.rightSensor == null ? t("unknown") : `${t("left")} ${metres(sonar.leftSensor)} · ${t("right")} ${metres(sonar.rightSensor)}`} />
+    <${Fact} name=${t("sonar")} value=${unknown ? t("unknown") : sides.join(" · ")} />
     ${robot.ears && html`<${Fact} name=${t("ears")} value=${t(`ears.${robot.ears.because}`)} />`}
     <${Fact} name=${t("realtime")} value=${realtime == null ? t("unknown") : percent(realtime * 100)}
       state=${realtime < SLOW ? "bad" : "well"} words=${realtime < SLOW ? t("realtime.slow") : ""} />
@@ -32,19 +44,43 @@ function Senses({ robot }) {
 
 function Processes({ robot }) {
   const processes = processesOf(robot);
-  return html`<h3>${t("processes")}</h3>${processes.length ? html`<ul class="processes">${processes.map((one) => {
-    const gone = one.state !== "here";
-    return html`<li key=${one.parts.join()} data-state=${gone ? "bad" : "well"}><span>${one.parts.join(", ")}</span>
-      ${robot.connected === false ? html`<span class="badge">${t("unknown")}</span>` : html`<span class="badge" data-state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</span>`}
-      <span class="quiet">${one.word ? `${inPageLanguage(one.word)} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard} now=${consoleNow} /></span></li>`;
-  })}</ul>` : html`<p class="quiet">${t("processes.none")}</p>`}`;
+  return html`<h3>${t("processes")}</h3>${
+    processes.length
+      ? html`<ul class="processes">${processes.map((one) => {
+          const gone = one.state !== "here";
+          return html`<li key=${one.parts.join()} data-state=${gone ? "bad" : "well"}>
+            <span>${one.parts.join(", ")}</span>
+      ${
+        robot.connected === false
+          ? html`<span class="badge">${t("unknown")}</span>`
+          : html`<span class="badge"
+        data-state=${gone ? "bad" : "open"}>${t(`process.${one.state}`)}</span>`
+      }
+      <span class="quiet">${one.word ? `${inPageLanguage(one.word)} · ` : ""}${t("heard.ago")} <${Since} at=${one.heard}
+        now=${consoleNow} /></span></li>`;
+        })}</ul>`
+      : html`<p class="quiet">${t("processes.none")}</p>`
+  }`;
 }
 
 export function Body({ robot }) {
   const reload = robot.last_reload;
   return html`<${Part} title=${t("body")} kind="body">
-    ${!isHere(robot) && html`<p><span class="badge" data-state="warn">${t("last.known")}</span></p>`}<${Senses} robot=${robot} /><${Processes} robot=${robot} />
-    ${reload && html`<h3>${t("last.reload")}</h3><p><span class="badge" data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>${" "}
-      <span class="quiet">${clock(reload.at)}</span> ${holds("author") && html`<${Quote} text=${reload.text} />`} ${reload.verdict === "refused" && t("files.goes.on")} <a href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`}
+    ${
+      !isHere(robot) &&
+      html`<p><span class="badge" data-state="warn">${t("last.known")}</span>
+      </p>`
+    }<${Senses} robot=${robot} /><${Processes} robot=${robot} />
+    ${
+      reload &&
+      html`<h3>${t("last.reload")}</h3><p><span class="badge"
+        data-state=${reload.verdict === "refused" ? "bad" : "open"}>${t(`verdict.${reload.verdict}`)}</span>${" "}
+      <span class="quiet">${clock(reload.at)}</span> ${
+        holds("author") &&
+        html`<${Quote}
+        text=${reload.text} />`
+      } ${reload.verdict === "refused" && t("files.goes.on")} <a
+        href="/robot/${encodeURIComponent(robot.robot)}/files">${t("page.files")}</a></p>`
+    }
     <${Usable} when=${isHere(robot)}><${Autonomy} robot=${robot} /><${Model} robot=${robot} /></${Usable}></${Part}>`;
 }

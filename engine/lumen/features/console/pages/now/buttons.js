@@ -8,23 +8,33 @@ import { Dialog, Part, html, inLanguage, t, useEffect, useRef, useState } from "
 const HELD = 1000; // [ms]
 
 /** A button as it can be used now: none while the robot does not answer. */
-const usable = (robot, button) => (isHere(robot) ? button
-  : { ...button, enabled: false, reason: t("robot.silent", { name: robot.robot }) });
+const usable = (robot, button) =>
+  isHere(robot) ? button : { ...button, enabled: false, reason: t("robot.silent", { name: robot.robot }) };
 
 function Button({ robot, button: declared }) {
   const button = usable(robot, declared);
-  const [held, hold] = useState(false), [asking, ask] = useState(false), timer = useRef(0);
+  const [held, hold] = useState(false),
+    [asking, ask] = useState(false),
+    timer = useRef(0);
   const label = inLanguage(button.label);
   const press = () => command(robot.robot, "event", { event: button.event, data: button.data ?? null }, label);
   const begin = (event) => {
     if (button.confirm !== "hold" || !button.enabled || timer.current) return;
     if (event.type === "keydown" && (event.repeat || !["Enter", " "].includes(event.key))) return;
     if (event.type === "keydown") event.preventDefault();
-    if (event.pointerId !== undefined) event.currentTarget.setPointerCapture(event.pointerId); // held, wherever it moves
+    // It is held, wherever it moves.
+    if (event.pointerId !== undefined) event.currentTarget.setPointerCapture(event.pointerId);
     hold(true);
-    timer.current = setTimeout(() => { end(); press(); }, HELD);
+    timer.current = setTimeout(() => {
+      end();
+      press();
+    }, HELD);
   };
-  const end = () => { clearTimeout(timer.current); timer.current = 0; hold(false); };
+  const end = () => {
+    clearTimeout(timer.current);
+    timer.current = 0;
+    hold(false);
+  };
   const click = () => {
     if (!button.enabled || button.confirm === "hold") return;
     button.confirm === "ask" ? ask(true) : press();
@@ -37,29 +47,64 @@ function Button({ robot, button: declared }) {
       if (event.target.closest("input, textarea, select, dialog")) return;
       event.preventDefault();
       if (!button.enabled) return;
-      if (button.confirm === "hold") { hold(true); timer.current ||= setTimeout(() => { end(); press(); }, HELD); } else click();
+      if (button.confirm === "hold") {
+        hold(true);
+        timer.current ||= setTimeout(() => {
+          end();
+          press();
+        }, HELD);
+      } else click();
     };
-    const released = (event) => { if (event.key === button.key) end(); };
+    const released = (event) => {
+      if (event.key === button.key) end();
+    };
     addEventListener("keydown", typed);
     addEventListener("keyup", released);
-    return () => { removeEventListener("keydown", typed); removeEventListener("keyup", released); };
+    return () => {
+      removeEventListener("keydown", typed);
+      removeEventListener("keyup", released);
+    };
   });
-  const describing = !button.enabled ? inPageLanguage(button.reason) : button.confirm === "hold" ? t("button.hold") : "";
-  return html`<li><button type="button" class="declared ${held ? "held" : ""}" aria-disabled=${button.enabled ? null : "true"}
+  const describing = !button.enabled
+    ? inPageLanguage(button.reason)
+    : button.confirm === "hold"
+      ? t("button.hold")
+      : "";
+  return html`<li><button type="button" class="declared ${held ? "held" : ""}"
+    aria-disabled=${button.enabled ? null : "true"}
       aria-description=${describing} aria-keyshortcuts=${button.key || null} onClick=${click}
-      onPointerDown=${begin} onPointerUp=${end} onPointerLeave=${end} onPointerCancel=${end} onKeyDown=${begin} onKeyUp=${end} onBlur=${end}
+      onPointerDown=${begin} onPointerUp=${end} onPointerLeave=${end} onPointerCancel=${end} onKeyDown=${begin}
+        onKeyUp=${end} onBlur=${end}
       onContextMenu=${(event) => event.preventDefault()}>
       <span>${label}</span>${button.key && html`<kbd aria-hidden="true">${button.key}</kbd>`}
-      ${button.confirm === "hold" && html`<svg class="ring" viewBox="0 0 36 36" aria-hidden="true"><circle class="track" cx="18" cy="18" r="15" /><circle class="fill" cx="18" cy="18" r="15" pathLength="100" /></svg>`}
+      ${
+        button.confirm === "hold" &&
+        html`<svg class="ring" viewBox="0 0 36 36" aria-hidden="true">
+        <circle class="track" cx="18" cy="18" r="15" /><circle class="fill" cx="18" cy="18" r="15" pathLength="100" />
+        </svg>`
+      }
     </button>${describing && html`<p class="reason" aria-hidden="true">${describing}</p>`}
-    ${asking && html`<${Dialog} title=${t("button.ask", { label })} onClose=${() => ask(false)}
-      actions=${html`<button type="button" class="strong" onClick=${() => { ask(false); press(); }}>${label}</button>`}>
-      ${may("author") && html`<p>${t("button.event", { event: button.event })}</p>`}</${Dialog}>`}</li>`;
+    ${
+      asking &&
+      html`<${Dialog} title=${t("button.ask", { label })} onClose=${() => ask(false)}
+      actions=${html`<button type="button" class="strong" onClick=${() => {
+        ask(false);
+        press();
+      }}>${label}</button>`}>
+      ${may("author") && html`<p>${t("button.event", { event: button.event })}</p>`}</${Dialog}>`
+    }</li>`;
 }
 
 export function Buttons({ robot }) {
   const buttons = robot.buttons ?? [];
   return html`<${Part} title=${t("buttons")} kind="buttons">
-    ${buttons.length ? html`<ul class="declared-list">${buttons.map((button) => html`<${Button} key=${`${button.state} ${button.event} ${JSON.stringify(button.label)}`} robot=${robot} button=${button} />`)}</ul>`
-      : html`<p class="quiet">${t("buttons.none")}</p>`}</${Part}>`;
+    ${
+      buttons.length
+        ? html`<ul class="declared-list">${buttons.map(
+            (button) => html`<${Button}
+          key=${`${button.state} ${button.event} ${JSON.stringify(button.label)}`} robot=${robot}
+          button=${button} />`,
+          )}</ul>`
+        : html`<p class="quiet">${t("buttons.none")}</p>`
+    }</${Part}>`;
 }

@@ -9,22 +9,27 @@ const MARGIN = 16; // [px]
 const paths = (states) => states.flatMap((one) => [one.path, ...paths(one.children ?? [])]);
 
 /** The names of the states that this robot entered, as far as the page has seen it. */
-const entered = (robot) => new Set(live.entries.filter((one) => one.robot === robot.robot)
-  .flatMap((one) => one.entered ?? []));
+const entered = (robot) =>
+  new Set(live.entries.filter((one) => one.robot === robot.robot).flatMap((one) => one.entered ?? []));
 
 function Box({ box, active, been }) {
-  const [x, y] = box.text, radius = box.final ? 4 : 9;
+  const [x, y] = box.text,
+    radius = box.final ? 4 : 9;
   return html`<g class="chart-state" data-path=${box.path} data-leaf=${box.leaf || null} data-final=${box.final || null}
       data-active=${active || null} data-been=${been || null} data-depth=${Math.min(box.depth, 3)}>
     <rect x=${box.x} y=${box.y} width=${box.width} height=${box.height} rx=${box.leaf ? radius : 12} />
-    ${box.first && html`<circle cx=${box.x + 9} cy=${box.y - 11} r="4.5" />
-      <path d="M${box.x + 9} ${box.y - 7} V${box.y - 0.5}" />`}
+    ${
+      box.first &&
+      html`<circle cx=${box.x + 9} cy=${box.y - 11} r="4.5" />
+      <path d="M${box.x + 9} ${box.y - 7} V${box.y - 0.5}" />`
+    }
     <text class="chart-title" x=${x} y=${y}>${box.title}</text>
     ${box.rows.map((row) => html`<text x=${x} y=${row.y}>${row.text}</text>`)}</g>`;
 }
 
 function Drawing({ chart, robot }) {
-  const active = new Set(paths(robot.states ?? [])), been = entered(robot);
+  const active = new Set(paths(robot.states ?? [])),
+    been = entered(robot);
   const named = chart.boxes.filter((box) => box.leaf && active.has(box.path)).map((box) => box.title);
   const view = [-MARGIN, -MARGIN, chart.width + 2 * MARGIN, chart.height + 2 * MARGIN].join(" ");
   const box = (one) => html`<${Box} key=${one.path} box=${one} active=${active.has(one.path)}
@@ -41,12 +46,22 @@ function Drawing({ chart, robot }) {
 
 /** Asked for when it is opened, and again when other files run. */
 function Chart({ robot }) {
-  const [chart, set] = useState(null), [wrong, complain] = useState("");
+  const [chart, set] = useState(null),
+    [wrong, complain] = useState("");
   useEffect(() => {
     let gone = false;
-    get("/api/chart", { robot: robot.robot }, JOB)
-      .then((found) => { if (!gone) { set(found); complain(""); } }, (error) => gone || complain(reasonOf(error)));
-    return () => { gone = true; };
+    get("/api/chart", { robot: robot.robot }, JOB).then(
+      (found) => {
+        if (!gone) {
+          set(found);
+          complain("");
+        }
+      },
+      (error) => gone || complain(reasonOf(error)),
+    );
+    return () => {
+      gone = true;
+    };
   }, [robot.bundle]);
   return html`${!chart && !wrong && html`<p class="quiet">${t("loading")}</p>`}
     <p class="bad" role="alert"><${Quote} text=${wrong} /></p>

@@ -17,8 +17,12 @@ function plainly(text) {
 }
 
 /** What of a chain a person is shown: an author all of it, others no messages of the bus, guards or data. */
-const shownOf = (chain) => (may("author") ? chain : chain.filter((link) => link.kind !== "message")
-  .map((link) => ({ ...link, text: plainly(link.text), values: null })));
+const shownOf = (chain) =>
+  may("author")
+    ? chain
+    : chain
+        .filter((link) => link.kind !== "message")
+        .map((link) => ({ ...link, text: plainly(link.text), values: null }));
 
 function Link({ link }) {
   return html`<li class="link"><p><span class="badge" data-state="kind">${t(`kind.${link.kind}`)}</span>
@@ -29,15 +33,30 @@ function Link({ link }) {
 
 /** Why something was done: asked of the robot when it opens. */
 export function Why({ robot, what, at, text, onClose }) {
-  const [found, set] = useState(null), [failed, fail] = useState("");
+  const [found, set] = useState(null),
+    [failed, fail] = useState("");
   const then = new Date(Date.parse(at) + 1).toISOString(); // what happened within that millisecond is meant, too
-  useEffect(() => { get("/api/why", { robot, what, at: then }, JOB).then((one) => (one.chain ? set(one) : fail(one.reason ?? en["why.none"])), (error) => fail(reasonOf(error))); }, []);
+  useEffect(() => {
+    get("/api/why", { robot, what, at: then }, JOB).then(
+      (one) => (one.chain ? set(one) : fail(one.reason ?? en["why.none"])),
+      (error) => fail(reasonOf(error)),
+    );
+  }, []);
   const chain = found ? shownOf(found.chain) : [];
   return html`<${Dialog} title=${t("why.of", { text })} onClose=${onClose}>
-    ${failed && html`<p class="bad" role="alert"><${Quote} text=${failed} /></p>`}${!found && !failed && html`<p>${t("loading")}</p>`}
-    ${found && html`${chain.some((link) => translated(link.text) === null) && html`<${InEnglish} />`}
-      <ol class="chain" tabindex="0" aria-label=${t("why.of", { text })}>${chain.map((link, n) => html`
-        <${Link} key=${n} link=${link} />`)}</ol>`}</${Dialog}>`;
+    ${
+      failed &&
+      html`<p class="bad" role="alert"><${Quote} text=${failed} />
+      </p>`
+    }${!found && !failed && html`<p>${t("loading")}</p>`}
+    ${
+      found &&
+      html`${chain.some((link) => translated(link.text) === null) && html`<${InEnglish} />`}
+      <ol class="chain" tabindex="0" aria-label=${t("why.of", { text })}>${chain.map(
+        (link, n) => html`
+        <${Link} key=${n} link=${link} />`,
+      )}</ol>`
+    }</${Dialog}>`;
 }
 
 /** What `lumen why` is asked about for an entry: what it said, else what it did, else the state it entered. */
@@ -47,15 +66,32 @@ export function question(entry) {
 }
 
 export function Entry({ entry, onOpen, current = false }) {
-  return html`<li class="entry" data-kind=${entry.kind} data-trouble=${isTrouble(entry) || null}><button type="button" aria-current=${current ? "true" : null} onClick=${() => onOpen(entry)}>
-    <span class="entry-when"><time datetime=${entry.at_time}>${clock(entry.at_time)}</time> <span class="entry-kind">${t(`kind.${entry.kind}`)}</span></span><span class="entry-text">${lineOf(entry)}</span></button></li>`;
+  return html`<li class="entry" data-kind=${entry.kind} data-trouble=${isTrouble(entry) || null}>
+    <button type="button" aria-current=${current ? "true" : null} onClick=${() => onOpen(entry)}>
+    <span class="entry-when"><time datetime=${entry.at_time}>${clock(entry.at_time)}</time> <span
+      class="entry-kind">${t(`kind.${entry.kind}`)}</span></span><span class="entry-text">${lineOf(entry)}</span>
+      </button></li>`;
 }
 
 export function Entries({ robot }) {
   const [opened, open] = useState(null);
-  const mine = live.told.filter((entry) => entry.robot === robot.robot).slice(-SHOWN).reverse();
+  const mine = live.told
+    .filter((entry) => entry.robot === robot.robot)
+    .slice(-SHOWN)
+    .reverse();
   return html`<${Part} title=${t("entries")} kind="entries">
-    ${mine.length ? html`<ol class="entry-list bounded" reversed tabindex="0" aria-label=${t("entries")}>${mine.map((entry) => html`<${Entry} key=${entry.position} entry=${entry} onOpen=${open} />`)}</ol>`
-      : html`<p class="quiet">${t("entries.none")}</p>`}
-    ${opened && html`<${Why} robot=${robot.robot} what=${question(opened)} at=${opened.at_time} text=${lineOf(opened)} onClose=${() => open(null)} />`}</${Part}>`;
+    ${
+      mine.length
+        ? html`<ol class="entry-list bounded" reversed tabindex="0"
+          aria-label=${t("entries")}>${mine.map(
+            (entry) => html`<${Entry} key=${entry.position} entry=${entry}
+          onOpen=${open} />`,
+          )}</ol>`
+        : html`<p class="quiet">${t("entries.none")}</p>`
+    }
+    ${
+      opened &&
+      html`<${Why} robot=${robot.robot} what=${question(opened)} at=${opened.at_time} text=${lineOf(opened)}
+      onClose=${() => open(null)} />`
+    }</${Part}>`;
 }

@@ -10,7 +10,10 @@ function said(event) {
   if (event === "hears else") return t("next.hears.else");
   const [, way, names] = ROW.exec(event) ?? [];
   if (!names) return null;
-  const words = names.split("|").map((one) => `“${one.replaceAll("_", " ")}”`).join(t("next.or"));
+  const words = names
+    .split("|")
+    .map((one) => `“${one.replaceAll("_", " ")}”`)
+    .join(t("next.or"));
   return t(way ? `next.hears.${way}` : "next.hears", { words });
 }
 
@@ -28,7 +31,9 @@ export function next(robot) {
   for (const way of robot.ways ?? []) {
     const who = way.open ? cause(way.event, robot.buttons ?? []) : null;
     if (who === null) continue;
-    const then = way.targets?.length ? t("next.goes", { states: way.targets.map((one) => `“${one}”`).join(", ") }) : t("next.stays");
+    const then = way.targets?.length
+      ? t("next.goes", { states: way.targets.map((one) => `“${one}”`).join(", ") })
+      : t("next.stays");
     if (!found.has(who)) found.set(who, new Set());
     found.get(who).add(then);
   }

@@ -21,7 +21,9 @@ export function NowPage({ name }) {
   return html`<h1 class="hidden">${t("page.now")}: ${name}</h1>
     <${Troubles} robot=${robot} />
     <${Situation} robot=${robot} />
-    <div class="now" data-stale=${isHere(robot) ? null : "true"}><div class="column"><${Lines} robot=${robot} /><${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} /><${Entries} robot=${robot} /></div>
+    <div class="now" data-stale=${isHere(robot) ? null : "true"}><div class="column"><${Lines} robot=${robot} />
+      <${Buttons} robot=${robot} /><${Approvals} robot=${robot} /><${Talk} robot=${robot} />
+      <${Entries} robot=${robot} /></div>
       <div class="column"><${States} robot=${robot} /><${Ways} robot=${robot} /></div>
       <div class="column"><${Body} robot=${robot} />
         ${may("author") && html`<${Usable} when=${isHere(robot)}><${Cues} robot=${robot} /></${Usable}>`}</div></div>

@@ -7,8 +7,12 @@ import { html, languageName, t, useEffect, useState } from "../ui.js";
 const LIMIT = 15000; // [ms]
 
 async function change(sentence, keep) {
-  const answer = await fetch("/api/prepared", { method: "POST", headers: { "Content-Type": "application/json" },
-    body: JSON.stringify({ ...sentence, keep }), signal: AbortSignal.timeout(LIMIT) });
+  const answer = await fetch("/api/prepared", {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ ...sentence, keep }),
+    signal: AbortSignal.timeout(LIMIT),
+  });
   const said = await answer.json().catch(() => ({}));
   if (!answer.ok) throw new Error(said.reason ?? `${answer.status}`);
   return said.prepared;
@@ -16,9 +20,19 @@ async function change(sentence, keep) {
 
 /** What is kept: `all`, `keep(sentence)`, `remove(sentence)`, and why the last of these failed. */
 export function usePrepared() {
-  const [all, set] = useState([]), [wrong, complain] = useState("");
-  const done = (asked) => asked.then((found) => { set(found); complain(""); }, (error) => complain(reasonOf(error)));
-  useEffect(() => { done(get("/api/prepared").then((found) => found.prepared)); }, []);
+  const [all, set] = useState([]),
+    [wrong, complain] = useState("");
+  const done = (asked) =>
+    asked.then(
+      (found) => {
+        set(found);
+        complain("");
+      },
+      (error) => complain(reasonOf(error)),
+    );
+  useEffect(() => {
+    done(get("/api/prepared").then((found) => found.prepared));
+  }, []);
   return { all, wrong, keep: (one) => done(change(one, true)), remove: (one) => done(change(one, false)) };
 }
 
@@ -32,8 +46,13 @@ function Sentence({ robot, one, remove }) {
 
 /** A press says a sentence at once. */
 export function Prepared({ robot, prepared }) {
-  return html`${prepared.all.length > 0 && html`<h3>${t("prepared")}</h3>
-      <ul class="plain-list prepared">${prepared.all.map((one) => html`
-        <${Sentence} key=${`${one.language} ${one.text}`} robot=${robot} one=${one} remove=${prepared.remove} />`)}</ul>`}
+  return html`${
+    prepared.all.length > 0 &&
+    html`<h3>${t("prepared")}</h3>
+      <ul class="plain-list prepared">${prepared.all.map(
+        (one) => html`
+        <${Sentence} key=${`${one.language} ${one.text}`} robot=${robot} one=${one} remove=${prepared.remove} />`,
+      )}</ul>`
+  }
     <p class="bad" role="alert"><${Quote} text=${prepared.wrong} /></p>`;
 }

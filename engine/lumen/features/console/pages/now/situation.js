@@ -7,17 +7,23 @@ import { innermost } from "./states.js";
 const first = (text) => text.charAt(0).toLocaleUpperCase() + text.slice(1);
 
 /** When an active state was entered last. */
-const changed = (states) => innermost(states).map((one) => one.since).sort().at(-1) ?? null;
+const changed = (states) =>
+  innermost(states)
+    .map((one) => one.since)
+    .sort()
+    .at(-1) ?? null;
 
 /** Of a motion that says how far it is: how long it still takes [s], null if nobody knows. */
 function left({ since, progress }, robot) {
-  const begun = Date.parse(since), told = Date.parse(robot.time);
+  const begun = Date.parse(since),
+    told = Date.parse(robot.time);
   return progress > 0 ? Math.max(0, (begun + (told - begun) / progress - robot.now()) / 1000) : null;
 }
 
 /** A motion in words; of a verb that a feature adds, the verb itself. */
 function moving({ verb, name }) {
-  const known = `now.${verb}`, text = t(known, { name });
+  const known = `now.${verb}`,
+    text = t(known, { name });
   return text === known ? `${inPageLanguage(verb)} ${name}`.trim() : text;
 }
 
@@ -32,7 +38,8 @@ function deed(robot) {
 
 export function Situation({ robot }) {
   useSeconds();
-  const [what, since] = deed(robot), rest = robot.motion && !robot.stopped ? left(robot.motion, robot) : null;
+  const [what, since] = deed(robot),
+    rest = robot.motion && !robot.stopped ? left(robot.motion, robot) : null;
   const parts = [
     first(what) + (robot.visitor ? ` ${t("now.for", { name: robot.visitor })}` : ""),
     since && span((robot.now() - Date.parse(since)) / 1000),

@@ -15,26 +15,40 @@ const still = (state) => innermost([state]).every((one) => one.since === state.s
 export const folded = (states) => (states.length > 1 ? states.slice(1).filter(still) : []);
 
 function Boxes({ states, now }) {
-  const away = new Set(folded(states)), box = (state) => html`<${Box} key=${state.path} state=${state} now=${now} />`;
+  const away = new Set(folded(states)),
+    box = (state) => html`<${Box} key=${state.path} state=${state} now=${now} />`;
   return html`<ul class="boxes">${states.filter((state) => !away.has(state)).map(box)}</ul>
-    ${away.size > 0 && html`<details class="still"><summary>${t("states.still")}${" "}
+    ${
+      away.size > 0 &&
+      html`<details class="still"><summary>${t("states.still")}${" "}
       <span class="state-name">${[...away].map((state) => state.name).join(", ")}</span></summary>
-      <ul class="boxes">${[...away].map(box)}</ul></details>`}`;
+      <ul class="boxes">${[...away].map(box)}</ul></details>`
+    }`;
 }
 
 function Box({ state, now }) {
   const leaf = !state.children?.length;
   return html`<li class="state ${leaf ? "leaf" : ""}">
-    <p class="state-head"><span class="state-name">${state.name}</span><span class="since" title=${t("since")}><${Since} at=${state.since} now=${now} /></span></p>
-    ${leaf ? html`<${Place} file=${state.file} line=${state.line} />`
-      : html`<${Boxes} states=${state.children} now=${now} />`}</li>`;
+    <p class="state-head"><span class="state-name">${state.name}</span><span class="since" title=${t("since")}>
+      <${Since} at=${state.since} now=${now} /></span></p>
+    ${
+      leaf
+        ? html`<${Place} file=${state.file} line=${state.line} />`
+        : html`<${Boxes} states=${state.children} now=${now} />`
+    }</li>`;
 }
 
 export function States({ robot }) {
   const states = robot.states ?? [];
   return html`<${Part} title=${t("where")} kind="states">
     <${Boxes} states=${states} now=${robot.now} />
-    ${robot.timers?.length > 0 && html`<h3>${t("timers")}</h3><ul class="timers">${robot.timers.map((timer) => html`
-      <li key=${timer.event + timer.due}><span>${inPageLanguage(timer.event)}</span><strong><${Until} at=${timer.due} now=${robot.now} /></strong></li>`)}</ul>`}
+    ${
+      robot.timers?.length > 0 &&
+      html`<h3>${t("timers")}</h3><ul class="timers">${robot.timers.map(
+        (timer) => html`
+      <li key=${timer.event + timer.due}><span>${inPageLanguage(timer.event)}</span><strong>
+        <${Until} at=${timer.due} now=${robot.now} /></strong></li>`,
+      )}</ul>`
+    }
   </${Part}>`;
 }

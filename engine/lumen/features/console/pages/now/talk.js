@@ -13,25 +13,40 @@ function linesOf({ position, at_time: at, data, heard, commands = [] }) {
   const speech = heard && typeof data?.result === "string";
   const words = speech ? [{ at, text: data.result, sure: data.confidence ?? null }] : [];
   const said = commands.map((one) => one.Start?.command?.Say).filter(Boolean);
-  return [...words, ...said.map((say) => ({ at, robot: true, ...say }))].map((line, n) => ({ ...line, key: `${position} ${n}` }));
+  return [...words, ...said.map((say) => ({ at, robot: true, ...say }))].map((line, n) => ({
+    ...line,
+    key: `${position} ${n}`,
+  }));
 }
 
 /** The last lines: who spoke, when, and how sure the ears were. The list has one height, so nothing below it moves. */
 export function Lines({ robot }) {
-  const list = useRef(null), mine = live.told.filter((one) => one.robot === robot.robot);
-  const lines = mine.flatMap(linesOf).slice(-LINES), last = lines.at(-1)?.key;
-  useEffect(() => { list.current.scrollTop = list.current.scrollHeight; }, [last]);
+  const list = useRef(null),
+    mine = live.told.filter((one) => one.robot === robot.robot);
+  const lines = mine.flatMap(linesOf).slice(-LINES),
+    last = lines.at(-1)?.key;
+  useEffect(() => {
+    list.current.scrollTop = list.current.scrollHeight;
+  }, [last]);
   return html`<${Part} title=${t("talk")} kind="lines-of-talk">
-    <ol class="talk-lines" ref=${list} tabindex="0" aria-label=${t("talk")}>${lines.map((line) => html`
+    <ol class="talk-lines" ref=${list} tabindex="0" aria-label=${t("talk")}>${lines.map(
+      (line) => html`
       <li key=${line.key}><time datetime=${line.at}>${clock(line.at)}</time>
-        ${" "}<b>${t(line.robot ? "talk.robot" : "talk.visitor")}</b> <span lang=${line.language ?? null}>${line.text}</span>
-        ${line.sure != null && html` <span class="quiet">${t("talk.sure", { percent: percent(line.sure * 100) })}</span>`}
-      </li>`)}</ol></${Part}>`;
+        ${" "}<b>${t(line.robot ? "talk.robot" : "talk.visitor")}</b> <span
+          lang=${line.language ?? null}>${line.text}</span>
+        ${
+          line.sure != null &&
+          html` <span
+          class="quiet">${t("talk.sure", { percent: percent(line.sure * 100) })}</span>`
+        }
+      </li>`,
+    )}</ol></${Part}>`;
 }
 
 function SayForm({ robot }) {
   const languages = robot.languages?.length ? robot.languages : [robot.language ?? "en"];
-  const [text, set] = useState(""), [chosen, choose] = useState(null);
+  const [text, set] = useState(""),
+    [chosen, choose] = useState(null);
   const spoken = chosen ?? robot.language ?? languages[0];
   const prepared = usePrepared();
   const keep = () => text.trim() && prepared.keep({ text: text.trim(), language: spoken });
@@ -40,12 +55,25 @@ function SayForm({ robot }) {
     if (!text.trim()) return;
     // The text stays until the bus has it: one that was not sent is sent again, not typed again.
     const sent = (state) => state === "sent" && set((now) => (now === text ? "" : now));
-    command(robot.robot, "say", { text: text.trim(), language: spoken }, `${t("say")} “${text.trim().slice(0, 40)}”`, sent);
+    command(
+      robot.robot,
+      "say",
+      { text: text.trim(), language: spoken },
+      `${t("say")} “${text.trim().slice(0, 40)}”`,
+      sent,
+    );
   };
   return html`<form class="say" onSubmit=${say}><label class="grow"><span>${t("say.text")}</span>
-      <input value=${text} maxlength="500" lang=${spoken} onInput=${(e) => set(e.target.value)} autocomplete="off" /></label>
-    ${languages.length > 1 && html`<label><span>${t("language")}</span><select value=${spoken} onChange=${(e) => choose(e.target.value)}>
-      ${languages.map((one) => html`<option value=${one} selected=${one === spoken}>${languageName(one)}</option>`)}</select></label>`}
+      <input value=${text} maxlength="500" lang=${spoken} onInput=${(e) => set(e.target.value)} autocomplete="off" />
+        </label>
+    ${
+      languages.length > 1 &&
+      html`<label><span>${t("language")}</span><select value=${spoken} onChange=${(e) => choose(e.target.value)}>
+      ${languages.map(
+        (one) => html`<option value=${one}
+        selected=${one === spoken}>${languageName(one)}</option>`,
+      )}</select></label>`
+    }
     <button class="strong">${t("say")}</button>
     <button type="button" class="keep-sentence" onClick=${keep}>${t("prepared.keep")}</button></form>
     <${Prepared} robot=${robot} prepared=${prepared} />`;
@@ -54,13 +82,26 @@ function SayForm({ robot }) {
 export function Talk({ robot }) {
   const { saying, visitor_said: heard, motion, now } = robot;
   return html`<${Part} title=${t("talk.now")} kind="talk"
-      aside=${html`<p class="visitor"><span>${t("visitor")}: <b>${robot.visitor || t("nobody.here")}</b></span><span>${t("language")}: <b>${robot.language ? languageName(robot.language) : ""}</b></span></p>`}>
-    <p class="bubble robot" data-quiet=${!saying}><span class="speaker">${t("robot.says")} ${saying && html`<${Since} at=${saying.since} now=${now} />`}</span>
+      aside=${html`<p class="visitor"><span>${t("visitor")}: <b>${robot.visitor || t("nobody.here")}</b></span>
+        <span>${t("language")}: <b>${robot.language ? languageName(robot.language) : ""}</b></span></p>`}>
+    <p class="bubble robot" data-quiet=${!saying}><span class="speaker">${t("robot.says")} ${
+      saying &&
+      html`<${Since}
+      at=${saying.since} now=${now} />`
+    }</span>
       <span lang=${saying?.language}>${saying ? saying.text : t("says.nothing")}</span></p>
-    <p class="bubble visitor-said" data-quiet=${!heard}><span class="speaker">${t("visitor.said")} ${heard && html`<${Since} at=${heard.at} now=${now} />`}</span>
+    <p class="bubble visitor-said" data-quiet=${!heard}><span
+      class="speaker">${t("visitor.said")} ${heard && html`<${Since} at=${heard.at} now=${now} />`}</span>
       <span>${heard ? heard.text : t("heard.nothing")}</span></p>
-    <div class="doing">${motion ? html`<p><b>${inPageLanguage(motion.verb)}</b> ${motion.name} <${Since} at=${motion.since} now=${now} /></p>
-      ${motion.progress != null && html`<progress max="1" value=${motion.progress} aria-label="${inPageLanguage(motion.verb)} ${motion.name}">${percent(motion.progress * 100)}</progress>`}`
-      : html`<p class="quiet">${t("moves.nothing")}</p>`}</div>
+    <div class="doing">${
+      motion
+        ? html`<p><b>${inPageLanguage(motion.verb)}</b> ${motion.name} <${Since} at=${motion.since} now=${now} /></p>
+      ${
+        motion.progress != null &&
+        html`<progress max="1" value=${motion.progress}
+        aria-label="${inPageLanguage(motion.verb)} ${motion.name}">${percent(motion.progress * 100)}</progress>`
+      }`
+        : html`<p class="quiet">${t("moves.nothing")}</p>`
+    }</div>
     ${may("operator") && html`<${Usable} when=${isHere(robot)}><${SayForm} robot=${robot} /></${Usable}>`}</${Part}>`;
 }

@@ -4,11 +4,14 @@ import { Quote } from "../quoted.js";
 import { Since, clock, fixed, html, keep, kept, redraw, t, useEffect, useState } from "../ui.js";
 
 const PART = "robot"; // that moves it, as `lumen run --only robot` says
-const BODY = { "fallen": "trouble.fallen", "battery.low": "trouble.battery", "motors.hot": "trouble.hot" };
-export const LOW = 20, HOT = 75; // [%], [°C]
+const BODY = { fallen: "trouble.fallen", "battery.low": "trouble.battery", "motors.hot": "trouble.hot" };
+export const LOW = 20,
+  HOT = 75; // [%], [°C]
 const TROUBLES = /^(fallen|battery\.low|motors\.hot|[a-z]+\.lost|error\..*)$/;
-const RECENT = 600000, AGAIN = 3000; // [ms] for how long a fall is new; how often it is asked why nobody answers
-const READ = "lumen.read", MANY = 50; // what somebody has read stays read on the next page: so many
+const RECENT = 600000,
+  AGAIN = 3000; // [ms] for how long a fall is new; how often it is asked why nobody answers
+const READ = "lumen.read",
+  MANY = 50; // what somebody has read stays read on the next page: so many
 const read = new Set();
 
 const named = (entry) => `${entry.robot} ${entry.at_time}`;
@@ -25,23 +28,33 @@ export const isTrouble = (entry) => TROUBLES.test(entry.heard ?? "");
 
 /** The processes that count: one that has gone counts for nothing once another one does what it did. */
 export function processesOf(robot) {
-  const all = robot.processes ?? [], here = new Set(all.filter((one) => one.state === "here").flatMap((one) => one.parts));
+  const all = robot.processes ?? [],
+    here = new Set(all.filter((one) => one.state === "here").flatMap((one) => one.parts));
   const last = new Map(all.map((one) => [one.parts.join(), one]));
-  return all.filter((one) => one.state === "here" || (last.get(one.parts.join()) === one && one.parts.some((part) => !here.has(part))));
+  return all.filter(
+    (one) => one.state === "here" || (last.get(one.parts.join()) === one && one.parts.some((part) => !here.has(part))),
+  );
 }
 
 /** The process that moved the robot, where that has gone; else null. */
-export const lostBody = (robot) => processesOf(robot).find((one) => one.state !== "here" && one.parts.includes(PART)) ?? null;
+export const lostBody = (robot) =>
+  processesOf(robot).find((one) => one.state !== "here" && one.parts.includes(PART)) ?? null;
 
 /** Whether the behaviour waits until a person lets it go on, though nobody stopped the robot itself. */
-export const waitsForResume = (robot) => !robot.stopped && (robot.ways ?? []).some((way) => way.event === "resume" && way.open && way.targets?.length);
+export const waitsForResume = (robot) =>
+  !robot.stopped && (robot.ways ?? []).some((way) => way.event === "resume" && way.open && way.targets?.length);
 
 /** The numbers of an event as people of the page's language write them. */
-const shown = (data) => Object.fromEntries(Object.entries(data ?? {}).map(([key, value]) => [key, typeof value === "number" ? fixed(value) : value]));
+const shown = (data) =>
+  Object.fromEntries(
+    Object.entries(data ?? {}).map(([key, value]) => [key, typeof value === "number" ? fixed(value) : value]),
+  );
 
 /** The last time that the robot felt each of what is wrong with it, as far as nobody has read that. */
-const felt = (robot) => ALARMS.map((kind) => live.alarms.get(`${robot.robot} ${kind}`))
-  .filter((one) => one && !isRead(one) && Date.now() + robot.skew - Date.parse(one.at_time) < RECENT);
+const felt = (robot) =>
+  ALARMS.map((kind) => live.alarms.get(`${robot.robot} ${kind}`)).filter(
+    (one) => one && !isRead(one) && Date.now() + robot.skew - Date.parse(one.at_time) < RECENT,
+  );
 
 /** The greatest number in a reading, however its joints or sides are called: the number, or its name and the number. */
 export function greatest(reading) {
@@ -55,11 +68,15 @@ export const batteryOf = (robot) => robot.battery ?? robot.senses?.battery?.perc
 /** The alarms of a robot, the worst first, each a text `alarm.…`; `MILD` ones wait for a person and are no fault. */
 export function alarmsOf(robot) {
   if (robot.connected === false) return ["away"];
-  const battery = batteryOf(robot), known = new Set(felt(robot).map((one) => one.heard));
+  const battery = batteryOf(robot),
+    known = new Set(felt(robot).map((one) => one.heard));
   const found = {
-    "lost": lostBody(robot), "fallen": known.has("fallen"), "hot": known.has("motors.hot") || hottest(robot) > HOT,
-    "battery": known.has("battery.low") || (battery !== null && battery < LOW),
-    "asks": robot.waiting?.length > 0, "waits": waitsForResume(robot),
+    lost: lostBody(robot),
+    fallen: known.has("fallen"),
+    hot: known.has("motors.hot") || hottest(robot) > HOT,
+    battery: known.has("battery.low") || (battery !== null && battery < LOW),
+    asks: robot.waiting?.length > 0,
+    waits: waitsForResume(robot),
   };
   return Object.keys(found).filter((kind) => found[kind]);
 }
@@ -68,18 +85,36 @@ export const MILD = ["asks", "waits"];
 function Away({ robot }) {
   const [why, set] = useState("");
   useEffect(() => {
-    const ask = () => get("/api/now").then((now) => set(now.bus ?? ""), () => {});
+    const ask = () =>
+      get("/api/now").then(
+        (now) => set(now.bus ?? ""),
+        () => {},
+      );
     const timer = setInterval(ask, AGAIN);
     ask();
     return () => clearInterval(timer);
   }, []);
-  return html`<p class="notice bad" role="alert"><b>${t("robot.away", { name: robot.robot })}</b> ${why ? html`<${Quote} text=${why} />` : t("robot.away.why")}</p>`;
+  return html`<p class="notice bad" role="alert"><b>${t("robot.away", { name: robot.robot })}</b> ${
+    why
+      ? html`<${Quote}
+    text=${why} />`
+      : t("robot.away.why")
+  }</p>`;
 }
 
 export function Troubles({ robot }) {
-  const lost = robot.connected === false ? null : lostBody(robot), name = robot.robot;
+  const lost = robot.connected === false ? null : lostBody(robot),
+    name = robot.robot;
   return html`${robot.connected === false && html`<${Away} robot=${robot} />`}
-    ${lost && html`<div class="notice bad"><p role="alert"><b>${t("trouble.lost", { name })}</b> ${t("trouble.lost.do")}</p><p>${t("heard.ago")} <${Since} at=${lost.heard} now=${consoleNow} /></p></div>`}
-    ${felt(robot).map((one) => html`<div class="notice bad" key=${one.position}><p role="alert"><b>${clock(one.at_time)} ${t(BODY[one.heard], shown(one.data))}</b> ${t(`${BODY[one.heard]}.do`)}</p>
-      <button type="button" onClick=${() => haveRead(one)}>${t("trouble.read")}</button></div>`)}`;
+    ${
+      lost &&
+      html`<div class="notice bad"><p role="alert">
+      <b>${t("trouble.lost", { name })}</b> ${t("trouble.lost.do")}</p>
+      <p>${t("heard.ago")} <${Since} at=${lost.heard} now=${consoleNow} /></p></div>`
+    }
+    ${felt(robot).map(
+      (one) => html`<div class="notice bad" key=${one.position}><p role="alert">
+        <b>${clock(one.at_time)} ${t(BODY[one.heard], shown(one.data))}</b> ${t(`${BODY[one.heard]}.do`)}</p>
+      <button type="button" onClick=${() => haveRead(one)}>${t("trouble.read")}</button></div>`,
+    )}`;
 }

@@ -27,15 +27,23 @@ function AllWays({ ways }) {
   const sorted = [...ways.filter((way) => way.open), ...ways.filter((way) => !way.open)];
   const count = t("ways.open", { open: ways.filter((way) => way.open).length, all: ways.length });
   return html`<details class="all-ways"><summary>${t("ways.all")} (${count})</summary>
-    <ul class="plain-list bounded" tabindex="0" role="list" aria-label=${t("ways.all")}>${sorted.map((way, n) => html`
-      <${Way} key=${`${way.source} ${way.event} ${way.line} ${n}`} way=${way} />`)}</ul></details>`;
+    <ul class="plain-list bounded" tabindex="0" role="list" aria-label=${t("ways.all")}>${sorted.map(
+      (way, n) => html`
+      <${Way} key=${`${way.source} ${way.event} ${way.line} ${n}`} way=${way} />`,
+    )}</ul></details>`;
 }
 
 export function Ways({ robot }) {
-  const ways = robot.ways ?? [], sentences = next(robot);
+  const ways = robot.ways ?? [],
+    sentences = next(robot);
   return html`<${Part} title=${t("ways")} kind="ways">
-    ${sentences.length ? html`<ul class="plain-list next">${sentences.map(([who, then]) => html`
-        <li key=${who}><b>${who}</b>: ${then}</li>`)}</ul>`
-      : html`<p class="quiet">${t("next.none")}</p>`}
+    ${
+      sentences.length
+        ? html`<ul class="plain-list next">${sentences.map(
+            ([who, then]) => html`
+        <li key=${who}><b>${who}</b>: ${then}</li>`,
+          )}</ul>`
+        : html`<p class="quiet">${t("next.none")}</p>`
+    }
     ${may("author") && ways.length > 0 && html`<${AllWays} ways=${ways} />`}</${Part}>`;
 }

@@ -4,23 +4,45 @@ import { Part, html, t, useEffect, useRef, useState } from "../ui.js";
 import { follow, shape } from "./poses.js";
 
 export function Hall({ name, instead }) {
-  const canvas = useRef(null), [failed, fail] = useState(""), [moved, move] = useState(0), [trouble, say] = useState("");
+  const canvas = useRef(null),
+    [failed, fail] = useState(""),
+    [moved, move] = useState(0),
+    [trouble, say] = useState("");
   useEffect(() => {
     if (!canvas.current) return undefined;
-    let end = () => {}, over = false;
+    let end = () => {},
+      over = false;
     (async () => {
       if (!document.createElement("canvas").getContext("webgl2")) return fail("see.nogl");
       const [{ Scene }, form] = await Promise.all([import("./scene.js"), shape(name)]);
       if (over) return undefined;
       const scene = (canvas.current.scene = new Scene(canvas.current, form)); // tests ask it what is drawn
-      const stop = follow(name, (links) => { scene.pose(links); move((n) => n + 1); say(""); }, say);
-      end = () => { stop(); scene.close(); };
+      const stop = follow(
+        name,
+        (links) => {
+          scene.pose(links);
+          move((n) => n + 1);
+          say("");
+        },
+        say,
+      );
+      end = () => {
+        stop();
+        scene.close();
+      };
       return undefined;
-    })().catch((error) => { say(error.status ? error.message : ""); fail("see.noshape"); });
-    return () => { over = true; end(); };
+    })().catch((error) => {
+      say(error.status ? error.message : "");
+      fail("see.noshape");
+    });
+    return () => {
+      over = true;
+      end();
+    };
   }, [name, failed]);
   if (failed) return instead(failed, trouble);
-  return html`<${Part} title=${t("see.hall")} kind="hall"><div class="picture"><canvas ref=${canvas} role="img" aria-label=${t("see.alt.hall", { name })} data-poses=${moved}></canvas></div>
+  return html`<${Part} title=${t("see.hall")} kind="hall"><div class="picture">
+    <canvas ref=${canvas} role="img" aria-label=${t("see.alt.hall", { name })} data-poses=${moved}></canvas></div>
     ${trouble && html`<p class="notice" role="status"><${Quote} text=${trouble} /></p>`}
     ${moved === 0 && html`<p class="quiet" role="status">${t("see.waiting")}</p>`}</${Part}>`;
 }

@@ -4,34 +4,71 @@ import { Quote } from "../quoted.js";
 import { Part, html, kept, keep, t, useEffect, useRedraw, useRef, useState } from "../ui.js";
 import { Hall } from "./hall.js";
 
-const WIDTH = 320, HEIGHT = 240, BOX = 56; // [px]: what places in the image are given in, and about a face
-const PATIENCE = 4000, NEXT = 200, AGAIN = 1000; // [ms] for a first picture, after one, and where there was none
+const WIDTH = 320,
+  HEIGHT = 240,
+  BOX = 56; // [px]: what places in the image are given in, and about a face
+const PATIENCE = 4000,
+  NEXT = 200,
+  AGAIN = 1000; // [ms] for a first picture, after one, and where there was none
 
 // Pictures are asked for one by one: each takes a connection for a moment, and not one of the browser's six for ever.
 function Camera({ name }) {
-  const [state, set] = useState("waiting"), [number, show] = useState(0), timer = useRef(0);
-  const next = (after) => { clearTimeout(timer.current); timer.current = setTimeout(() => { if (!document.hidden) show((n) => n + 1); }, after); };
-  const got = (what, after) => { if (what) set(what); next(after); };
+  const [state, set] = useState("waiting"),
+    [number, show] = useState(0),
+    timer = useRef(0);
+  const next = (after) => {
+    clearTimeout(timer.current);
+    timer.current = setTimeout(() => {
+      if (!document.hidden) show((n) => n + 1);
+    }, after);
+  };
+  const got = (what, after) => {
+    if (what) set(what);
+    next(after);
+  };
   useEffect(() => {
-    const look = () => next(0), late = setTimeout(() => set((now) => (now === "waiting" ? "gone" : now)), PATIENCE);
+    const look = () => next(0),
+      late = setTimeout(() => set((now) => (now === "waiting" ? "gone" : now)), PATIENCE);
     document.addEventListener("visibilitychange", look);
-    return () => { document.removeEventListener("visibilitychange", look); clearTimeout(late); clearTimeout(timer.current); };
+    return () => {
+      document.removeEventListener("visibilitychange", look);
+      clearTimeout(late);
+      clearTimeout(timer.current);
+    };
   }, []);
   const faces = robotOf(name)?.seen?.faces ?? [];
+  const named = faces.map((face) => `${face.name || t("see.face")} (${face.x}, ${face.y})`);
   return html`<${Part} title=${t("see.camera")} kind="camera"><div class="picture">
-      <img src="/camera/${encodeURIComponent(name)}?still=${number}" alt=${t("see.alt", { name })} width=${WIDTH} height=${HEIGHT} class=${state === "seen" ? "" : "unseen"}
+      <img src="/camera/${encodeURIComponent(name)}?still=${number}" alt=${t("see.alt", { name })} width=${WIDTH}
+        height=${HEIGHT} class=${state === "seen" ? "" : "unseen"}
         onLoad=${() => got("seen", NEXT)} onError=${() => got(state === "seen" ? "gone" : "", AGAIN)} />
-      <svg viewBox="0 0 ${WIDTH} ${HEIGHT}" aria-hidden="true">${faces.map((face) => html`<g><rect x=${face.x - BOX / 2} y=${face.y - BOX / 2} width=${BOX} height=${BOX} rx="4" />
-        <text x=${face.x - BOX / 2} y=${face.y - BOX / 2 - 5}>${face.name || t("see.face")}</text></g>`)}</svg></div>
+      <svg viewBox="0 0 ${WIDTH} ${HEIGHT}" aria-hidden="true">${faces.map(
+        (face) => html`<g><rect x=${face.x - BOX / 2} y=${face.y - BOX / 2} width=${BOX} height=${BOX} rx="4" />
+        <text x=${face.x - BOX / 2} y=${face.y - BOX / 2 - 5}>${face.name || t("see.face")}</text></g>`,
+      )}</svg></div>
     ${state === "gone" && html`<p class="quiet" role="status">${t("see.none")}</p>`}
-    <h3>${t("see.found")}</h3><p>${faces.length ? faces.map((face) => `${face.name || t("see.face")} (${face.x}, ${face.y})`).join(" · ") : html`<span class="quiet">${t("see.found.none")}</span>`}</p></${Part}>`;
+    <h3>${t("see.found")}</h3>
+      <p>${named.length ? named.join(" · ") : html`<span class="quiet">${t("see.found.none")}</span>`}</p></${Part}>`;
 }
 
 export default function SeePage({ name }) {
   useRedraw();
   const [view, set] = useState(kept("lumen.see") ?? "camera");
-  const choose = (one) => { keep("lumen.see", one); set(one); };
-  return html`<div class="page-head"><h1>${t("page.see")}</h1><fieldset class="choice"><legend class="hidden">${t("page.see")}</legend>${["camera", "hall"].map((one) => html`<label>
-      <input type="radio" name="view" value=${one} checked=${view === one} onChange=${() => choose(one)} /><span>${t(`see.${one}`)}</span></label>`)}</fieldset></div>
-    ${view === "camera" ? html`<${Camera} name=${name} />` : html`<${Hall} name=${name} instead=${(why, reason) => html`<p class="notice">${t(why)} ${reason && html`(<${Quote} text=${reason} />)`}</p><${Camera} name=${name} />`} />`}`;
+  const choose = (one) => {
+    keep("lumen.see", one);
+    set(one);
+  };
+  return html`<div class="page-head"><h1>${t("page.see")}</h1><fieldset class="choice">
+    <legend class="hidden">${t("page.see")}</legend>${["camera", "hall"].map(
+      (one) => html`<label>
+      <input type="radio" name="view" value=${one} checked=${view === one} onChange=${() => choose(one)} />
+        <span>${t(`see.${one}`)}</span></label>`,
+    )}</fieldset></div>
+    ${
+      view === "camera"
+        ? html`<${Camera} name=${name} />`
+        : html`<${Hall} name=${name}
+      instead=${(why, reason) => html`<p class="notice">${t(why)} ${reason && html`(<${Quote} text=${reason} />)`}</p>
+      <${Camera} name=${name} />`} />`
+    }`;
 }

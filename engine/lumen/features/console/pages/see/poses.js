@@ -7,7 +7,8 @@ const AGAIN = 1000; // [ms]
 
 /** Tell `moved` of each pose, {link: [x, y, z, qw, qx, qy, qz]} in the hall [m], and `failed` why there is none. */
 export function follow(robot, moved, failed) {
-  let leave = null, timer = 0;
+  let leave = null,
+    timer = 0;
   const take = (block) => {
     const [kind, data] = parsed(block) ?? [];
     if (kind === "pose" && data.robot === robot) moved(data.links);
@@ -15,12 +16,22 @@ export function follow(robot, moved, failed) {
   };
   const open = () => {
     end();
-    if (!document.hidden) leave = read(`/api/poses?robot=${encodeURIComponent(robot)}`, live.role, take, () => { timer = setTimeout(open, AGAIN); });
+    if (!document.hidden)
+      leave = read(`/api/poses?robot=${encodeURIComponent(robot)}`, live.role, take, () => {
+        timer = setTimeout(open, AGAIN);
+      });
   };
-  const end = () => { leave?.(); leave = null; clearTimeout(timer); };
+  const end = () => {
+    leave?.();
+    leave = null;
+    clearTimeout(timer);
+  };
   document.addEventListener("visibilitychange", open);
   open();
-  return () => { end(); document.removeEventListener("visibilitychange", open); };
+  return () => {
+    end();
+    document.removeEventListener("visibilitychange", open);
+  };
 }
 
 /** What the links look like: [{name, shapes: [...]}], and the stage. */

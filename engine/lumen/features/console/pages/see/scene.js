@@ -1,7 +1,9 @@
 // Draws links with their shapes on a floor. three.js does the drawing; a frame is drawn when something has moved.
 import * as THREE from "../vendor/three.js";
 
-const REACH = 1.1, EYE = [1.02, 0.68, 0.62], LOOK = [0, 0, 0.26]; // [m]
+const REACH = 1.1,
+  EYE = [1.02, 0.68, 0.62],
+  LOOK = [0, 0, 0.26]; // [m]
 
 const MAKERS = {
   box: ([x, y, z]) => new THREE.BoxGeometry(2 * x, 2 * y, 2 * z),
@@ -28,14 +30,14 @@ function place(object, [x, y, z], [w, i, j, k]) {
 
 export class Scene {
   constructor(canvas, { links, stage }) {
-    this.canvas = canvas, this.links = new Map(), this.scene = new THREE.Scene();
+    ((this.canvas = canvas), (this.links = new Map()), (this.scene = new THREE.Scene()));
     this.robot = new THREE.Group();
     this.robot.visible = false; // until a pose puts the links where they belong: before that they are a heap
     this.scene.add(this.robot);
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.camera = new THREE.PerspectiveCamera(38, 4 / 3, 0.05, 30);
     this.camera.up.set(0, 0, 1);
-    this.turn = Math.atan2(EYE[1], EYE[0]), this.far = Math.hypot(EYE[0], EYE[1]);
+    ((this.turn = Math.atan2(EYE[1], EYE[0])), (this.far = Math.hypot(EYE[0], EYE[1])));
     this.scene.add(new THREE.HemisphereLight(0xffffff, 0x667788, 1.6));
     const sun = new THREE.DirectionalLight(0xffffff, 2);
     sun.position.set(2, 1, 4);
@@ -47,8 +49,16 @@ export class Scene {
   }
 
   floor(stage) {
-    const [[left, right], [back, front]] = stage ? [stage.x, stage.y] : [[-REACH, REACH], [-REACH, REACH]];
-    const ground = new THREE.Mesh(new THREE.BoxGeometry(right - left, front - back, 0.02), new THREE.MeshLambertMaterial({ color: 0x9fb4c4 }));
+    const [[left, right], [back, front]] = stage
+      ? [stage.x, stage.y]
+      : [
+          [-REACH, REACH],
+          [-REACH, REACH],
+        ];
+    const ground = new THREE.Mesh(
+      new THREE.BoxGeometry(right - left, front - back, 0.02),
+      new THREE.MeshLambertMaterial({ color: 0x9fb4c4 }),
+    );
     ground.position.set((left + right) / 2, (front + back) / 2, -0.012);
     const lines = new THREE.GridHelper(2 * REACH, 11, 0x6b7f8f, 0x8ea1b0).rotateX(Math.PI / 2);
     return new THREE.Group().add(ground, lines);
@@ -58,7 +68,15 @@ export class Scene {
     const link = new THREE.Group();
     for (const shape of shapes) {
       const [r, g, b, a] = shape.colour;
-      const mesh = new THREE.Mesh(geometry(shape), new THREE.MeshStandardMaterial({ color: new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace), roughness: 0.6, transparent: a < 1, opacity: a }));
+      const mesh = new THREE.Mesh(
+        geometry(shape),
+        new THREE.MeshStandardMaterial({
+          color: new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace),
+          roughness: 0.6,
+          transparent: a < 1,
+          opacity: a,
+        }),
+      );
       place(mesh, shape.position, shape.rotation);
       link.add(mesh);
     }
@@ -68,18 +86,29 @@ export class Scene {
 
   /** Put the links where a pose says; those that it does not name stay. */
   pose(links) {
-    for (const [name, at] of Object.entries(links)) if (this.links.has(name)) place(this.links.get(name), at.slice(0, 3), at.slice(3));
+    for (const [name, at] of Object.entries(links))
+      if (this.links.has(name)) place(this.links.get(name), at.slice(0, 3), at.slice(3));
     this.robot.visible = true;
     this.draw();
   }
 
-  listen() { // dragging turns the view; so do the arrow keys
+  listen() {
+    // dragging turns the view; so do the arrow keys
     const on = (kind, handler) => this.canvas.addEventListener(kind, handler, { signal: this.moves.signal });
     this.canvas.tabIndex = 0;
-    on("pointermove", (event) => { if (event.buttons) { this.turn -= event.movementX / 150; this.draw(); } });
+    on("pointermove", (event) => {
+      if (event.buttons) {
+        this.turn -= event.movementX / 150;
+        this.draw();
+      }
+    });
     on("keydown", (event) => {
       const by = { ArrowLeft: -0.15, ArrowRight: 0.15 }[event.key];
-      if (by) { event.preventDefault(); this.turn += by; this.draw(); }
+      if (by) {
+        event.preventDefault();
+        this.turn += by;
+        this.draw();
+      }
     });
     addEventListener("resize", () => this.draw(), { signal: this.moves.signal });
   }

@@ -6,18 +6,25 @@ const STAYS = 4000; // [ms] that a sentence stays after it was said
 
 export default function Subtitles({ name }) {
   useRedraw();
-  const robot = robotOf(name), said = robot?.saying ?? null;
+  const robot = robotOf(name),
+    said = robot?.saying ?? null;
   const [shown, show] = useState(null);
   useEffect(() => {
-    if (said) { show(said); return undefined; }
+    if (said) {
+      show(said);
+      return undefined;
+    }
     const timer = setTimeout(() => show(null), STAYS);
     return () => clearTimeout(timer);
   }, [said?.text, said?.since]);
   const spoken = robot?.language ?? "en";
-  useEffect(() => { if (["en", "id"].includes(spoken)) document.documentElement.lang = spoken; }, [spoken]);
+  useEffect(() => {
+    if (["en", "id"].includes(spoken)) document.documentElement.lang = spoken;
+  }, [spoken]);
   const away = live.state !== "live" || !robot || robot.connected === false;
   const text = shown?.text ?? "";
   return html`<div class="subtitles"><h1 class="hidden">${t("page.subtitles")}</h1>
-    <p class="subtitle ${text.length > 120 ? "long" : ""}" lang=${shown?.language || spoken} aria-live="polite">${text}</p>
+    <p class="subtitle ${text.length > 120 ? "long" : ""}" lang=${shown?.language || spoken}
+      aria-live="polite">${text}</p>
     <p class="subtitle-away" role="status">${away ? t("subtitles.away") : ""}</p></div>`;
 }

@@ -1,0 +1,40 @@
+"""The sources of the console's pages: lines that fit beside each other, and one layout of code and CSS."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from tests import ROOT
+from tests.fetched import fetched
+from tests.guarded import run_guarded
+
+PAGES = ROOT / "engine/lumen/features/console/pages"
+OTHERS, TEXTS = PAGES / "vendor", PAGES / "texts"
+LONGEST = 120
+STRING = re.compile(r'"(?:[^"\\]|\\.)*"')
+
+
+def sources(*endings: str) -> Iterator[Path]:
+    """The files of our own with one of these endings."""
+    for file in sorted(PAGES.rglob("*")):
+        if file.suffix in endings and OTHERS not in file.parents:
+            yield file
+
+
+def test_no_line_is_longer_than_120_characters() -> None:
+    """A text of a page may be longer, with its name on a line of its own: nobody finds half a sentence."""
+    long = [
+        f"{file.relative_to(ROOT)}:{number}"
+        for file in sources(".js", ".css")
+        for number, line in enumerate(file.read_text("utf-8").splitlines(), 1)
+        if len(line) > LONGEST and not (TEXTS in file.parents and len(STRING.findall(line)) <= 2)
+    ]
+    assert long == []
+
+
+def test_code_and_css_have_the_layout_of_prettier() -> None:
+    prettier = fetched("yaml") / "node_modules/prettier/bin/prettier.cjs"
+    files = [str(file.relative_to(ROOT)) for file in sources(".js", ".css") if TEXTS not in file.parents]
+    line = ["node", str(prettier), "--config", ".prettierrc.yaml", "--list-different", *files]
+    done = run_guarded(line, cwd=ROOT, capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("", "")
