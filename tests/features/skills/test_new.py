@@ -75,16 +75,45 @@ def blink(call, times):
 """
 
 
-@pytest.mark.process
-def test_a_stranger_adds_a_verb_in_two_files_of_at_most_thirty_lines(
-    hall: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert len((BLINK + CODE).splitlines()) <= 30
+def blinking(hall: Path) -> Path:
+    """Add `blink` to a project that was empty, and let its behaviour blink three times; return the behaviour."""
     (hall / "skills").mkdir()
     (hall / "skills/blink.yaml").write_text(BLINK, "utf-8")
     (hall / "skills/blink.py").write_text(CODE, "utf-8")
     hello = hall / "behaviors/hello.yaml"
     hello.write_text(hello.read_text("utf-8").replace("{play: wave}", "{blink: 3}"), "utf-8")
+    return hello
+
+
+def test_a_strangers_mistake_is_found_at_its_word(hall: Path) -> None:
+    hello = blinking(hall)
+    hello.write_text(hello.read_text("utf-8").replace("{blink: 3}", "{blink: {time: 3}}"), "utf-8")
+    [line] = found(hall)
+    assert line.startswith("behaviors/hello.yaml:12:19 unknown-key")
+    assert "did you mean `times`?" in line
+
+
+@pytest.mark.process
+def test_a_strangers_verb_ends_with_the_state_that_is_left(hall: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    hello = blinking(hall)
+    left = "    onDone: waiting\n    after: {800ms: waiting}\n"
+    hello.write_text(hello.read_text("utf-8").replace("    onDone: waiting\n", left), "utf-8")
+    steps = (
+        "[{visitor: arrives}, {expect: {state: greeting}}, {says: Goodbye!}, {expect: {state: goodbye}}, {wait: 2s}]"
+    )
+    (hall / "behaviors/stories/visitor.yaml").write_text(f"steps: {steps}\n", "utf-8")
+    assert main(["test", "--real-skills", "--verbose"]) == 0
+    shown = capsys.readouterr().out
+    assert "ends early: does blink with times 3" in shown
+    assert shown.count("blinks") == 2
+
+
+@pytest.mark.process
+def test_a_stranger_adds_a_verb_in_two_files_of_at_most_thirty_lines(
+    hall: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert len((BLINK + CODE).splitlines()) <= 30
+    blinking(hall)
     story = hall / "behaviors/stories/visitor.yaml"
     story.write_text(story.read_text("utf-8").replace("played: wave", "did: {blink: 3}"), "utf-8")
     assert found(hall) == []
