@@ -18,7 +18,8 @@ from lumen.bus.validated import by_key
 from lumen.cli.reach import reach
 from lumen.cli.terminal import coloured, paint
 from lumen.errors import BusError
-from lumen.feature import owner, table
+from lumen.feature import VerbRow, owner, table
+from lumen.language.added_verbs import PerformedByModule
 from lumen.language.modules import own_modules
 from lumen.language.projects import Project
 from lumen.language.routes import Direction
@@ -122,6 +123,7 @@ def _broker(opened: Probe, url: str, project: Project | None) -> Iterator[Findin
             yield from _life(bus, project)
             yield from _obeying(probe, attendance, project)
             yield from _modules(attendance, project)
+            yield from _skills(attendance, project)
         yield from _served(probe, project)
         faults = list(probe.misdeclared())
         yield from (Finding("dead letters", "error", fault) for fault in faults)
@@ -142,6 +144,7 @@ def _other(options: argparse.Namespace, url: str, project: Project | None) -> It
             attendance = RobotAttendance(bus, project)
             yield from _life(bus, project)
             yield from _modules(attendance, project)
+            yield from _skills(attendance, project)
 
 
 def _permissions(probe: Probe, project: Project) -> Iterator[Finding]:
@@ -215,6 +218,34 @@ def _modules(attendance: RobotAttendance, project: Project) -> Iterator[Finding]
         else:
             hint = "`lumen status` prints why" if module.here else f"start it: {' '.join(module.command)}"
             yield Finding("modules", "warning", f"`{name}` shows no sign of life: {hint}")
+
+
+def _skills(attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
+    """Whether the programs of the project's skills are where the robot's process runs, or are modules that live."""
+    modules = {name: module for name, row in project.verbs.items() if (module := _module_of(row))}
+    lacking = attendance.lacking(set(modules.values())) if modules else set[str]()
+    for name, module in modules.items():
+        if module in lacking:
+            text = f"`{name}` fails: the module `{module}` shows no sign of life"
+            yield Finding("skills", "warning", text)
+        else:
+            yield Finding("skills", "ok", f"`{name}` is performed by the module `{module}`")
+    own = [name for name in project.verbs if name not in modules]
+    installed = attendance.await_skills() if own else None
+    if own and installed is None:
+        yield Finding("skills", "note", f"no running process has the programs of {_names(own)}")
+        return
+    for name in own:
+        if installed and name in installed:
+            yield Finding("skills", "ok", f"the program of `{name}` is installed (hash {str(installed[name])[:12]})")
+        else:
+            text = f"the robot's process has no program of `{name}`: copy its files there, and reload"
+            yield Finding("skills", "warning", text)
+
+
+def _module_of(row: VerbRow) -> str:
+    """Return the module that performs a skill; empty if a program does."""
+    return row.details.module if isinstance(row.details, PerformedByModule) else ""
 
 
 def _found(program: str, project: Project) -> bool:

@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 
 from lumen.errors import BusError
@@ -24,6 +24,8 @@ class RobotAttendance:
     def __init__(self, bus: Bus, project: Project) -> None:
         self._robot, self._here = project.robot, threading.Event()
         self._modules, self._received = set[str](), threading.Event()
+        self.skills: Mapping[str, object] | None = None
+        """The hashes of the skills' code that the robot's process has, by skill; None before any was received."""
         with suppress(BusError):  # a missing permission to read is reported elsewhere
             bus.subscribe(project.key_of(PRESENCE_ROUTE), self._hear)
 
@@ -39,7 +41,19 @@ class RobotAttendance:
             self._received.clear()
         return left
 
+    def await_skills(self) -> Mapping[str, object] | None:
+        """Return `skills` once they were received; None if they were not within PRESENCE_TIMEOUT."""
+        until = time.monotonic() + PRESENCE_TIMEOUT
+        while self.skills is None and time.monotonic() < until:
+            self._received.wait(0.1)
+            self._received.clear()
+        return self.skills
+
     def _hear(self, message: Message) -> None:
+        match message.body:
+            case {"robot": self._robot, "skills": dict(skills), "state": str(state)} if state == HERE:
+                self.skills = skills
+                self._received.set()
         match message.body:
             case {"robot": self._robot, "parts": list(parts), "state": str(state)} if (
                 ROBOT_PART in parts and state == HERE
