@@ -21,7 +21,7 @@ class RunVerdict(NamedTuple):
     lived: float
     """The time in the exhibition [s]."""
     took: float | None = None
-    """The time that the run took [s]; None if several processes share the exhibition."""
+    """The time that the run took [s]; None for a single robot whose parts run in several processes."""
     failure: str = ""
     """Why the story failed, else the first trouble; empty if there is neither."""
     summary: tuple[str, ...] = ()

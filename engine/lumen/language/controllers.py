@@ -232,41 +232,48 @@ class VolumeBinding:
 
 @dataclass(frozen=True, slots=True)
 class MessageBinding:
-    """An output that is a field of a message on `route`, added to `body`; sent when it has changed by `step`.
-
-    Outputs that are fields of the same route make one message.
-    """
+    """An output that is a field of a message; outputs for fields of the same route make one message."""
 
     variable: str
+    """The output."""
     route: str
+    """The route."""
     path: tuple[str, ...]
+    """The path of the field in the message."""
     step: float
+    """The change after which the message is sent again."""
     body: Mapping[str, Any] = field(default_factory=dict)
+    """Constant fields of the message, to which the output is added."""
     where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class ContextBinding:
-    """An output whose value the context's `key` gets when it has changed by `step`."""
+    """An output that sets a key of the context."""
 
     variable: str
+    """The output."""
     key: str
+    """The key."""
     step: float
+    """The change after which the key is set again."""
     where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class ThresholdBinding:
-    """An output that raises `event` once when it passes `threshold`, upwards if `rising`, else downwards.
-
-    The event can be raised again after the output has returned by `hysteresis`.
-    """
+    """An output that raises an event once when it passes a threshold."""
 
     variable: str
+    """The output."""
     event: str
+    """The name of the event."""
     threshold: float
+    """The threshold, in the output's unit."""
     rising: bool
+    """Whether it is passed upwards; else downwards."""
     hysteresis: float
+    """The distance that the output must return before the event can be raised again."""
     where: NodePath = field(default=(), compare=False)
 
 

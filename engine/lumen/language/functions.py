@@ -18,19 +18,20 @@ class FunctionExample:
 
 @dataclass(frozen=True, slots=True)
 class FunctionDefinition:
-    """The content of a file of functions/.
-
-    `parameters` maps each argument to the kinds of values that it accepts, such as `("text", "number")`, in the order
-    of a call; `returns` are the kinds that the value can have. `description` maps languages (`""` for any) to texts.
-    `expression` is as the author wrote it; `expanded` has the functions of the project that it calls put in.
-    """
+    """The content of a file of functions/."""
 
     name: str
+    """The name of the file, by which expressions call it."""
     parameters: Mapping[str, tuple[str, ...]]
+    """The kinds of values that each argument accepts, such as `("text", "number")`, in the order of a call."""
     returns: tuple[str, ...]
+    """The kinds of values that it returns."""
     description: Mapping[str, str]
+    """The description by language, `""` for any language."""
     expression: str
+    """The expression as the author wrote it."""
     expanded: str
+    """The expression with those of the project's functions that it calls inserted."""
     examples: tuple[FunctionExample, ...] = ()
 
     @property

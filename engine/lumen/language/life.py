@@ -31,12 +31,16 @@ class Sway:
 
 @dataclass(frozen=True, slots=True)
 class Glances:
-    """Once in `every` [s] the head turns by at most `yaw` and `pitch` [rad] for `hold` [s], then back."""
+    """Glances of the head: to one side, and back."""
 
     every: float
+    """The length of the periods, each of which has one glance [s]."""
     yaw: float
+    """The greatest turn to either side [rad]."""
     pitch: float
+    """The greatest turn up or down [rad]."""
     hold: float = 1.0
+    """The time before the head returns [s]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -35,17 +35,16 @@ class Approval:
 
 @dataclass(frozen=True, slots=True)
 class Hears:
-    """A row of `hears`: the sentences that lead to a transition.
-
-    `number` is unique in its machine, `key` is the key in the file. `way` is how the names must be in
-    the sentence: found, negated (`not`), within a question (`asked`), or not at all (`else`). A name is one of
-    `phrases` or `answers`, or a path such as `context.round.entry.right` to phrases of a list's entry.
-    """
+    """A row of `hears`: the sentences that lead to a transition."""
 
     number: int
+    """The number of the row, unique in its machine."""
     key: str
+    """The key in the file."""
     names: tuple[str, ...] = ()
+    """Names of `phrases` or `answers`, or paths such as `context.round.entry.right` to phrases of a list's entry."""
     way: Literal["", "not", "asked", "else"] = ""
+    """How the names must be in the sentence: found (empty), negated, within a question, or not at all (`else`)."""
 
     @property
     def title(self) -> str:
@@ -115,17 +114,18 @@ class Invoke:
 
 @dataclass(frozen=True, slots=True)
 class ForEach:
-    """`for` of a state: its content runs once for each entry of the list `each`, under the name `variable`.
-
-    `shuffle` draws an order, `most` limits the number of entries. `key` is the context key that holds the entry and
-    those that are left.
-    """
+    """`for` of a state: its content runs once for each entry of a list."""
 
     each: Expression
+    """The list."""
     variable: str
+    """The name of the entry in expressions."""
     key: str
+    """The context key that holds the entry and the entries that are left."""
     shuffle: bool = False
+    """Whether the order is random."""
     most: int | None = None
+    """The maximum number of entries; None for all."""
     where: NodePath = field(default=(), compare=False)
 
 

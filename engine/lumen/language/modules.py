@@ -15,16 +15,16 @@ VISITOR_KEY = "visitor"
 
 @dataclass(frozen=True, slots=True)
 class ModuleSettings:
-    """The settings of a module in lumen.yaml: whether `lumen run` has it inside (`here`), and its own options.
-
-    A module of the project's own is a program: the `command` that starts it, and the `health`, the longest time
-    between two of its signs of life [s], 0 if it gives none.
-    """
+    """The settings of a module in lumen.yaml; with a `command` it is a program of the project's own."""
 
     here: bool = False
+    """Whether `lumen run` runs the module in its own process, or starts its program."""
     options: Mapping[str, Any] = field(default_factory=dict)
+    """The module's own options."""
     command: tuple[str, ...] = ()
+    """The command that starts the program; empty for a module of Lumen or of a feature."""
     health: float = 0.0
+    """The longest time between two of the program's signs of life [s]; 0 if it gives none."""
 
     @property
     def own(self) -> bool:

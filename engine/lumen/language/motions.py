@@ -22,30 +22,35 @@ class Interpolation(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Keyframe:
-    """A key of a joint: at `time` [s] it reaches `angle` [rad; a hand 0..1] by `interpolation`.
+    """A key of a joint.
 
-    Handles are (dt [s], da [rad]) for Bezier, `handle_in` with dt < 0, `handle_out` with dt > 0, as in NAOqi's
-    `angleInterpolationBezier`; one with dt = 0 is chosen so that the curve is smooth and does not overshoot.
+    Handles are (dt [s], da [rad]), as in NAOqi's `angleInterpolationBezier`. A handle with dt = 0 is chosen so that the
+    curve is smooth and does not overshoot.
     """
 
     time: float
+    """The time at which the joint reaches the angle [s]."""
     angle: float
+    """The angle [rad; a hand 0..1]."""
     interpolation: Interpolation = Interpolation.MINIMUM_JERK
+    """The course from the key before."""
     handle_in: tuple[float, float] = (0.0, 0.0)
+    """The Bezier handle before the key, with dt < 0."""
     handle_out: tuple[float, float] = (0.0, 0.0)
+    """The Bezier handle after the key, with dt > 0."""
     where: NodePath = field(default=(), compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """At `time` [s] something besides joints: `kind` is `say`, `sound`, `leds` or `hold`, `value` as in the file.
-
-    A cue of the kind `skill` begins a skill: `value` has its name, `skill`, and its `arguments`.
-    """
+    """An action beside the joints of a motion."""
 
     time: float
+    """The time from the beginning [s]."""
     kind: str
+    """`say`, `sound`, `leds`, `hold` or `skill`, which begins a skill."""
     value: object
+    """The value in the file; for a skill its name, `skill`, and its `arguments`."""
     where: NodePath = field(default=(), compare=False)
 
 

@@ -9,16 +9,17 @@ from lumen.language.diagnostics import NodePath
 
 @dataclass(frozen=True, slots=True)
 class Property:
-    """`always: CONDITION`, or `eventually: CONDITION` at most `within` [s] after `whenever` comes to hold, each time.
-
-    Without `whenever` that time is the beginning.
-    """
+    """A condition that must hold: `always: CONDITION`, or `eventually: CONDITION`."""
 
     name: str
     always: Expression | None = None
+    """The condition that must hold in every configuration; None for `eventually`."""
     eventually: Expression | None = None
+    """The condition that must hold at some time before the deadline; None for `always`."""
     whenever: Expression | None = None
+    """The condition from whose beginning the time counts, each time; None for the beginning of the run."""
     within: float = 0.0
+    """The deadline [s]."""
     where: NodePath = field(default=(), compare=False)
 
 

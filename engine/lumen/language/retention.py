@@ -21,13 +21,13 @@ class JournalRetention:
 
 @dataclass(frozen=True, slots=True)
 class RecordingSettings:
-    """The recordings that are made of the bus without a request.
-
-    `ring` is the length of the past that is always available [s], 0 for none; around an incident it is kept for `keep`
-    days, up to `size` MB in all. Without the `camera` no recording has images.
-    """
+    """The recordings that are made of the bus without a request."""
 
     ring: float = 0.0
+    """The length of the past that is always available [s]; 0 for none."""
     keep: float = 30.0
+    """The time that the recording of an incident is kept [days]."""
     size: float = 5000.0
+    """The maximum size of all kept recordings [MB]."""
     camera: bool = True
+    """Whether recordings have images."""

@@ -50,17 +50,18 @@ class JointRole:
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """The base of a body; its `kind` is the name of a row `bases` of a feature.
-
-    `left` and `right` are the driven wheels' joints in the MJCF, empty without wheels. `speed` [m/s] and `turn` [rad/s]
-    are the most at which it drives.
-    """
+    """The base of a body."""
 
     kind: str = FIXED
+    """The name of a row `bases` of a feature."""
     left: str = ""
+    """The joint of the left driven wheel in the MJCF; empty without wheels."""
     right: str = ""
+    """The joint of the right driven wheel in the MJCF; empty without wheels."""
     speed: float = 0.0
+    """The maximum speed [m/s]."""
     turn: float = 0.0
+    """The maximum rate of turning [rad/s]."""
 
     @property
     def row(self) -> BaseRow:
@@ -79,23 +80,24 @@ class EyeRoles:
 
 @dataclass(frozen=True, slots=True)
 class SensorRoles:
-    """Sensors of the MJCF by kind: names of `gyro`, `accelerometer`; sites of the sonars, and of the soles' forces."""
+    """Sensors of the MJCF by kind."""
 
     gyro: str = ""
+    """The name of the gyroscope."""
     accelerometer: str = ""
+    """The name of the accelerometer."""
     sonar: Mapping[str, str] = field(default_factory=dict)
+    """The site of each sonar, by side."""
     force: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """The sites of the force sensors of each sole, by side."""
 
 
 @dataclass(frozen=True)
 class Roles:
-    """The parts of a body by function. All may be absent; the body can't do what needs an absent part.
-
-    `torso` is a link of the MJCF (x ahead, y left, z up), `soles` are sites (x ahead, z up). `lights` maps a group of
-    lights to the materials of the MJCF that show it.
-    """
+    """The parts of a body by function. All may be absent; the body can't do what needs an absent part."""
 
     torso: str = ""
+    """A link of the MJCF (x ahead, y left, z up)."""
     head: Mapping[str, JointRole] = field(default_factory=dict)
     body: Mapping[str, JointRole] = field(default_factory=dict)
     eyes: EyeRoles = EyeRoles()
@@ -104,9 +106,11 @@ class Roles:
     antennas: Mapping[str, JointRole] = field(default_factory=dict)
     legs: Mapping[str, Mapping[str, JointRole]] = field(default_factory=dict)
     soles: Mapping[str, str] = field(default_factory=dict)
+    """The site of each sole (x ahead, z up), by side."""
     base: Base = Base()
     sensors: SensorRoles = SensorRoles()
     lights: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """The materials of the MJCF that show each group of lights."""
     paths: Mapping[str, JointRole] = field(init=False, compare=False)
     """Every role that a joint of this body has, by its path, in the order of `JOINT_PATHS`."""
 

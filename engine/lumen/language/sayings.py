@@ -9,17 +9,18 @@ from lumen.language.diagnostics import NodePath
 
 @dataclass(frozen=True)
 class Saying:
-    """A sentence of a visitor in a `state` (its id or path), and the key of the row of `hears` that should match it.
-
-    `slots` are the values that the row should catch; other slots may catch anything.
-    """
+    """A sentence of a visitor, and the row of `hears` that should match it."""
 
     behavior: str
+    """The behaviour."""
     state: str
+    """The active state, by its id or path."""
     row: str
+    """The key of the row."""
     language: str
     text: str
     slots: Mapping[str, Any] = field(default_factory=dict)
+    """The values that the row should catch; other slots may catch anything."""
     where: NodePath = field(default=(), compare=False)
 
 

@@ -35,8 +35,9 @@ Happens = Callable[[StepSituation], bool]
 
 
 def taken(machine: MachineDefinition, owner: str, transition: Transition, goal: str) -> Happens:
-    """Return a test of whether a step includes that transition of the behaviour `owner`, and enters `goal` if it is
-    given.
+    """Return a test of whether a step includes that transition of the behaviour `owner`, and enters `goal`.
+
+    The goal is checked if it is given, because a transition to a history state may enter any of several states.
     """
 
     def happens(situation: StepSituation) -> bool:

@@ -46,13 +46,18 @@ class Example(NamedTuple):
 
 
 class Page(NamedTuple):
-    """The explanation of a code; `what` and `why` are Markdown."""
+    """The explanation of a code."""
 
     code: str
+    """The code."""
     what: str
+    """The meaning, in Markdown."""
     why: str
+    """The reasons, in Markdown."""
     wrong: tuple[Example, ...]
+    """The files of the wrong example."""
     right: tuple[Example, ...]
+    """The same files, corrected."""
 
 
 @cache
