@@ -61,7 +61,7 @@ class TypedVisitorPart(Part):
         self._thread.start()
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:
-        """Say what was typed since the last tick."""
+        """Speak the lines, and perform the commands, that were typed since the last tick."""
         self._now = now
         for _ in range(self._lines.qsize()):
             line = self._lines.get()

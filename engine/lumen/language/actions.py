@@ -68,7 +68,7 @@ class PublishBody:
 class Assign:
     """`assign`: context keys and their new values, evaluated and stored in the order written.
 
-    A key with dots, such as `visitor.name`, is the way to one key within a map of the context.
+    A key with dots, such as `visitor.name`, leads to a key within a map of the context.
     """
 
     values: Mapping[str, ComputedValue]

@@ -10,7 +10,7 @@ from lumen.language.diagnostics import NodePath
 from lumen.language.events import RESULT
 
 UNUSABLE = VerbRow("")
-"""The row of a verb whose file is faulty, which is reported there: a behaviour may say anything of the verb."""
+"""The row of a verb whose file is faulty. That is reported there, so behaviours may use the verb with any data."""
 
 
 @runtime_checkable

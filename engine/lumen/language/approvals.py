@@ -1,4 +1,4 @@
-"""Whether transitions that are marked `approve: operator` wait for a person."""
+"""The autonomy of a robot: whether transitions with `approve: operator` wait for a person."""
 
 from typing import Literal
 

@@ -60,4 +60,4 @@ _ROWS = (
 BUILT_IN_ROUTES: Mapping[str, Route] = {
     row.name: replace(row, built_in=True, must_arrive=row.carried is not Carried.TELEMETRY) for row in _ROWS
 }
-"""By their names; each is the row that a project can write in their place."""
+"""The routes by name, each as the row that a project would write for it."""

@@ -12,11 +12,9 @@ Confirmation = Literal["hold", "ask", ""]
 
 @dataclass(frozen=True, slots=True)
 class Button:
-    """A button that raises an event while its state, or one within, is active.
+    """A button that raises an event while its state, or a state within, is active.
 
-    One that the file gives `actions` instead raises an event that `button_events` names.
-    `label` has its texts by language; under the empty one stands what is the same in all. `confirm` is whether it has
-    to be held down or asked for again, `key` the one key that presses it.
+    A button with `actions` in the file raises an event that `button_events` names.
     """
 
     label: Mapping[str, str]

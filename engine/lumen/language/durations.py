@@ -34,7 +34,7 @@ def meant_duration(text: object) -> str:
 
 
 def duration_hint(text: object) -> str:
-    """Return what to write in place of a text that is no duration."""
+    """Return the hint for a text that is not a duration."""
     if (sign := other_sign(str(text))) and seconds(plain := typed(str(text)).replace(",", ".")) is not None:
         return f"write `{plain}`: {sign}"
     if meant := meant_duration(text):

@@ -47,7 +47,7 @@ FALLEN = "fallen"
 """The event of a robot that has fallen."""
 
 HELD = "hold its head, or run `lumen resume`"
-"""The end of the reason with which a robot that a person keeps still refuses to move."""
+"""The hint at the end of the reason why a robot that a person stopped refuses to move."""
 
 MISSED = "missed"
 """The field of `done.command.ID` that names the joints that missed the angles of a motion."""

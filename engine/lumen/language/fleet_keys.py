@@ -6,7 +6,7 @@ PRESENCE, INCIDENT, NUMBERS, DESIRED, BUNDLE, ORDER = (
     "fleet.presence", "fleet.incident", "fleet.numbers", "fleet.desired", "fleet.bundle", "fleet.order",
 )  # fmt: skip
 KEPT = (INCIDENT, NUMBERS)
-"""Messages that a centre must receive once, however long it was off."""
+"""Messages that a centre must receive once, no matter how long it was off."""
 
 
 def presence_key(house: str, robot: str) -> str:

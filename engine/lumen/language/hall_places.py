@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 DEFAULT_WITHIN = 0.25
-"""How near a robot must be to count as being at a place, if the place does not say [m]."""
+"""The distance within which a robot counts as being at a place that sets none [m]."""
 
 
 @dataclass(frozen=True, slots=True)

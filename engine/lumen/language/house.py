@@ -8,7 +8,7 @@ DEFAULT_SPACING = 0.6
 
 @dataclass(frozen=True, slots=True)
 class StartPose:
-    """The pose of a robot in the hall at its start: `x`, `y` [m], and how far to the left it faces [rad]."""
+    """The pose of a robot in the hall at its start: `x`, `y` [m], and its turn to the left [rad]."""
 
     x: float = 0.0
     y: float = 0.0

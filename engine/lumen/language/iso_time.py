@@ -1,4 +1,4 @@
-"""Times as texts: ISO 8601 in UTC for programs, the clock here for people. Numbers are seconds since 1970."""
+"""Times as texts: ISO 8601 in UTC for programs, local time for people. Numbers are seconds since 1970."""
 
 from datetime import UTC, datetime, time
 from typing import Literal

@@ -17,7 +17,7 @@ def schema_at(schema: Any, path: Iterable[str]) -> Any:
 
 
 def with_value(data: Any, path: Sequence[str | int], value: Any) -> Any:
-    """Return a copy of nested maps with `value` at `path`; what is no map on the way becomes one.
+    """Return a copy of nested maps with `value` at `path`; anything else on that path is replaced by a map.
 
     All other values are shared with `data`, which stays as it is.
     """

@@ -45,7 +45,7 @@ class Glances:
 
 @dataclass(frozen=True, slots=True)
 class Nods:
-    """Once in `every` [s] the head nods, `pitch` [rad] deep."""
+    """Nods of the head, one in each period of `every` [s], `pitch` [rad] deep."""
 
     every: float
     pitch: float
@@ -53,7 +53,7 @@ class Nods:
 
 @dataclass(frozen=True, slots=True)
 class Blinks:
-    """Once in `every` [s] the eyes go dark for `length` [s]."""
+    """Blinks, one in each period of `every` [s], in which the eyes are dark for `length` [s]."""
 
     every: float
     length: float = 0.15
@@ -70,7 +70,7 @@ class Asides:
 
 @dataclass(frozen=True, slots=True)
 class Settles:
-    """The angles `joints` [rad; hands 0..1] to which joints settle beside their posture, within `takes` [s]."""
+    """The offsets from the posture to which joints settle [rad; hands 0..1], within `takes` [s]."""
 
     joints: Mapping[str, float]
     takes: float = 1.5

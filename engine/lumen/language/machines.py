@@ -1,6 +1,6 @@
 """A behaviour file as values: a statechart whose targets are resolved.
 
-The words are XState v5's with UML's `entry`/`do`/`exit`; their meaning is that of W3C SCXML (Appendix D).
+The keys are XState v5's with UML's `entry`/`do`/`exit`; their meaning is that of W3C SCXML (Appendix D).
 """
 
 from collections.abc import Mapping

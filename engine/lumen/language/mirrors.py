@@ -1,4 +1,4 @@
-"""A mirror of a body's joints: left and right exchanged, yaws, rolls and ways to the side reversed."""
+"""A mirror of a body's joints: left and right exchanged, yaws, rolls and sideways movements reversed."""
 
 from collections.abc import Mapping
 
@@ -6,7 +6,7 @@ from lumen.language.robots import Body
 from lumen.language.roles import LEFT, RIGHT, JointRole
 
 Mirror = Mapping[str, tuple[str, float]]
-"""For a joint the one on the other side, empty if the body has none there, and the sign of the mirrored angle.
+"""For each joint its counterpart on the other side, empty if the body has none, and the sign of the mirrored angle.
 
 A joint that is absent stays as it is.
 """

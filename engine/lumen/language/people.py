@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 _SPACELESS = re.compile("[\u0e00-\u0eff\u1000-\u109f\u1780-\u17ff\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
-"""A sign of a script that puts no space between words, or joins endings to names."""
+"""A character of a script without spaces between words, or with endings joined to names."""
 _CLUSTER = re.compile(r"\s+|.", re.DOTALL)
 
 
@@ -40,7 +40,7 @@ class PersonName:
         while self.is_named_in(text):
             shorter = self._cut(unicodedata.normalize("NFC", text))
             if shorter == text:
-                return ""  # it is written across signs that no rule takes apart: better nothing than the name
+                return ""  # it can't be cut out of these characters: better no text than the name
             text = shorter
         return text
 
@@ -86,7 +86,7 @@ class PersonName:
 def _folded(text: str) -> str:
     if text.isascii():
         return text.lower()
-    text = text.encode("utf-8", "replace").decode()  # half characters, which JSON may bring
+    text = text.encode("utf-8", "replace").decode()  # half of a surrogate pair, which JSON may contain
     folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", text).casefold())
     shown = "".join(sign for sign in folded if unicodedata.category(sign) not in ("Cf", "Mn") or _accent(sign))
     return shown.replace("i\u0307", "i").replace("ı", "i")

@@ -1,4 +1,4 @@
-"""How saved files are checked against recorded visits before they are used."""
+"""The check of saved files against recorded visits before they are used."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -7,7 +7,7 @@ CheckMode = Literal["", "warn", "refuse"]
 
 DEFAULT_BUDGET = 5.0
 MAX_BUDGET = 30.0
-"""The longest that a saved file may wait for the check [s]."""
+"""The longest time that saved files may wait for the check [s]."""
 
 
 @dataclass(frozen=True, slots=True)

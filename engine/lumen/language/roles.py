@@ -37,7 +37,7 @@ FIXED = "fixed"
 
 @dataclass(frozen=True, slots=True)
 class JointRole:
-    """The joint that has a role; `reversed` where its angle grows the other way than the role's."""
+    """The joint that has a role; `reversed` if its angle grows in the direction opposite to the role's."""
 
     joint: str
     reversed: bool = False

@@ -65,7 +65,7 @@ STOP_RATE = 200.0
 
 
 class Size(NamedTuple):
-    """Of a picture [px]."""
+    """The size of an image [px]."""
 
     width: int
     height: int

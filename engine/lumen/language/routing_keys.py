@@ -15,7 +15,7 @@ DEFAULT_KEYS: Mapping[str, str] = {
 """The routes that Lumen and its modules use, with their default keys."""
 
 DEFAULT_ALIASES: Mapping[str, str] = {name: route.alias for name, route in BUILT_IN_ROUTES.items() if route.alias}
-"""The keys of 2015, which knew of one robot, for routes that lumen.yaml does not list (`Route.alias`)."""
+"""The keys of 2015, which allow only one robot, for routes that lumen.yaml does not list (`Route.alias`)."""
 
 SHARED_ROUTES = frozenset((
     "heard", "gender", "wav_stream", "text_stream", "text_to_speech", "face", "recognised", "face_tracking", "human",

@@ -33,7 +33,7 @@ class Leave:
 
 @dataclass(frozen=True, slots=True)
 class Speak:
-    """`says: TEXT`: the visitor speaks, in `language` where given."""
+    """`says: TEXT`: the visitor speaks, in `language` if it is given."""
 
     text: str
     language: str = ""
@@ -49,7 +49,7 @@ class TouchSensor:
 
 @dataclass(frozen=True, slots=True)
 class Happen:
-    """`event: NAME` or `event: {name, data}`: an event from nowhere."""
+    """`event: NAME` or `event: {name, data}`: an event without a source."""
 
     name: str
     data: Any = None
@@ -71,7 +71,7 @@ class Approve:
 
 @dataclass(frozen=True, slots=True)
 class SetAutonomy:
-    """`operator: {autonomy: alone}` or `ask`: whether marked transitions go by themselves."""
+    """`operator: {autonomy: alone}` or `ask`: whether transitions with `approve` are taken without a person."""
 
     level: Autonomy
 
@@ -109,7 +109,7 @@ class StoryPause:
 
 @dataclass(frozen=True, slots=True)
 class AwaitTime:
-    """`at: "17:59"`: nothing happens until the clock on the wall shows that."""
+    """`at: "17:59"`: nothing happens until the wall clock shows that time."""
 
     schedule: Schedule
 

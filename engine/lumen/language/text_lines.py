@@ -1,4 +1,4 @@
-"""The lines of a text, counted in one way by everything that reads, checks, shows or changes files.
+"""The lines of a text, counted in the same way wherever files are read, checked, shown or changed.
 
 A line ends with LF, CR, or CR and LF (YAML 1.2, section 5.4, and the language server protocol). YAML 1.1 and
 `str.splitlines` also end one at U+0085, U+2028, U+2029 and more. Editors don't, so these are characters here.

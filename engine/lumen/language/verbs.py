@@ -261,7 +261,7 @@ def names_in(action: Action, kind: str) -> Iterator[str]:
 
 
 def verb_named(name: str, data: Any) -> Verb[Any] | None:
-    """Return the row for a verb of the YAML and its data; None for a name that is no command's."""
+    """Return the row for a verb of the YAML and its data; None if the verb is not a command."""
     rows = [verb for verb in VERBS if verb.name == name]
     said = data.keys() if isinstance(data, Mapping) else ()
     meant = (verb for verb in rows if any(field.name in said for field in verb.fields))

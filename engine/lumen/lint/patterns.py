@@ -80,7 +80,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _all(tables: WordTables) -> Iterator[WrittenPhrase]:
-    """Every phrase of a file but those of word lists."""
+    """Yield every phrase of a file except those of word lists."""
     paths: list[NodePath] = [("phrases", name) for name in tables.phrases if name not in WORD_LISTS]
     paths += [
         ("answers", name, i, "phrases")
@@ -110,7 +110,7 @@ def _read(tables: WordTables) -> None:
 
 
 def _bad(phrase: WrittenPhrase, error: PatternError) -> None:
-    """Report a phrase that is no sound pattern; one that a comma has torn is told once."""
+    """Report a phrase that is not a valid pattern; the parts of one that a comma has split become one finding."""
     hint, cause = f"{error.hint}; until then, the phrase is read as plain words", ""
     if (torn := _torn(phrase)) is not None:
         cause = f"{phrase.report.document.file} torn {torn}"
@@ -119,7 +119,7 @@ def _bad(phrase: WrittenPhrase, error: PatternError) -> None:
 
 
 def _torn(phrase: WrittenPhrase) -> NodePath | None:
-    """The phrase whose bracket is closed in a phrase behind it, if this is one of the two or between them."""
+    """Return the path of a phrase whose bracket is closed in a later one, if this phrase is either or between them."""
     *around, place = phrase.path
     if not isinstance(place, int):
         return None
@@ -151,7 +151,7 @@ def _foreign(phrase: WrittenPhrase) -> None:
 
 
 def _separator(phrase: WrittenPhrase) -> str:
-    """The sign between alternatives in one text; empty if the text holds a single phrase.
+    """Return the sign that separates alternatives in one text; empty if the text is a single phrase.
 
     A single comma in a phrase of a list may belong to a sentence: the author already uses a list for several phrases.
     """
@@ -187,7 +187,7 @@ def _slots(phrase: WrittenPhrase, machines: list[MachineDefinition]) -> None:
 
 
 def _fault(slot: Slot, machine: MachineDefinition) -> tuple[str, str] | None:
-    """The message and the hint for a slot that can catch nothing; None for a sound one."""
+    """Return the message and the hint for a slot that can catch nothing; None for any other slot."""
     if slot.type in TYPES:
         return None
     if slot.type not in machine.lists:
