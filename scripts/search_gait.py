@@ -33,8 +33,12 @@ from lumen.language.commands import Move  # noqa: E402
 from lumen.motion.gait import GaitParameters, paces_of  # noqa: E402
 from lumen.project.bodies import GAIT_ANGLES, GAIT_LENGTHS  # noqa: E402
 from lumen.project.units import ANGLES, LENGTHS  # noqa: E402
-from lumen.run.workers.tasks import engine  # noqa: E402
-from lumen.run.workers.work_kit import UnpackedKit, WorkKit, name_of  # noqa: E402
+from lumen.run.workers.tasks import (  # noqa: E402
+    UnpackedKit,
+    WorkKit,
+    engine,
+    name_of,
+)
 from lumen.run.workers.workers import Workers, workers_of  # noqa: E402
 
 MODELS, CACHE = ROOT / "models", ROOT / ".cache" / "search_gait"

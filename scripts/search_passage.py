@@ -34,8 +34,7 @@ from lumen.motion.limits import beyond_limits, overspeed
 from lumen.motion.trajectories import Trajectory
 from lumen.project.files import read_files
 from lumen.project.lending import MODELS
-from lumen.run.workers.tasks import engine
-from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in, name_of
+from lumen.run.workers.tasks import UnpackedKit, WorkKit, engine, models_in, name_of
 from lumen.run.workers.workers import Workers, workers_of
 
 CACHE = Path(__file__).parent.parent / ".cache" / "search_passage"

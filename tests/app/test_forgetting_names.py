@@ -9,8 +9,8 @@ from lumen.bus import connect
 from lumen.language.people import PersonName
 from lumen.project.home import Home
 from lumen.run.forgetting import files
+from lumen.run.forgetting.added import Forgetting, ForgottenPlace
 from lumen.run.forgetting.files import forget_in
-from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 from lumen.run.parts.forgetting import FORGETTING_SPACING, MAX_PENDING_NAMES, ForgettingPart
 from lumen.run.snapshot_store import SNAPSHOT_FILE
 from tests.exhibits import project

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from lumen.language.operator_requests import APPROVE, REQUESTS, UNLISTED, WHY, OperatorRequest
-from lumen.run.request_checks import RequestChecks
+from lumen.run.decisions import RequestChecks
 from tests import ROOT
 
 PAGE = (ROOT / "docs/processes.md").read_text()

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from lumen.errors import LumenError, UsageError
 from lumen.fuzzy import Controller
+from lumen.fuzzy.defuzzifiers import DEFUZZIFY, Sampled
 from lumen.fuzzy.evaluator import infer
 from lumen.fuzzy.layers import LayeredCentroid
-from lumen.fuzzy.sampled import DEFUZZIFY, Sampled
 from lumen.language.controllers import DEFUZZIFIERS, INTEGRAL_DEFUZZIFIERS, S_NORMS, T_NORMS
 
 X = {"range": [0, 10], "terms": {"low": {"ramp": [10, 0]}, "high": {"ramp": [0, 10]}, "mid": {"triangle": [0, 5, 10]}}}

@@ -27,7 +27,7 @@ from lumen.robot.recording import RecordingRobot
 from lumen.run.recovery.previous_run import recover
 from lumen.run.rehearsal import rehearse
 from lumen.run.reload.records import RunRecords
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles
 from lumen.run.replaying.other_files import takes
 from lumen.run.resuming import FreshStart, Resumption, resume
 from lumen.statechart import deserialize, serialize

@@ -22,7 +22,7 @@ MAKERS = {
     "run/new_passage.py": "knowledge/ of the project, which is to be committed",
     "run/new_saying.py": "behaviors/sayings/ of the project, which is to be committed",
     "features/simulation/trials/outcome_cache.py": "a folder within a private one",
-    "run/workers/work_kit.py": "a temporary folder",
+    "run/workers/tasks.py": "a temporary folder",
     "run/reload/restoring.py": "folders of the project that an operator rolls back to, and one within a private one",
     "run/templates.py": "a folder of the project, for git",
     "features/skills/new_skill.py": "skills/ of the project, for git",

@@ -7,8 +7,7 @@ import pytest
 import lumen
 from lumen.insight.replay.replaying import replay
 from lumen.language.causes import VISITOR, Cause
-from lumen.run.replaying.journals import chosen
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles, chosen
 from tests import ROOT
 from tests.copying import copied_project
 from tests.live.shows import Live

@@ -16,7 +16,7 @@ from lumen.language.people import PersonName
 from lumen.project.home import home_of
 from lumen.run.reload import validation_worker, visits_check
 from lumen.run.reload.visits_check import VisitsCheck, check_visits
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles
 from lumen.run.replaying.latest_visits import latest_first
 from lumen.statechart import serialize
 from tests import ROOT

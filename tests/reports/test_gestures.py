@@ -9,7 +9,7 @@ import lumen
 from lumen.cli.main import main
 from lumen.language.diagnostics import Diagnostic
 from lumen.project.formats.conversion_findings import LOST, ForeignFileError
-from lumen.project.formats.imported_motions import read_gesture
+from lumen.project.formats.importers import read_gesture
 from lumen.project.packaged import shipped_root
 from tests.tables import for_each
 

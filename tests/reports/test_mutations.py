@@ -12,7 +12,7 @@ from lumen.features.formats_fuzzy.fis import read_fis
 from lumen.features.formats_fuzzy.fll import read_fll
 from lumen.features.formats_robots.reading import read_robot
 from lumen.project.formats.conversion_findings import ForeignFileError
-from lumen.project.formats.imported_motions import read_gesture
+from lumen.project.formats.importers import read_gesture
 from lumen.project.packaged import shipped_root
 from tests.tables import for_each
 

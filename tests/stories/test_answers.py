@@ -8,8 +8,7 @@ import pytest
 import lumen
 from lumen.cli.main import main
 from lumen.insight.replay.visits import visits
-from lumen.run.replaying.journals import chosen
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles, chosen
 from lumen.run.replaying.other_files import with_machines
 from lumen.run.storytelling.story_text import story_text
 from lumen.run.storytelling.visit_story import visit_story

@@ -22,8 +22,7 @@ from lumen.lint import check_files
 from lumen.project.files import read_files
 from lumen.project.project_folders import PROJECT_FOLDERS
 from lumen.run.rehearsal import rehearse
-from lumen.run.replaying.journals import chosen
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles, chosen
 from lumen.run.replaying.other_files import with_machines
 from lumen.run.storytelling.story_text import story_text
 from lumen.run.storytelling.visit_story import renaming, visit_story

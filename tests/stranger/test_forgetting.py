@@ -12,8 +12,7 @@ from lumen.language.people import PersonName
 from lumen.language.stories import Visitor
 from lumen.lint import check_files
 from lumen.project.files import read_files
-from lumen.run.forgetting.added import FeatureForgetter
-from lumen.run.forgetting.report import OF_A_PACKAGE, out_of_reach
+from lumen.run.forgetting.added import OF_A_PACKAGE, FeatureForgetter, out_of_reach
 from tests import ROOT
 from tests.copying import copied_project
 from tests.features.alerts.halls import Hall

@@ -8,7 +8,7 @@ from pathlib import Path
 from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.trials.playing import play_case
 from lumen.features.simulation.trials.trial import Outcome
-from lumen.run.workers.work_kit import UnpackedKit
+from lumen.run.workers.tasks import UnpackedKit
 
 
 def square(kit: UnpackedKit, number: int) -> tuple[int, bytes]:

@@ -14,7 +14,7 @@ from lumen.features.simulation.settings import Imperfections
 from lumen.features.simulation.trials.cases import cases
 from lumen.features.simulation.trials.playing import play_case
 from lumen.project.files import read_files
-from lumen.run.workers.work_kit import WorkKit, models_in
+from lumen.run.workers.tasks import WorkKit, models_in
 from lumen.run.workers.workers import Workers, workers_of
 from tests import ROOT
 from tests.workers.clusters import dask_cluster

@@ -7,8 +7,7 @@ import pytest
 import lumen
 from lumen.project.files import read_files
 from lumen.run.replaying import shared_replay as shared
-from lumen.run.replaying.journals import chosen
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles, chosen
 from lumen.run.replaying.other_files import against
 from lumen.run.replaying.replay_report import ReplayReport, replayed
 from lumen.run.workers.workers import Workers

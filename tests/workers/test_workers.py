@@ -11,8 +11,7 @@ import pytest
 from lumen.cli.main import main
 from lumen.errors import UsageError, WorkersError
 from lumen.run.workers.local_pool import TERMINATED
-from lumen.run.workers.tasks import TaskHead, do_task, engine
-from lumen.run.workers.work_kit import WorkKit, name_of
+from lumen.run.workers.tasks import TaskHead, WorkKit, do_task, engine, name_of
 from lumen.run.workers.workers import Workers, cores, workers_of
 from tests import ROOT
 from tests.guarded import PIPE, Guarded
@@ -83,7 +82,7 @@ def test_workers_that_die_again_are_an_error_in_words(tmp_path: Path, monkeypatc
 
 WAITING = """
 import sys
-from lumen.run.workers.work_kit import WorkKit
+from lumen.run.workers.tasks import WorkKit
 from lumen.run.workers.workers import Workers
 from tests.workers.small_tasks import wait_for_ever
 

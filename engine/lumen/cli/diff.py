@@ -9,9 +9,8 @@ from lumen.cli.progress import progress
 from lumen.cli.replay_text import replay_lines
 from lumen.cli.terminal import coloured, paint
 from lumen.insight.changes import Change, Risk, changes, live, risk, summary
-from lumen.run.reload.migration_preview import MigrationOutcome, MigrationPreview, outcome_of, preview
-from lumen.run.replaying.journals import chosen
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.reload.against import MigrationOutcome, MigrationPreview, outcome_of, preview
+from lumen.run.replaying.journals import KeptBundles, chosen
 from lumen.run.replaying.other_files import against
 from lumen.run.replaying.replay_report import ReplayReport
 from lumen.run.versions import LIVE, Version, version

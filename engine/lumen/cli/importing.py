@@ -27,8 +27,7 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import body_of
 from lumen.project.files import read_files
 from lumen.project.formats.conversion_findings import ForeignFileError
-from lumen.project.formats.imported_motions import read_gesture
-from lumen.project.formats.importers import FileReader, RobotReader, endings, importer, reader, recognised
+from lumen.project.formats.importers import FileReader, RobotReader, endings, importer, read_gesture, reader, recognised
 from lumen.project.formats.yaml_document import document_yaml
 from lumen.project.motions import build_motion
 from lumen.project.packaged import find_project

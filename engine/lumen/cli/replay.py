@@ -16,8 +16,7 @@ from lumen.insight.replay.entries import RecordedEntry
 from lumen.language.iso_time import local_time
 from lumen.project.chosen_robot import as_robot
 from lumen.run.one_robot import one_robot
-from lumen.run.replaying.journals import ChosenJournal, chosen, listed, until
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import ChosenJournal, KeptBundles, chosen, listed, until
 from lumen.run.replaying.other_files import against
 from lumen.run.replaying.replay_report import ReplayReport, replayed
 from lumen.run.replaying.shared_replay import replay_kit, shared_against, shared_replay

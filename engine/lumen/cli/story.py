@@ -10,8 +10,7 @@ from lumen.cli.reach import configure_robot_name
 from lumen.cli.writing import write_file, write_result
 from lumen.errors import UsageError
 from lumen.run.one_robot import one_robot
-from lumen.run.replaying.journals import chosen
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles, chosen
 from lumen.run.storytelling.chosen_visit import chosen_visit
 from lumen.run.storytelling.story_text import story_text
 from lumen.run.storytelling.visit_story import renaming, visit_story

@@ -11,7 +11,6 @@ from typing import Any, Literal, NamedTuple
 API = 1
 """The version of the rows below; a manifest of another version is refused."""
 
-
 VALUE_KINDS = ("null", "boolean", "number", "text", "list", "map", "any")
 """The kinds of values in expressions, and `any` for all of them."""
 
@@ -244,7 +243,7 @@ class Importer(NamedTuple):
     """A kind of file of another tool that `lumen import` converts to one of ours.
 
     `kind` is `behavior`, `controller`, `motion` or `robot`. `read` names a `FileReader` of
-    `lumen.project.formats.importers`, for a motion a `MotionReader` of `lumen.project.formats.imported_motions`, for a
+    `lumen.project.formats.importers`, for a motion a `MotionReader` of `lumen.project.formats.importers`, for a
     robot a `RobotReader`. A `hint` is a file that holds nothing to convert: `read` gets its content and returns what to
     do instead. `begins` is the import string of a function that recognises a file by its content, whatever its name.
     """
@@ -402,7 +401,7 @@ class Feature(NamedTuple):
     file_forgetters: tuple[str, ...] = ()
     """Functions that forget a person in files, as `lumen memory forget NAME` does, in the order of the features.
 
-    One gets the folder of an exhibition's home, the name, and a `Forgetting` (`lumen.run.forgetting.report`), to which
+    One gets the folder of an exhibition's home, the name, and a `Forgetting` (`lumen.run.forgetting.added`), to which
     it adds what it deleted and what is left.
     """
     forgets: tuple[str, ...] = ()

@@ -1,11 +1,90 @@
-"""Decisions of people while an exhibition runs: approvals, and whether events wait for them at all."""
+"""Decisions of people while an exhibition runs: approvals, the language model, and the check of their requests."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from typing import Any, Protocol
 
+from lumen.bus.checking import SchemaCheck
 from lumen.language.approvals import Autonomy
+from lumen.language.modules import ANSWERS
+from lumen.language.operator_requests import REQUESTS, UNLISTED, OperatorRequest
+from lumen.language.projects import Project
+from lumen.project.home import Home
 from lumen.run.approvals import Approvals, HeldEvent
 from lumen.run.narrator import Narrator
+from lumen.run.questions import Questions
+from lumen.run.raised_events import refusal
+
+
+class RequestChecks:
+    """A checker of bodies by the schemas of all requests; a schema is compiled for its first request."""
+
+    def __init__(self) -> None:
+        self._rows = {row.ask: (row, SchemaCheck(row.schema)) for row in REQUESTS}
+
+    def valid(self, body: Any) -> OperatorRequest | None:
+        """Return the request that a body is; None if it is no request, or a field is missing or wrong."""
+        row, check = self._found(body)
+        return row if check and check.fits(body) else None
+
+    def fault(self, body: Any) -> str:
+        """Return why a body that is not `valid` is refused."""
+        row, _ = self._found(body)
+        if row and row.fault:
+            return row.fault
+        *shown, last = [each.shown for each in REQUESTS if each not in UNLISTED]
+        return f"the request is not valid: send {', '.join(shown)}, or {last}"
+
+    def _found(self, body: Any) -> tuple[OperatorRequest | None, SchemaCheck | None]:
+        ask = body.get("ask") if isinstance(body, dict) else None
+        return self._rows.get(ask, (None, None)) if isinstance(ask, str) else (None, None)
+
+
+SILENCED_FILE = "model-silenced.json"
+UNREADABLE = f"a person whom {SILENCED_FILE} does not name"
+
+
+class ModelSwitch:
+    """The switch of the language model; it takes effect at once, also in the middle of an answer.
+
+    `record` writes an entry of the journal. The choice is restored from `folder` and saved there; without a folder it
+    ends with the run.
+    """
+
+    def __init__(
+        self,
+        questions: Questions,
+        project: Callable[[], Project],
+        record: Callable[[Mapping[str, Any]], None],
+        folder: Path | None = None,
+    ) -> None:
+        self._questions, self._project, self._record = questions, project, record
+        self._home = Home(folder) if folder else None
+        if folder and self._home and (folder / SILENCED_FILE).exists():  # also if the name in it is unreadable
+            found = self._home.read_json(SILENCED_FILE)
+            self._questions.silence(str((found.get("by") if isinstance(found, dict) else "") or UNREADABLE))
+
+    @property
+    def state(self) -> str | None:
+        """`on` or `off`; None if the exhibition has no model."""
+        if ANSWERS not in self._project().modules:
+            return None
+        return "off" if self._questions.silenced else "on"
+
+    def switch(self, by: str, *, on: bool) -> dict[str, Any]:
+        """Let the model speak, or silence it; return the verdict."""
+        if self.state is None:
+            return refusal("this exhibition has no language model: lumen.yaml has no module `answers`")
+        self._questions.silence("" if on else by)
+        self._record({"model": self.state, "by": by})
+        why = ""
+        if self._home and on:
+            self._home.remove(SILENCED_FILE)
+        elif self._home:
+            why = self._home.write_json(SILENCED_FILE, {"by": by})
+        kept = {"text": f"until the next start only: {why}"} if why else {}
+        return {"verdict": "done", "model": self.state, **kept}
+
 
 HOW = {"waits": "waits for GO", "goes": "goes", "stays": "stays"}
 

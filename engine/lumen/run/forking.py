@@ -19,7 +19,7 @@ from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.files import read_files
 from lumen.run.answering import moment_of
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles
 from lumen.run.replaying.other_files import takes
 
 PATIENCE = 3.0

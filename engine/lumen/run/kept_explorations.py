@@ -11,8 +11,7 @@ from lumen.language.projects import Project
 from lumen.project.home import Home, home_of
 from lumen.run.coverage import Gap
 from lumen.run.exploring import Explored, ExploredFinding
-from lumen.run.workers.tasks import engine
-from lumen.run.workers.work_kit import name_of
+from lumen.run.workers.tasks import engine, name_of
 from lumen.upkeep.own_folders import private_folder
 
 FOLDER = "explored"

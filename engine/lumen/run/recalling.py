@@ -17,7 +17,7 @@ from lumen.project.home import home_of
 from lumen.project.running_project import running_project
 from lumen.run.answering import answer
 from lumen.run.one_robot import one_robot
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles
 from lumen.statechart import Snapshot, Step
 
 NOT_ASKED = "no running exhibition was asked"

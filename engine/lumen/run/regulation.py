@@ -10,7 +10,7 @@ from lumen.language.events import Event
 from lumen.language.json_paths import schema_at
 from lumen.language.projects import Project
 from lumen.ports import Bus
-from lumen.run.route_inbox import RouteInbox
+from lumen.run.inbox import RouteInbox
 from lumen.statechart import Snapshot
 
 

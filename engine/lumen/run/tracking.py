@@ -8,7 +8,7 @@ from lumen.language.numbers import is_number
 from lumen.language.projects import Project
 from lumen.motion.tracking import Tracker
 from lumen.ports import Aim, Bus, Robot
-from lumen.run.route_inbox import RouteInbox
+from lumen.run.inbox import RouteInbox
 
 POSE_ROUTE = "joint"
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from lumen.errors import UndeliveredError
-from lumen.features.alerts import program
+from lumen.features.alerts import ways
 from lumen.features.alerts.alert import Alert, Origin
 from lumen.features.alerts.desk import address, deliver
 from lumen.features.alerts.settings import AlertChannel, Mail, Program, Webhook
@@ -183,7 +183,7 @@ def test_a_program_that_can_not(tmp_path: Path, command: list[str], said: str, f
 def test_a_program_that_does_not_end_is_ended_with_its_children(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    begin = program.subprocess.Popen
+    begin = ways.subprocess.Popen
 
     def begun(*words: Any, **options: Any) -> Any:
         """Its time begins when its child has."""
@@ -191,8 +191,8 @@ def test_a_program_that_does_not_end_is_ended_with_its_children(
         until(lambda: child.exists() and child.read_text())
         return process
 
-    monkeypatch.setattr(program, "subprocess", SimpleNamespace(**vars(program.subprocess) | {"Popen": begun}))
-    monkeypatch.setattr(program, "PROGRAM_TIMEOUT", 0.3)
+    monkeypatch.setattr(ways, "subprocess", SimpleNamespace(**vars(ways.subprocess) | {"Popen": begun}))
+    monkeypatch.setattr(ways, "PROGRAM_TIMEOUT", 0.3)
     error = undelivered(Program(("sh", "-c", "sleep 60 & echo $! > child; sleep 60")), tmp_path)
     assert str(error) == "the program did not end within 0.3 s"
     child = int((tmp_path / "child").read_text())

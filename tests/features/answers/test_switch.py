@@ -7,7 +7,7 @@ import pytest
 
 from lumen.bus import connect
 from lumen.language.projects import Project
-from lumen.run.model_switch import SILENCED_FILE, UNREADABLE, ModelSwitch
+from lumen.run.decisions import SILENCED_FILE, UNREADABLE, ModelSwitch
 from lumen.run.questions import Questions
 from tests.features.answers.conftest import with_model
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from lumen.cli.main import main
 from lumen.motion.limits import beyond_limits, overspeed
 from lumen.project.formats.conversion_findings import ForeignFileError
-from lumen.project.formats.imported_motions import read_gesture
+from lumen.project.formats.importers import read_gesture
 from lumen.project.packaged import shipped_root
 from tests.features.formats_motion.test_gestures import BODY, EXPORT, WAVE, XAR, built, read, said
 from tests.tables import for_each

@@ -15,7 +15,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.motion.trajectories import Trajectory
 from lumen.project.document_report import DocumentReport
 from lumen.project.formats.conversion_findings import ForeignFileError
-from lumen.project.formats.imported_motions import read_gesture
+from lumen.project.formats.importers import read_gesture
 from lumen.project.formats.yaml_document import document_yaml
 from lumen.project.motions import build_motion
 from lumen.project.packaged import shipped_root

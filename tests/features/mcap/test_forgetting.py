@@ -7,8 +7,8 @@ import orjson
 from lumen.features.mcap.files.reading import read_recording
 from lumen.features.mcap.files.recorded import RecordedMessage
 from lumen.features.mcap.recordings_folder import RecordingsFolder
+from lumen.run.forgetting.added import Forgetting
 from lumen.run.forgetting.files import forget_in
-from lumen.run.forgetting.report import Forgetting
 from tests.features.mcap.making import bodies, encoded, picture, said, write
 
 

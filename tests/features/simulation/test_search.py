@@ -8,7 +8,7 @@ from search_passage import KeptCosts, Text, Trial, cost, cost_of
 from lumen.language.robots import Body
 from lumen.motion import Motion
 from lumen.project.files import read_files
-from lumen.run.workers.work_kit import WorkKit, models_in
+from lumen.run.workers.tasks import WorkKit, models_in
 from lumen.run.workers.workers import Workers
 from tests.features.simulation.conftest import MODELS
 from tests.scanning import matching

@@ -15,15 +15,15 @@ def deliver(channel: AlertChannel, alert: Alert, origin: Origin, root: Path) -> 
     """Deliver an alert, waiting for the network. Raises UndeliveredError with the reason."""
     match channel:
         case Webhook(url):
-            from lumen.features.alerts.webhook import post  # imported here, because few exhibitions need its libraries
+            from lumen.features.alerts.ways import post  # each with libraries that few exhibitions need
 
             post(url, origin.body(alert))
         case Mail():
-            from lumen.features.alerts.mail import send_mail
+            from lumen.features.alerts.ways import send_mail
 
             send_mail(channel, origin.line(alert), origin.body(alert))
         case Program(command):
-            from lumen.features.alerts.program import run_program
+            from lumen.features.alerts.ways import run_program
 
             run_program(command, origin.body(alert), root)
 

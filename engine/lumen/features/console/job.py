@@ -61,8 +61,7 @@ def replay(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
     """What the files on the disk would have done in the visits that are kept; nothing where that can't be said."""
     from lumen.lint import check_files
     from lumen.project.files import read_files
-    from lumen.run.replaying.journals import chosen
-    from lumen.run.replaying.kept_bundles import KeptBundles
+    from lumen.run.replaying.journals import KeptBundles, chosen
     from lumen.run.replaying.other_files import against
 
     project = check_files(root, read_files(root, robot))[0]

@@ -19,7 +19,7 @@ from lumen.project.files import read_files
 from lumen.project.home import home_of
 from lumen.retrieval.scorers import words
 from lumen.run.one_robot import one_robot
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles
 
 WINDOW = 86_400.0 * 1.5
 """How long before the end of a day a file may have begun that holds something of it [s]."""

@@ -17,8 +17,8 @@ from lumen.language.people import name_key
 from lumen.language.projects import Project
 from lumen.language.routes import IMAGE
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.run.forgetting.added import Forgetting, ForgottenPlace
 from lumen.run.forgetting.files import attempt
-from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 from lumen.run.module import DAY, KEEP_DAYS, Module
 
 ROBOT_CAMERA = "robot"

@@ -3,10 +3,10 @@
 from math import degrees, pi, radians
 
 from lumen.features.formats_robots.mjcf_known import ACTUATORS, KNOWN
-from lumen.features.formats_robots.numbers import Numbers
 from lumen.features.formats_robots.orientation import (
     AXES,
     NestedFrame,
+    Numbers,
     Quaternion,
     between,
     euler,

@@ -1,7 +1,10 @@
-"""Nested frames: positions and quaternions (w, x, y, z), as in URDF and MJCF."""
+"""Numbers in a robot's model, and nested frames: positions and quaternions (w, x, y, z), as in URDF and MJCF."""
 
 from dataclasses import dataclass
-from math import cos, hypot, sin
+from math import cos, hypot, isfinite, sin
+
+from lumen.project.formats.conversion_findings import ConversionFindings
+from lumen.project.formats.xml_elements import XmlElement
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -86,3 +89,36 @@ def unit(q: Quaternion) -> Quaternion:
     """Return the quaternion scaled to length one; the identity if its length is zero."""
     length = hypot(*q)
     return (q[0] / length, q[1] / length, q[2] / length, q[3] / length) if length else UPRIGHT
+
+
+class Numbers:
+    """Reads attributes; invalid numbers are reported with their place and treated as missing."""
+
+    def __init__(self, findings: ConversionFindings) -> None:
+        self.findings = findings
+
+    def all(self, element: XmlElement, name: str, count: int) -> tuple[float, ...] | None:
+        """Return `count` numbers; None if the attribute is missing or invalid."""
+        text = element.get(name)
+        if not text:
+            return None
+        try:
+            numbers = tuple(float(word) for word in text.replace(",", " ").split())
+        except ValueError:
+            numbers = ()
+        if len(numbers) != count or not all(map(isfinite, numbers)):
+            wanted = "a number" if count == 1 else f"{count} numbers"
+            message = f'`{name}="{text[:40]}"` of `<{element.tag}>` is not {wanted}'
+            self.findings.lost(element.place, message, "correct it in the model")
+            return None
+        return numbers
+
+    def one(self, element: XmlElement, name: str) -> float | None:
+        """Return one number, None if it is missing or invalid."""
+        found = self.all(element, name, 1)
+        return found[0] if found else None
+
+    def vector(self, element: XmlElement, name: str, otherwise: Vector) -> Vector:
+        """Return three numbers, or `otherwise`."""
+        found = self.all(element, name, 3)
+        return (found[0], found[1], found[2]) if found else otherwise

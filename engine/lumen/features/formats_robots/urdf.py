@@ -1,7 +1,6 @@
 """Reads a robot's URDF (wiki.ros.org/urdf/XML): its joints. Transmissions and tags of simulators are ignored."""
 
-from lumen.features.formats_robots.numbers import Numbers
-from lumen.features.formats_robots.orientation import AXES, NestedFrame, Quaternion, euler, rotated
+from lumen.features.formats_robots.orientation import AXES, NestedFrame, Numbers, Quaternion, euler, rotated
 from lumen.features.formats_robots.parts import ModelJoint, RobotModel, follows
 from lumen.project.formats.conversion_findings import ConversionFindings
 from lumen.project.formats.known import FormatTable, Known

@@ -9,8 +9,8 @@ from lumen.features.mcap.redaction import redacted
 from lumen.language.counts import counted
 from lumen.language.people import PersonName, name_key
 from lumen.project.home import Home
+from lumen.run.forgetting.added import Forgetting, ForgottenPlace
 from lumen.run.forgetting.files import attempt, await_others
-from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 
 
 def forget_recordings(folder: Path, name: str, found: Forgetting) -> None:

@@ -26,8 +26,7 @@ from lumen.project.document_report import DocumentReport
 from lumen.project.draft import ProjectDraft, body_of
 from lumen.project.files import read_files
 from lumen.project.formats.conversion_findings import ForeignFileError
-from lumen.project.formats.imported_motions import read_gesture
-from lumen.project.formats.importers import endings
+from lumen.project.formats.importers import endings, read_gesture
 from lumen.project.motions import build_motion
 from lumen.project.schema import check_schema
 from lumen.project.units import unit_in_si

@@ -22,8 +22,8 @@ from lumen.project.files import read_files
 from lumen.project.home import home_of
 from lumen.project.settings import Settings
 from lumen.run.asking import OPERATOR_ANSWERS, send_request
+from lumen.run.forgetting.added import Forgetting, ForgottenPlace, out_of_reach
 from lumen.run.forgetting.files import forget_in
-from lumen.run.forgetting.report import Forgetting, ForgottenPlace, out_of_reach
 from lumen.run.one_robot import one_robot
 from lumen.run.reaching import reach_exhibition
 

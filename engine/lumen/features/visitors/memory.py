@@ -14,8 +14,8 @@ from lumen.language.modules import MEMORY, VISITOR_KEY
 from lumen.language.people import PersonName, name_key
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message, MessageHandler
+from lumen.run.forgetting.added import Forgetting, ForgottenPlace
 from lumen.run.forgetting.files import attempt
-from lumen.run.forgetting.report import Forgetting, ForgottenPlace
 from lumen.run.module import DAY, KEEP_DAYS, Module
 
 DATABASE_FILE = "memory.db"

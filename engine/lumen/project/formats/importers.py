@@ -1,13 +1,17 @@
 """The importers of other tools' files, by the ending of the file name; they are rows of manifests."""
 
 from collections.abc import Mapping
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, Protocol
 
 from lumen.feature import Importer, distribution_of, owner, table
-from lumen.language.diagnostics import Diagnostic
+from lumen.language.diagnostics import Diagnostic, Place
+from lumen.language.robots import Body
 from lumen.project.broken_features import called, faulty, resolved, shown
+from lumen.project.formats.conversion_findings import LOST, ConversionFindings, broken
+from lumen.project.formats.joint_curves import JointCurves, MotionFile
 from lumen.project.formats.known import FormatTable
+from lumen.project.formats.motion_writer import MotionWriter
 
 
 class FileReader(Protocol):
@@ -76,3 +80,30 @@ def reader(ending: str) -> Any:
 def format_tables() -> Mapping[str, FormatTable]:
     """Return the tables of names of each format: read, lost or meaningless names by the kind of place in a file."""
     return {name: resolved(owner("format_tables", name), where) for name, where in table("format_tables").items()}
+
+
+class MotionReader(Protocol):
+    """Reads the curves of all joints from a file of another tool. Raises ForeignFileError."""
+
+    def __call__(self, file: MotionFile, findings: ConversionFindings) -> JointCurves: ...
+
+
+def read_gesture(
+    file: str, content: bytes, body: Body, *, timeline: str = "", retime: bool = False
+) -> tuple[dict[str, Any], list[Diagnostic]]:
+    """Return the data of a motion file for that body, and the findings; the file's ending selects the format.
+
+    `timeline` names the timeline of a .xar, or the function of a .py; with `retime` the motion lasts as long as its
+    joints need. Raises ForeignFileError if the file holds no motion.
+    """
+    findings = ConversionFindings()
+    read: MotionReader = reader(PurePath(file).suffix)
+    curves = read(MotionFile(file, content, timeline, body.hands), findings)
+    data = MotionWriter(body, findings, retime).data(curves, f"From {file.replace(chr(92), '/').rpartition('/')[2]}")
+    if not data["keyframes"]:
+        message = f"the file moves no joint of {body.name}"
+        lost = [finding for finding in findings.diagnostics if finding.code == LOST]
+        if not lost:
+            raise broken(Place(file), "not-a-motion", message)
+        raise broken(lost[0].place, "not-a-motion", f"{message}: {lost[0].message}")
+    return data, findings.diagnostics

@@ -18,7 +18,7 @@ from lumen.project.files import MAX_PROJECT_BYTES
 from lumen.project.home import Home
 from lumen.project.json_lines import forget_lines, line_names
 from lumen.run.bundles import DamagedBundleError, unpacked
-from lumen.run.forgetting.report import Forgetting, ForgottenPlace
+from lumen.run.forgetting.added import Forgetting, ForgottenPlace
 from lumen.run.snapshot_store import SNAPSHOT_FILE
 
 DRAFT_AGE = 5.0

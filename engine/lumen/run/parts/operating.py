@@ -35,15 +35,13 @@ from lumen.robot.robot_routes import TEXT_ROUTE
 from lumen.run.activity_tracker import ActivityTracker
 from lumen.run.answering import AnsweringThread
 from lumen.run.asking import operator_key
-from lumen.run.decisions import DecisionRecords, Decisions
+from lumen.run.decisions import DecisionRecords, Decisions, ModelSwitch, RequestChecks
 from lumen.run.live_behavior import LiveBehavior
 from lumen.run.loop import Observer
-from lumen.run.model_switch import ModelSwitch
 from lumen.run.narrator import Narrator
 from lumen.run.now import NowView, PresentMoment, moment
 from lumen.run.parts.part import Part
 from lumen.run.raised_events import RaisedEvents, person_in, refusal
-from lumen.run.request_checks import RequestChecks
 from lumen.run.status import LastReload, status_of
 from lumen.run.step_memory import StepMemory
 from lumen.statechart import Step

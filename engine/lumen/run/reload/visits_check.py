@@ -84,7 +84,7 @@ def check_visits(root: Path, new: Project, running: str, budget: float) -> Visit
     """
     from lumen.journal.journal_folder import JOURNAL_FOLDER, JournalFolder
     from lumen.project.home import home_of
-    from lumen.run.replaying.kept_bundles import KeptBundles  # only needed to play visits
+    from lumen.run.replaying.journals import KeptBundles  # only needed to play visits
     from lumen.run.replaying.latest_visits import latest_first
     from lumen.run.replaying.other_files import VisitPlayer
 

@@ -9,7 +9,7 @@ from lumen.errors import JournalError
 from lumen.insight.replay.entries import JournalJump, RecordedEntry
 from lumen.insight.replay.visits import RecordedVisit, visits
 from lumen.journal.journal_file import read_journal
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles
 from lumen.run.replaying.other_files import with_machines
 
 

@@ -13,7 +13,7 @@ from lumen.language.commands import BodyCommand, Play
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
 from lumen.robot.command_table import COMMANDS, USUAL_DURATION, row_of
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles
 from lumen.run.replaying.replay_report import ReplayReport
 
 NOT_WHOLE = "visits that are incomplete in the journal"

@@ -10,11 +10,10 @@ from lumen.insight.replay.visits import RecordedVisit, visits
 from lumen.journal.journal_file import header_of
 from lumen.language.machines import MachineDefinition
 from lumen.language.projects import Project
-from lumen.run.replaying.journals import ChosenJournal
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import ChosenJournal, KeptBundles
 from lumen.run.replaying.other_files import VisitPlayer, with_machines
 from lumen.run.replaying.replay_report import ReplayCount, ReplayReport, TakenAgain
-from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in
+from lumen.run.workers.tasks import UnpackedKit, WorkKit, models_in
 from lumen.run.workers.workers import Workers
 
 VISITS = 20

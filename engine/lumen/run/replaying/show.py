@@ -8,7 +8,7 @@ from lumen.insight.replay.replaying import Replayer
 from lumen.language.projects import Project
 from lumen.run.narrator import Narrator
 from lumen.run.performer import Performer
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles
 from lumen.run.setup import Setup
 
 LEAD_IN = 1.0

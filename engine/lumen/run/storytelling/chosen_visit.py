@@ -7,8 +7,7 @@ from typing import NamedTuple
 from lumen.errors import UsageError
 from lumen.insight.replay.journal_clock import JournalClock
 from lumen.insight.replay.visits import RecordedVisit, visits
-from lumen.run.replaying.journals import ChosenJournal, requested_time
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import ChosenJournal, KeptBundles, requested_time
 from lumen.run.replaying.other_files import with_machines
 
 

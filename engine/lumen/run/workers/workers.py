@@ -12,8 +12,7 @@ from lumen.errors import UsageError
 from lumen.run.workers.cluster import SCHEME, cluster, cluster_address, lost_in_cluster
 from lumen.run.workers.crew import AloneCrew, Crew, Staff, StaffedCrew
 from lumen.run.workers.local_pool import local_pool, working_folder
-from lumen.run.workers.tasks import TaskHead, engine
-from lumen.run.workers.work_kit import UnpackedKit, WorkKit, name_of
+from lumen.run.workers.tasks import TaskHead, UnpackedKit, WorkKit, engine, name_of
 
 Result = TypeVar("Result")
 MAX_WORKERS = 1024

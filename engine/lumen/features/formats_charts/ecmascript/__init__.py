@@ -5,8 +5,7 @@ Both are read into the tree of `lumen.expressions`, with the rest of ECMAScript 
 """
 
 from lumen.features.formats_charts.ecmascript.reader import ScriptNames, ScriptTranslator, read_condition, read_value
-from lumen.features.formats_charts.ecmascript.script_parser import parse_script
-from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
+from lumen.features.formats_charts.ecmascript.script_parser import ScriptError, parse_script
 from lumen.features.formats_charts.ecmascript.writer import Vocabulary, WrittenScript, write_expression
 
 __all__ = [

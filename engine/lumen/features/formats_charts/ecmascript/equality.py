@@ -12,9 +12,8 @@ from lumen.expressions.tree import (
     Unary,
     path_of,
 )
-from lumen.features.formats_charts.ecmascript.kind_inference import UNKNOWN_KIND
-from lumen.features.formats_charts.ecmascript.known_fields import is_data, negated
-from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
+from lumen.features.formats_charts.ecmascript.kind_inference import UNKNOWN_KIND, is_data, negated
+from lumen.features.formats_charts.ecmascript.script_parser import ScriptError
 from lumen.features.formats_charts.ecmascript.translation import Translation
 
 EVENT, HAPPENED = Identifier("_event"), FunctionCall("has", (FieldAccess(Identifier("event"), "name"),))

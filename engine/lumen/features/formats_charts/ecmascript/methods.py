@@ -13,7 +13,7 @@ from lumen.expressions.tree import (
     Literal,
 )
 from lumen.features.formats_charts.ecmascript.kind_inference import is_float
-from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
+from lumen.features.formats_charts.ecmascript.script_parser import ScriptError
 from lumen.features.formats_charts.ecmascript.translation import Translation
 
 SIGN_FUNCTIONS = {"contained": "in", "same": "=="}

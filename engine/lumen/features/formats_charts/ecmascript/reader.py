@@ -23,11 +23,9 @@ from lumen.expressions.tree import (
     walk,
 )
 from lumen.features.formats_charts.ecmascript.equality import EVENT, HAPPENED, equality, guarded
-from lumen.features.formats_charts.ecmascript.kind_inference import UNKNOWN_KIND, is_float, kind
-from lumen.features.formats_charts.ecmascript.known_fields import known, negated
+from lumen.features.formats_charts.ecmascript.kind_inference import UNKNOWN_KIND, is_float, kind, known, negated
 from lumen.features.formats_charts.ecmascript.methods import LUMEN_FUNCTIONS, SIGN_FUNCTIONS, method
-from lumen.features.formats_charts.ecmascript.script_parser import parse_script
-from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
+from lumen.features.formats_charts.ecmascript.script_parser import ScriptError, parse_script
 
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _FALSY = ListLiteral((Literal(None), Literal(False), Literal(0), Literal("")))

@@ -24,7 +24,7 @@ from lumen.expressions.tree import (
 )
 from lumen.features.formats_charts.ecmascript.kind_inference import is_float, kind
 from lumen.features.formats_charts.ecmascript.methods import EQUIVALENT_METHODS
-from lumen.features.formats_charts.ecmascript.script_tokens import ScriptError
+from lumen.features.formats_charts.ecmascript.script_parser import ScriptError
 
 _METHODS = {ours: theirs for theirs, ours in EQUIVALENT_METHODS.items()}
 _PREFIX = re.compile(r"\^((?:\\[^\w\s]|[\w\s])+)", re.ASCII)

@@ -18,7 +18,7 @@ from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.lending import model_files
 from lumen.run.linting.findings import Findings
-from lumen.run.workers.work_kit import UnpackedKit, WorkKit, models_in
+from lumen.run.workers.tasks import UnpackedKit, WorkKit, models_in
 from lumen.run.workers.workers import Workers
 
 ROBOTS = 20
