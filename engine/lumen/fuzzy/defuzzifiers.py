@@ -29,7 +29,7 @@ _ROOM = 1 << 18  # values of a chunk: small enough for the cache
 
 
 class Sampled:
-    """Defuzzifies by `method`; `terms` says for each degree handed in which term it implies."""
+    """Defuzzifies by `method`; `terms` is the index of the term that each of the given degrees implies."""
 
     def __init__(
         self,
@@ -50,13 +50,13 @@ class Sampled:
         self._method = DEFUZZIFY[method]
 
     def crisp(self, degrees: Sequence[float], values: Sequence[float] = ()) -> float:
-        """The output; NaN where the set is empty."""
+        """Return the output; NaN if the set is empty."""
         import numpy as np
 
         return float(self.crisp_batch([np.array([degree]) for degree in degrees])[0])
 
     def crisp_batch(self, degrees: "Sequence[Array]", values: "Sequence[Array]" = ()) -> "Array":
-        """The outputs, Shape (n,), of degrees of Shape (n,) each; NaN where a set is empty."""
+        """Return the outputs, Shape (n,), of degrees of Shape (n,) each; NaN for empty sets."""
         import numpy as np
 
         size = max(1, _ROOM // len(self._points))
@@ -64,7 +64,7 @@ class Sampled:
         return np.concatenate([self._chunk([degree[i : i + size] for degree in degrees]) for i in chunks])
 
     def aggregated(self, degrees: "Sequence[Array]") -> "Array":
-        """The concluded set, Shape (n, points)."""
+        """Return the concluded set, Shape (n, points)."""
         import numpy as np
 
         whole = np.zeros((len(degrees[0]), len(self._points)))
@@ -85,7 +85,7 @@ def _centroid(y: "Array", whole: "Array") -> "Array":
 
 
 def _bisector(y: "Array", whole: "Array") -> "Array":
-    """The point where half of the area lies on either side; the mean of all that come equally near."""
+    """Return the point that halves the area; the mean of all points that are equally near to it."""
     import numpy as np
 
     half = whole.cumsum(axis=1)

@@ -79,8 +79,9 @@ PROGRAM_TIMEOUT = 30.0
 
 
 def run_program(command: Sequence[str], body: dict[str, Any], root: Path) -> None:
-    """Run the program in the project's folder and wait for its end. Raises UndeliveredError unless its exit code
-    is 0.
+    """Run the program in the project's folder and wait for its end.
+
+    Raises UndeliveredError unless its exit code is 0.
     """
     name = command[0]
     if os.path.basename(name) != name:
