@@ -1,4 +1,4 @@
-"""What the chains of one machine share: answers about its states and transitions, and the work that is left."""
+"""The shared data of all chains of one machine: answers about its states and transitions, and the remaining work."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from lumen.lint.events import hears
 from lumen.lint.statecharts import within
 
 MAX_WORK = 30_000
-"""The most states that are visited for the chains of one behaviour; further chains are not followed."""
+"""The greatest number of states that are visited for the chains of one behaviour; further chains are not followed."""
 
 TRANSITIONS_PER_WORK = 10
 """The number of transitions that are compared with an event in the time of one visit."""
@@ -24,7 +24,7 @@ class UncertainError(Exception):
 class ChainSurvey:
     """Shared data of all chains of a machine: the order of its states, the situations seen, and the work done.
 
-    Answers about a state or a transition are kept, since each chain asks for them again.
+    Answers about a state or a transition are stored, because each chain needs them again.
     """
 
     def __init__(self, machine: MachineDefinition, ends: dict[tuple[int, int], bool | None]) -> None:
@@ -53,17 +53,18 @@ class ChainSurvey:
 
     @property
     def exhausted(self) -> bool:
+        """Whether the work exceeds MAX_WORK."""
         return self.work > MAX_WORK
 
     def regions(self, path: str) -> list[str]:
-        """The regions of a parallel state."""
+        """Return the regions of a parallel state."""
         if path not in self._regions:
             states = self.machine.states
             self._regions[path] = [c for c in states[path].children if states[c].kind is not StateKind.HISTORY]
         return self._regions[path]
 
     def is_heard(self, region: str, event: str) -> bool:
-        """Whether an event selects a transition of any state in a region."""
+        """Return whether an event selects a transition of any state in a region."""
         if (region, event) not in self._heard:
             rows, _ = self._in(region)
             self.spend(len(rows) // TRANSITIONS_PER_WORK)
@@ -71,11 +72,11 @@ class ChainSurvey:
         return self._heard[region, event]
 
     def speaks_at_exit(self, region: str) -> bool:
-        """Whether an `exit` of any state in a region raises or sends an event."""
+        """Return whether an `exit` of any state in a region raises or sends an event."""
         return self._in(region)[1]
 
     def _in(self, region: str) -> tuple[list[Transition], bool]:
-        """The transitions of all states in a region that an event selects, and whether an exit there speaks."""
+        """Return the transitions in a region with an event, and whether an `exit` there raises or sends an event."""
         if region not in self._inside:
             rows, speaks, waiting = list[Transition](), False, [region]
             while waiting:
@@ -87,7 +88,7 @@ class ChainSurvey:
         return self._inside[region]
 
     def rows(self, path: str, event: str) -> list[Transition]:
-        """The transitions of a state that an event selects."""
+        """Return the transitions of a state that an event selects."""
         if (path, event) not in self._rows:
             transitions = self.machine.states[path].transitions
             self.spend(len(transitions) // TRANSITIONS_PER_WORK)
@@ -95,7 +96,7 @@ class ChainSurvey:
         return self._rows[path, event]
 
     def timers(self, path: str) -> list[Transition]:
-        """Each `after: 0s` of a state."""
+        """Return the transitions with `after: 0s` of a state, one for each of its timers."""
         if path not in self._timers:
             rows = reversed(self.machine.states[path].transitions)
             names = {t.event: t for t in rows if t.timed and t.delay == 0}
@@ -103,19 +104,19 @@ class ChainSurvey:
         return self._timers[path]
 
     def is_left_at_once(self, path: str) -> bool:
-        """Whether an `after: 0s` of a state has a target."""
+        """Return whether an `after: 0s` of a state has a target."""
         if path not in self._left:
             self._left[path] = any(t.delay == 0 and t.targets for t in self.machine.states[path].transitions)
         return self._left[path]
 
     def domain(self, transition: Transition) -> str:
-        """The state that a transition does not leave."""
+        """Return the state within which a transition leaves and enters states (`transition_domain`)."""
         if id(transition) not in self._domains:
             self._domains[id(transition)] = transition_domain(self.machine, transition)
         return self._domains[id(transition)]
 
     def final(self, path: str) -> list[str]:
-        """The final states among a state and its children."""
+        """Return the final states among a state and its children."""
         if path not in self._final:
             states = self.machine.states
             self._final[path] = [p for p in (*states[path].children, path) if states[p].kind is StateKind.FINAL]
@@ -123,7 +124,10 @@ class ChainSurvey:
 
 
 def transition_domain(machine: MachineDefinition, transition: Transition) -> str:
-    """The state that a transition does not leave: the innermost compound one around its source and its targets."""
+    """Return the innermost compound state around a transition's source and targets, which it does not leave.
+
+    This is the domain of the transition (`getTransitionDomain` in SCXML).
+    """
     path = transition.source
     if transition.reenter:
         path = machine.states[path].parent or ""
@@ -136,7 +140,7 @@ def transition_domain(machine: MachineDefinition, transition: Transition) -> str
 
 
 def sends_event(block: Sequence[PlacedAction], to: str = "") -> bool:
-    """Whether it raises or sends an event, to that recipient if one is named."""
+    """Return whether a block raises or sends an event; with `to`, only those sent to that recipient count."""
     actions = [step.action for step in nested(tuple(block))]
     return any(isinstance(a, Send) and a.to == to if to else isinstance(a, Raise | Send) for a in actions)
 

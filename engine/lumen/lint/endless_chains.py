@@ -39,7 +39,7 @@ def _beginnings(survey: ChainSurvey) -> Iterator[InstantChain]:
     There are no more after MAX_WORK.
     """
     stays: dict[str | None, bool] = {None: True}
-    for state in survey.machine.states.values():  # each after the one around it
+    for state in survey.machine.states.values():  # a parent comes before its children
         stays[state.path] = stays[state.parent] and _stays(survey, state)
         for transition in state.transitions if stays[state.path] else ():
             if survey.exhausted:
@@ -65,12 +65,12 @@ def _beginnings(survey: ChainSurvey) -> Iterator[InstantChain]:
 
 
 def _stays(survey: ChainSurvey, state: State) -> bool:
-    """Whether a state is still active at the next rest after it was entered; True if that is uncertain."""
+    """Return whether a state is still active at the next rest after its entry; True if that is uncertain."""
     chain = InstantChain(survey)
     try:
         chain.stand_around(state.path)
         if any(map(survey.is_left_at_once, chain.active)):
-            return False  # a state around is left at once
+            return False  # an ancestor is left at once
         chain.enter((state.path,), state.parent)
         for _ in range(MAX_STEPS_TO_REST):
             if not chain.step():

@@ -24,7 +24,7 @@ from lumen.lint.logic import tree
 from lumen.lint.statecharts import within
 
 MAX_STEPS = 1000
-"""The most events and transitions of a chain that are followed: as many as the engine processes without a rest."""
+"""The greatest number of events and transitions of a chain that are followed, as in the engine."""
 
 STATES_PER_WORK = 10
 """The number of states, regions or actions that are looked at in the time of one visit."""
@@ -44,38 +44,43 @@ TakenTransition = tuple[Transition, str]
 
 @dataclass
 class InstantChain:
-    """A machine that is followed while no time passes and each next transition is certain.
-
-    `active` are the paths of the active states, `begun` those whose `do` and `invoke` have begun; `unknown` are regions
-    parallel to the active states in which any state may be active.
-    """
+    """A machine that is followed while no time passes and each next transition is certain."""
 
     survey: ChainSurvey
+    """The data that all chains of the machine share."""
     depth: int = MAX_INVOKED
+    """The depth of invoked behaviours that may still be followed."""
     active: set[str] = field(default_factory=set)
+    """The paths of the active states."""
     begun: set[str] = field(default_factory=set)
+    """The paths of the states whose `do` and `invoke` have begun."""
     unknown: set[str] = field(default_factory=set)
+    """Regions parallel to the active states in which any state may be active."""
     internal: tuple[str, ...] = ()
+    """The raised events that wait to be processed."""
     timers: list[Transition | str] = field(default_factory=list)
     """Each `after: 0s` and each sent event, in their order: they come after the internal events, in the same moment."""
     taken: list[TakenTransition] = field(default_factory=list)
+    """The transitions taken so far."""
     asked: list[tuple[int, str]] = field(default_factory=list)
     """Guards of `always` that are assumed false, each with the number of transitions taken before it, and as shown."""
     assigned: int = -1
     """The number of transitions taken before the last change of the context."""
     over: bool = False
+    """Whether the machine has ended."""
 
     @property
     def machine(self) -> MachineDefinition:
+        """The machine that is followed."""
         return self.survey.machine
 
     def situation(self) -> tuple[object, ...]:
-        """Everything that decides the next transition."""
+        """Return everything that decides the next transition, as a hashable value."""
         timers = tuple(timer if isinstance(timer, str) else id(timer) for timer in self.timers)
         return frozenset(self.active), frozenset(self.begun), self.internal, timers
 
     def stand_around(self, path: str) -> None:
-        """Mark the states around that one as active, as if they had been active for a while."""
+        """Mark the ancestors of a state as active, as if they had been active for a while."""
         while (outer := self.machine.states[path].parent) is not None:
             if self.machine.states[outer].kind is StateKind.PARALLEL:
                 regions = self.survey.regions(outer)
@@ -87,7 +92,7 @@ class InstantChain:
         self.begun |= self.active
 
     def enter(self, targets: Iterable[str], domain: str | None) -> None:
-        """Enter these states, those around them up to the domain, and what begins with them."""
+        """Enter these states and their ancestors up to the domain, and the states that are entered with them."""
         states, found = self.machine.states, set[str]()
 
         def add(path: str | None, top: str | None) -> None:
@@ -136,7 +141,7 @@ class InstantChain:
                     self.take([timer] if self._holds(timer) else [], timer.event)
                     return True
                 if any(self.machine.states[path].invoke for path in self.active):
-                    raise UncertainError  # they receive it, too
+                    raise UncertainError  # the invoked behaviours receive it too
                 event = timer
             else:
                 return False
@@ -145,7 +150,7 @@ class InstantChain:
         return True
 
     def take(self, transitions: Sequence[Transition], event: str) -> None:
-        """Take these in one step; of two that leave the same states only the inner or the earlier one."""
+        """Take these transitions in one step; of two that leave the same states only the inner or the earlier one."""
         kept: list[Transition] = []
         for transition in transitions:
             self.survey.spend(len(kept) // STATES_PER_WORK)
@@ -202,7 +207,9 @@ class InstantChain:
                 self.internal += (f"done.do.{state.name}",)
 
     def _end(self, final: State) -> None:
-        """Note which states end with a final one: the compound one around it, and parallel ones as a whole."""
+        """Raise the events of the states that end with a final one: its parent, and parallel states that end with
+        it.
+        """
         path = final.parent or ""
         while self.machine.states[path].kind is not StateKind.PARALLEL or self._is_final(path):
             state = self.machine.states[path]
@@ -215,7 +222,7 @@ class InstantChain:
             path = state.parent or ""
 
     def _is_final(self, path: str) -> bool:
-        """Whether a state has ended; raises UncertainError if a region of it is unknown."""
+        """Return whether a state has ended. Raises UncertainError if a region of it is unknown."""
         state = self.machine.states[path]
         if path in self.unknown:
             raise UncertainError
@@ -225,7 +232,7 @@ class InstantChain:
         return not self.active.isdisjoint(self.survey.final(path))
 
     def selected(self, event: str) -> list[Transition]:
-        """The first transition of each innermost state that the event selects."""
+        """Return the first transition that the event selects for each innermost active state, in it or around it."""
         states, found, asked = self.machine.states, list[Transition](), set[str]()
         self.survey.spend(len(self.unknown) // STATES_PER_WORK)
         if event and any(self.survey.is_heard(region, event) for region in self.unknown):
@@ -244,7 +251,11 @@ class InstantChain:
         return found
 
     def _holds(self, transition: Transition) -> bool:
-        """Whether a selected transition is taken; a guard of `always` that uses only the context may be false."""
+        """Return whether a selected transition is taken; False for a guard of `always` that uses only the context.
+
+        Such a guard is only assumed to be false. Raises UncertainError for any other guard, for rows of `hears` and for
+        transitions that wait for approval.
+        """
         if transition.hears or transition.approve:
             raise UncertainError
         if transition.guard is None:
@@ -256,7 +267,7 @@ class InstantChain:
         return False
 
     def _note(self, block: Sequence[PlacedAction]) -> None:
-        """Note the events of a block, and whether it changes the context."""
+        """Add the events of a block to those that wait, and record whether it changes the context."""
         steps = list(nested(tuple(block)))
         self.survey.spend(len(steps) // STATES_PER_WORK)
         if any(isinstance(step.action, Assign) for step in steps):
@@ -277,7 +288,7 @@ class InstantChain:
 
 
 def round_of(chain: InstantChain) -> list[TakenTransition]:
-    """The transitions of a round back to a situation, or without end; empty if the chain rests or is uncertain."""
+    """Return the transitions of a loop that returns to a situation or grows without end; empty if none is certain."""
     seen: dict[tuple[object, ...], int] = {}
     try:
         for _ in range(MAX_STEPS):
@@ -310,12 +321,12 @@ def _settled(chain: InstantChain, around: list[TakenTransition]) -> list[TakenTr
 
 
 def asked_guards(chain: InstantChain, number: int) -> list[str]:
-    """The guards on which the last transitions depend."""
+    """Return the guards on which the last `number` transitions depend."""
     return list(dict.fromkeys(shown for before, shown in chain.asked if before >= len(chain.taken) - number))
 
 
 def _is_over_at_once(machine: MachineDefinition, depth: int, ends: dict[tuple[int, int], bool | None]) -> bool:
-    """Whether an invoked behaviour ends as soon as it begins; raises UncertainError if that is not certain."""
+    """Return whether an invoked behaviour ends as soon as it begins. Raises UncertainError if that is not certain."""
     key = id(machine), depth
     if key not in ends:
         try:
@@ -341,5 +352,5 @@ def _ends(machine: MachineDefinition, depth: int, ends: dict[tuple[int, int], bo
 
 
 def _is_instant(step: PlacedAction) -> bool:
-    """Whether an action of a `do` ends at once."""
+    """Return whether an action of a `do` ends at once."""
     return isinstance(step.action, _INSTANT) and (not isinstance(step.action, Wait) or step.action.seconds == 0)
