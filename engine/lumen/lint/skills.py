@@ -10,7 +10,7 @@ from lumen.lint.lookups import first
 from lumen.lint.walk import action_sites
 from lumen.project.draft import ProjectDraft
 from lumen.project.project_folders import MOTIONS
-from lumen.project.role_names import LEFT_OUT
+from lumen.project.roles import LEFT_OUT
 
 
 def check(draft: ProjectDraft) -> None:

@@ -6,7 +6,7 @@ import pytest
 
 import lumen
 from lumen.clock.real import RealClock
-from lumen.features.reachy.offers import ReachyRobot
+from lumen.features.reachy.robot import ReachyRobot
 from lumen.language.projects import Project
 from tests.features.reachy.fake import FakeDaemon
 from tests.tour.conftest import copied

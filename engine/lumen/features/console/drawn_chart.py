@@ -12,7 +12,7 @@ from lumen.run.diagrams.placing import PADDING, ROW_HEIGHT, TITLE_HEIGHT, Placed
 from lumen.run.diagrams.svg_writer import arrow_lines
 from lumen.run.diagrams.views import overview
 from lumen.run.one_robot import one_robot
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles
 
 
 def chart_of(root: Path, robot: str, hash: str) -> dict[str, Any]:

@@ -10,8 +10,7 @@ from lumen.insight.replay.visits import RecordedVisit, visits
 from lumen.project.project_folders import STORIES
 from lumen.run.new_passage import create_file
 from lumen.run.one_robot import one_robot
-from lumen.run.replaying.journals import chosen
-from lumen.run.replaying.kept_bundles import KeptBundles
+from lumen.run.replaying.journals import KeptBundles, chosen
 from lumen.run.replaying.other_files import with_machines
 from lumen.run.storytelling.story_text import story_text
 from lumen.run.storytelling.visit_story import renaming, visit_story
