@@ -27,8 +27,8 @@ from lumen.language.knowledge import Passage, QuestionSet
 from lumen.language.projects import Project
 from lumen.lint import check_files
 from lumen.project.files import read_files
-from lumen.retrieval.choice import AnswerRates
 from lumen.retrieval.features import Method, by_wordings, joined, words
+from lumen.retrieval.ranking import AnswerRates
 from lumen.retrieval.retriever import Retriever
 from lumen.retrieval.scorers import bm25, ngrams
 from lumen.retrieval.trials import (

@@ -22,7 +22,7 @@ from lumen.language.sayings import SayingSet
 from lumen.language.stories import Story
 from lumen.project.project_folders import MAIN_FILE
 from lumen.project.running_project import own_project
-from lumen.retrieval.choice import QuestionTrial
+from lumen.retrieval.ranking import QuestionTrial
 from lumen.run.chosen_stories import project_of, tests_of
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored, explored

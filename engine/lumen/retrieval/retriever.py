@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lumen.language.knowledge import Passage
-from lumen.retrieval.choice import Ranked, Weights, probabilities
+from lumen.retrieval.choice import probabilities
 from lumen.retrieval.features import Features, Method
 from lumen.retrieval.features import words as by_words
+from lumen.retrieval.ranking import Ranked, Weights
 from lumen.retrieval.scorers import words
 
 

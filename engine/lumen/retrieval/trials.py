@@ -5,18 +5,9 @@ from math import floor
 from typing import NamedTuple
 
 from lumen.language.knowledge import QuestionSet
-from lumen.retrieval.choice import (
-    MAX_WRONG,
-    NEVER,
-    AnswerRates,
-    QuestionTrial,
-    Weights,
-    WrongAnswer,
-    fitted,
-    probabilities,
-    shares,
-)
+from lumen.retrieval.choice import fitted, probabilities, shares
 from lumen.retrieval.features import Features
+from lumen.retrieval.ranking import MAX_WRONG, NEVER, AnswerRates, QuestionTrial, Weights, WrongAnswer
 from lumen.retrieval.retriever import Retriever
 
 FOLDS = 10

@@ -17,7 +17,7 @@ from lumen.language.events import Event
 from lumen.language.modules import ANSWERS
 from lumen.language.projects import Project
 from lumen.ports import Bus, Message
-from lumen.retrieval.choice import Weights
+from lumen.retrieval.ranking import Weights
 from lumen.statechart import Step
 
 if TYPE_CHECKING:

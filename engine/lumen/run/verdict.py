@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from lumen.insight.explaining.function_examples import TriedExample
 from lumen.insight.explaining.sayings import TriedSaying
 from lumen.language.diagnostics import Place
-from lumen.retrieval.choice import QuestionTrial
+from lumen.retrieval.ranking import QuestionTrial
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored
 from lumen.run.rehearsal import Rehearsal

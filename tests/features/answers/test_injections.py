@@ -16,7 +16,7 @@ import yaml
 from lumen.features.answers.module import Answers
 from lumen.language.commands import Ask, Cancel, Say, Start
 from lumen.language.projects import Project
-from lumen.retrieval.choice import Weights
+from lumen.retrieval.ranking import Weights
 from lumen.retrieval.retriever import Retriever
 from tests.features.answers.conftest import Desk, with_model
 from tests.features.answers.fake_model import Handler, fake_model

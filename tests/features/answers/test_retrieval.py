@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from lumen.language.knowledge import Passage, QuestionSet
-from lumen.retrieval.choice import NEVER, RIDGE, UNANSWERABLE, Weights, fitted, probabilities, shares
+from lumen.retrieval.choice import RIDGE, fitted, probabilities, shares
 from lumen.retrieval.features import coverage
+from lumen.retrieval.ranking import NEVER, UNANSWERABLE, Weights
 from lumen.retrieval.retriever import Retriever
 from lumen.retrieval.scorers import stems
 from lumen.retrieval.trials import Judged, least_probability, left_out, outcome, tried, weights_of

@@ -4,7 +4,7 @@ import json
 from typing import Any
 
 from lumen.language.diagnostics import Place
-from lumen.retrieval.choice import QuestionTrial
+from lumen.retrieval.ranking import QuestionTrial
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored
 from lumen.run.rehearsal import Rehearsal

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from lumen.cli.printing import clock_time
 from lumen.cli.terminal import paint
-from lumen.retrieval.choice import QuestionTrial, WrongAnswer
+from lumen.retrieval.ranking import QuestionTrial, WrongAnswer
 from lumen.run.coverage import Coverage
 from lumen.run.exploring import Explored
 from lumen.run.rehearsal import Rehearsal

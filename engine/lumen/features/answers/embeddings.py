@@ -88,8 +88,8 @@ class Embeddings:
         """Return the passages for a question by `deadline` (`time.monotonic`). Raises ModuleError if no vectors are
         available.
         """
-        from lumen.retrieval.choice import NEVER, Weights
         from lumen.retrieval.features import joined, words
+        from lumen.retrieval.ranking import NEVER, Weights
         from lumen.retrieval.retriever import Retriever
         from lumen.retrieval.trials import weights_of
 
