@@ -57,7 +57,7 @@ RIGHTS = {
     "eyes": ("^amq\\.gen", "^(amq\\.topic|amq\\.gen|amq\\.default)", "^(amq\\.topic|amq\\.gen)"),
     "lamp": ("^mqtt-subscription", "^(amq\\.topic|mqtt-subscription)", "^(amq\\.topic|mqtt-subscription)"),
 }
-"""What a user may configure, write and read, where that is not everything: as docs/broker.md has it for a module."""
+"""The limited rights of some users to configure, write and read, as in docs/deployment.md for a module."""
 
 NOWHERE = {
     "vhost": "/",
@@ -71,8 +71,8 @@ NOWHERE = {
 class RabbitMQ:
     """A broker in a folder of its own; `url` is where it listens once `start` has returned.
 
-    With a folder of certificates it listens for TLS too, on the port `secure`, and has the policy of docs/broker.md for
-    messages that nobody waits for. With `speaks_mqtt` its plug-in for MQTT listens on the port `mqtt`; `plugins` are
+    With a folder of certificates it listens for TLS too, on the port `secure`, and has the policy of docs/deployment.md
+    for messages without a receiver. With `speaks_mqtt` its plug-in for MQTT listens on the port `mqtt`; `plugins` are
     others. With `virtual_hosts` it has so many, named `t0` and so on, in place of the usual one. `conf` replaces
     its settings; without one that imports definitions it begins as a new installation does.
     """

@@ -9,7 +9,7 @@ from lumen.language.operator_requests import APPROVE, REQUESTS, UNLISTED, WHY, O
 from lumen.run.decisions import RequestChecks
 from tests import ROOT
 
-PAGE = (ROOT / "docs/processes.md").read_text()
+PAGE = (ROOT / "docs/deployment.md").read_text()
 RIGHT: dict[str, dict[str, Any]] = {
     "event": {"event": "next"},
     "press": {"button": "Next"},

@@ -1,6 +1,6 @@
 """The requests of operators to a running exhibition: a row for each, for its senders and for the part that answers.
 
-A request is a message on `lumen.{robot}.operator.request` with a `reply_to`: docs/processes.md describes the answers.
+A request is a message on `lumen.{robot}.operator.request` with a `reply_to`: docs/deployment.md describes the answers.
 """
 
 from collections.abc import Mapping

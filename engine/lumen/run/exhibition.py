@@ -145,7 +145,7 @@ class Exhibition:
         return self.services[OperatorPart].status()
 
     def view(self) -> dict[str, Any]:
-        """Return the state and possible next events, as `{"ask": "now"}` does over the bus: docs/processes.md."""
+        """Return the state and possible next events, as `{"ask": "now"}` does over the bus: docs/deployment.md."""
         return self.services[OperatorPart].now()
 
     def why(self, what: str = "", at: str | None = None) -> dict[str, Any]:
