@@ -29,7 +29,7 @@ const entries = [...document.querySelectorAll(".entry")].map((one) => one.textCo
 return [document.body?.innerText ?? "", ...entries].join("\\n");
 """
 """All that is shown, with what is seen when the list of what happened is moved."""
-STATES = "return [...document.querySelectorAll('.leaf .state-name')].map((one) => one.innerText)"
+STATES = "return [...document.querySelectorAll('.leaf .state-name')].map((one) => one.textContent)"
 
 
 class Operator:
