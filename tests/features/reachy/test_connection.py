@@ -63,9 +63,9 @@ def test_a_move_of_the_daemon_is_reported_and_not_fought(awake: Driven, daemon: 
     assert len(daemon.targets) <= sent + 1
     awake.until(lambda: not daemon.moves, "that move has ended")
     awake.until(lambda: awake.robot._yields is False, "it goes on")
-    taken, free = [event for event in awake.events if event.name in ("robot.taken", "robot.free")]
+    taken, free = [event for event in awake.events if event.name in ("robot.busy", "robot.free")]
     assert "another program moves the robot" in taken.data["reason"]
-    assert (taken.name, free.name, list(free.data)) == ("robot.taken", "robot.free", ["seconds"])
+    assert (taken.name, free.name, list(free.data)) == ("robot.busy", "robot.free", ["seconds"])
     assert awake.answer("l2", Look(0.3)).name == "done.command.l2"
 
 

@@ -40,7 +40,7 @@ class ReachyRobot(ExecutingRobot):
     `voice` is the row of `voices` that it speaks with, or `none`; sound files are in `root`. If the connection breaks,
     all commands have failed and `robot.lost` is noticed; after it was made again the robot is woken if it was awake,
     and `robot.back` is noticed. While another program moves the robot, nothing is sent and commands that move it are
-    refused; `robot.taken` is noticed when that begins, `robot.free` when it has ended. Raises RobotError if there is no
+    refused; `robot.busy` is noticed when that begins, `robot.free` when it has ended. Raises RobotError if there is no
     robot, UsageError if `url` is no address or there is no such voice.
     """
 
@@ -188,7 +188,7 @@ class ReachyRobot(ExecutingRobot):
         if taken and not self._yields:
             _log.warning("%s; Lumen sends nothing until that has ended", self._other())
             self._taken_at = now
-            self._events.append(Event("robot.taken", {"reason": self._other()}, now))
+            self._events.append(Event("robot.busy", {"reason": self._other()}, now))
             self._executor.fail(self._other())
             self._life.still()
         if self._yields and not taken and self._mover.awake and joints:
