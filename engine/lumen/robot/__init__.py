@@ -8,32 +8,31 @@
 
 How a command is performed:
 
-    command_table.py      what every robot knows of each command: a row for each
-    command_checks.py     how it is read from the bus, and which values a body can perform
-    command_bounds.py     each command is brought within the limits and speeds of the body
+    command_table.py      the properties of each command, one row for each
+    command_bounds.py     limits commands to the angles and speeds of the body
     joint_ways.py         to the posture that a motion begins in, and back after a cancel
     executor.py           a command waits until its parts are free, then runs until it is done
-    person_hold.py        a robot that a person stopped moves for nobody, until a person lets it
+    person_hold.py        a robot that a person stopped does not move until a person releases it
     hazards.py            why a robot must not walk now
     cues.py               the words and sounds of a motion, as their times come
     gesture_player.py     the gestures that accompany what it says
-    joint_offsets.py      how joints go to where life and gestures want them
-    life_layer.py         what the robot does of its own accord, beneath all commands
-    silent_recording.py   a recording where nobody makes a sound
-    links.py              where the links of a robot are, and what they look like: a feature computes both
-    skill_runner.py       verbs of features: their code runs in threads that nothing waits for
+    joint_offsets.py      moves joints smoothly to the offsets of life and gestures
+    life_layer.py         small movements of an idle robot, beneath all commands
+    silent_recording.py   recordings of silence, for a simulated hall
+    links.py              the poses and shapes of a robot's links: a feature computes both
+    skill_runner.py       verbs of features: their code runs in threads that block nothing
 
 A robot on the bus:
 
     server.py             Lumen Server: the senses out, the commands in
-    robot_routes.py       under which keys a robot and its brain talk
+    robot_routes.py       the routing keys between a robot and its brain
     command_codec.py      commands as JSON, as those of 2015 and ours
     command_parameters.py their parameters, in the ways that 2015's modules wrote them
     motion_codec.py       motions as JSON
     sense_codec.py        the five senses as JSON
     sense_publisher.py    the thread of a sense
     command_receiver.py   commands from the bus, until they are over
-    command_queries.py    what is asked about them, and about a robot that is stopped
-    command_reports.py    how they stand, for the sender and everybody who watches
-    deduplication_log.py  which commands were begun, for the process that comes after a killed one
+    command_queries.py    queries about them, and about a robot that a person stopped
+    command_reports.py    their states, for the sender and all other subscribers
+    deduplication_log.py  the commands that were begun, for the process that follows a killed one
 """

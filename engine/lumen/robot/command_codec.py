@@ -1,9 +1,9 @@
 """Commands as the modules of 2015 wrote them, misspellings included, and ours, as what our robots understand.
 
 A body is `{"type": …, "method": …, "parameter": {…}}`; the C# modules wrote `Method`. Names of keys and methods compare
-case-insensitively. A method is known by its own name, whatever its type; what is none may be the name of a motion, and
-else one of the names that the motions of 2015 had. So a motion called `rest` does not keep the robot from resting. Ours
-are `stop`, `look` and `perform`, which brings its motion along.
+case-insensitively. A method is found by its name, whatever its type. Other names are those of motions, and last the
+names that the motions had in 2015; so a motion called `rest` does not keep the robot from resting. Lumen added `stop`,
+`look` and `perform`, which contains its motion.
 """
 
 from collections.abc import Callable, Mapping
@@ -34,9 +34,9 @@ def encode_command(command: RobotCommand) -> dict[str, Any]:
 def decode_command(body: Any, project: Project, pose: PoseSource = dict) -> RobotCommand | Language:
     """The command that a body asks for; `pose` gives where the joints stand [rad], for `changeangle` alone.
 
-    `setlanguage` is a `Language`, for whoever keeps the language. Raises BadCommandError, saying what would be right,
-    for a method that is unknown or can't be done, and for a parameter that is missing or wrong; RobotRefusedError
-    where nobody knows how a joint stands that is to be changed.
+    `setlanguage` is a `Language`, for the owner of the language. Raises BadCommandError, naming the allowed values,
+    for a method that is unknown or impossible, and for a parameter that is missing or wrong; RobotRefusedError for a
+    relative change of a joint whose angle is unknown.
     """
     order = lowered(body, "a command")
     method = order.get("method")
@@ -46,19 +46,19 @@ def decode_command(body: Any, project: Project, pose: PoseSource = dict) -> Robo
 
 
 def method_of(body: Any) -> str:
-    """The method that a body names, in small letters; empty where it names none."""
+    """Return the method of a body in lower case; empty if it has none."""
     method = lowered(body, "a command").get("method") if isinstance(body, Mapping) else None
     return shown(method.strip().lower()) if isinstance(method, str) else ""
 
 
 def own_id(body: Any) -> str:
-    """The id that its sender gave a command; empty where it gave none."""
+    """Return the id that its sender gave a command, cut to MAX_ID_LENGTH; empty if it gave none."""
     id = body.get("id") if isinstance(body, Mapping) else None
     return id[:MAX_ID_LENGTH] if isinstance(id, str) else ""
 
 
 def stops(body: Any) -> bool:
-    """Whether a body asks the robot to rest or to stop, which nothing may hold up."""
+    """Return True if a body orders the robot to rest or to stop, which nothing may delay."""
     return method_of(body) in STOPPING_METHODS
 
 

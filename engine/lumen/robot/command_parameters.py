@@ -44,7 +44,7 @@ class CommandParameters:
         return value.strip()
 
     def language(self, name: str) -> str:
-        """One of the project's languages, by its code or its English name; empty where none is given."""
+        """Return one of the project's languages, by its code or its English name; empty if the parameter is missing."""
         given = self.text(name, "").lower()
         code = LANGUAGES_2015.get(given, given)
         if code and code not in self.project.languages:

@@ -1,4 +1,4 @@
-"""What is asked about commands and about a robot that is stopped, rather than of its body."""
+"""Queries about commands, and about a robot that a person stopped, which need no part of the body."""
 
 import logging
 from collections.abc import Callable
@@ -17,7 +17,7 @@ _log = logging.getLogger(__name__)
 class CommandQueries:
     """Answers `cancel`, `outcome`, `stopped` and `resume` by `reply`.
 
-    `resume` is called with the person who lets the robot go on.
+    `resume` is called with the person who lets the robot move again.
     """
 
     METHODS = ("cancel", "outcome", "stopped", "resume")
@@ -45,16 +45,16 @@ class CommandQueries:
                 self._request(message, method)
 
     def _let_go_on(self, message: Message) -> None:
-        """In the name of who is `by` it."""
+        """Resume in the name of the parameter `by`, and reply."""
         parameter = message.body.get("parameter")
         by = parameter.get("by") if isinstance(parameter, dict) else None
         self._resume(shown(by) if isinstance(by, str) and by else UNNAMED_PROGRAM)
         self._reply(message, "command finished")
 
     def _request(self, message: Message, method: str) -> None:
-        """`cancel` or `outcome` of the command whose `id` the parameter names.
+        """Answer `cancel` or `outcome` for the command with the `id` in the parameter.
 
-        One that is unknown counts as cancelled from then on: it may still be on its way.
+        An unknown command counts as cancelled afterwards, because it may still arrive.
         """
         id = own_id(message.body.get("parameter"))
         if not id:

@@ -43,11 +43,11 @@ MAX_AIM_AGE = 0.5
 """How old an aim may be [s]: there is a newer one by then."""
 MAX_RUNNING_COMMANDS = 100
 MAX_REMEMBERED_MOTIONS = 20
-"""How many of the last motions are remembered with their analysis."""
+"""The number of latest motions whose analysis is cached."""
 MAX_BACKLOG = 15.0
-"""How long about a command may have to wait for those before it [s]; what comes then is refused."""
+"""The longest expected wait for earlier commands [s]; a command that would wait longer is refused."""
 MAX_SPEECH = 60.0
-"""How long about a text may take to say [s]."""
+"""The longest estimated duration of a text [s]."""
 ENDED = "the robot accepts no more commands"
 ID_TAKEN = "its sender has used that id for another command: give each command its own id"
 RESTARTED = "the robot has restarted since it began that command"
@@ -91,8 +91,8 @@ class CommandReceiver:
     behaviour are counted apart. What stops the robot is never one too many, nor too late.
 
     A command with an `id` is performed once, however often its sender sends it; another one with that id is refused.
-    What stops the robot is performed each time that it is sent, with any id; only a message that the bus delivers a
-    second time is not.
+    Commands that stop the robot are performed each time that they are sent, with any id; only a message that the bus
+    delivers a second time is not.
 
     `clock` [s] measures how long they have waited. Commands that move the robot are refused while a person keeps it
     still (`hold`).
@@ -128,9 +128,9 @@ class CommandReceiver:
             self._undo[route] = self._listen(route)
 
     def recall(self, begun_before: DeduplicationLog) -> None:
-        """Note what is begun from now on; what the process before began has failed, and is not begun again.
+        """Record commands that begin from now on; those that the previous process began count as failed.
 
-        What rests or stops the robot is not noted: that may be done twice.
+        Commands to rest or to stop are not recorded, because they may be performed twice.
         """
         self._log_of_begun = begun_before
         for begun in begun_before.before:
@@ -143,9 +143,9 @@ class CommandReceiver:
         return bool(self._received or self._aims)
 
     def begin(self) -> None:
-        """Start what has come, and report what the robot has begun.
+        """Start the commands that have arrived, and report what the robot has begun.
 
-        What can't be understood, or has waited too long, is answered at once.
+        Commands that are malformed, or have waited too long, are answered at once.
         """
         for arrival in self._taken(self._aims):
             with self.guard(arrival.message.key):
@@ -165,17 +165,17 @@ class CommandReceiver:
         self.guard.drops.tell()
 
     def answer(self, event: Event) -> bool:
-        """Report where this is the end of a command of ours; whether it is."""
+        """Report the end of a command from the bus; return True if the event is one."""
         kind, _, id = event.name.partition(".command.")
         data = event.data if isinstance(event.data, dict) else {}
         reason = data.get("reason") or data.get(MISSED, "")
         return self._reports.answered(kind, id, str(reason), data.get(RESULT))
 
     def use(self, project: Project) -> None:
-        """Understand commands by another bundle from now on, and take them under its keys.
+        """Decode commands by another bundle from now on, and receive them under its keys.
 
-        A new key is listened to before the old one is given up. Where the bus refuses the new one, that is logged,
-        and the old one stays: the robot is never out of reach.
+        A new key is subscribed before the old one is given up. If the bus refuses the new one, that is logged and
+        the old one stays, so the robot is always reachable.
         """
         self._project = project
         for route, (key, undo) in list(self._undo.items()):
@@ -189,7 +189,7 @@ class CommandReceiver:
             undo()
 
     def resume(self, by: str) -> None:
-        """Let a robot move that a person stopped; where the behaviour has nothing to do for that, it stands up."""
+        """Let a robot move that a person stopped; it stands up if the behaviour has no transition for `resume`."""
         self.hold.release(by)
         machine = self._project.machine
         if not any(t.event == "resume" for state in machine.states.values() for t in state.transitions):
@@ -341,7 +341,7 @@ class CommandReceiver:
         return motion
 
     def _check_backlog(self, record: CommandRecord, command: RobotCommand) -> None:
-        """Raises RobotRefusedError where it would wait for too long: nobody wants it any more by then."""
+        """Raise RobotRefusedError if it would wait too long: it would be obsolete by then."""
         takes = row_of(command).duration(command)
         record.parts, record.takes = parts_of(command, self._project.body), takes if isfinite(takes) else 0.0
         if isinstance(command, Say) and takes > MAX_SPEECH:
@@ -350,14 +350,14 @@ class CommandReceiver:
             raise RobotRefusedError(f"earlier commands still take {ahead:.0f} s: send this one later, or `stop` them")
 
     def _clear(self, command: RobotCommand) -> None:
-        """End what is of the same kind: this one is to take its place."""
+        """Stop the speech or the motion under way, because this command replaces it."""
         if isinstance(command, Say):
             self._robot.start(self._number(), Stop("say"))
         elif isinstance(command, Perform):
             self._robot.start(self._number(), Stop("play"))
 
     def _aim(self, arrival: _Arrival) -> None:
-        """Aims stream in, and nobody waits for an answer."""
+        """Perform an aim unless it is too old. Aims arrive as a stream, so they get no answer."""
         if self._clock() - arrival.at > MAX_AIM_AGE:
             return
         try:

@@ -11,7 +11,7 @@ ACCEPTED, STARTED, FINISHED, FAILED, CANCELLED = "accepted", "started", "finishe
 UNKNOWN_COMMAND = "unknown"
 FINAL = (FINISHED, FAILED, CANCELLED)
 MAX_REMEMBERED_COMMANDS = 1_000
-"""How many commands with an id of their own are remembered: for whoever sends one again."""
+"""The number of commands with ids that are remembered, in case a sender repeats one."""
 
 _ANSWERS = {"done": FINISHED, "error": FAILED, "cancelled": CANCELLED}
 
@@ -52,14 +52,14 @@ class CommandRecord:
         return {**body, **{name: value for name, value in news.items() if value is not None}}
 
     def text(self) -> str:
-        """What the modules of 2015 receive at the end."""
+        """The final answer in the format of the modules of 2015."""
         return f"command failed: {self.reason}" if self.state == FAILED else f"command {self.state}"
 
 
 class CommandReports:
-    """Remembers records, and reports every change of theirs.
+    """Remembers the records of commands, and reports each change of one.
 
-    `tell` publishes a report; `reply` answers a message: with the report where it brought an id of its own, else with
+    `tell` publishes a report; `reply` answers a message: with the report if it has an id of its own, else with
     2015's text, at the end.
     """
 
@@ -70,15 +70,15 @@ class CommandReports:
 
     @property
     def running(self) -> int:
-        """How many are under way, or wait for the parts they need."""
+        """The number of commands that are under way, or wait for the parts they need."""
         return len(self._running)
 
     def ahead(self, parts: frozenset[str]) -> float:
-        """How long about what is under way or waits keeps these parts of the body [s]."""
+        """Return the estimated time that commands under way or waiting occupy any of these parts of the body [s]."""
         return sum(record.takes for record in self._running.values() if not parts.isdisjoint(record.parts))
 
     def find(self, id: str, sender: str) -> CommandRecord | None:
-        """The record of the command to which this sender, or an unknown one, gave that id."""
+        """Return the record of the command with that id from this sender, or from an unknown one; None if unknown."""
         return self._known.get((sender, id)) or self._known.get((None, id))
 
     def asked(self, id: str, sender: str) -> CommandRecord | None:
@@ -130,7 +130,7 @@ class CommandReports:
             self._reply(asker, record.text())
 
     def end(self) -> None:
-        """The robot takes no more commands: what runs counts as cancelled."""
+        """Report all running commands as cancelled, because the robot accepts no more."""
         for record in self._running.values():
             self.change(record, CANCELLED)
         self._running.clear()

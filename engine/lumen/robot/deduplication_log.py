@@ -14,7 +14,7 @@ from lumen.upkeep.own_folders import private_folder
 DEDUPLICATION_FILE = "commands.jsonl"
 """Its name, among what an exhibition keeps from run to run."""
 MAX_LOGGED_IDS = 1_000
-"""How many ids are kept."""
+"""The most ids in the log."""
 DEDUPLICATION_WINDOW = 60.0
 """For how long [s] a command may still come again: longer than a broker keeps one and a brain waits for its answer."""
 

@@ -1,4 +1,4 @@
-"""Who moves what: commands wait until the parts of the body that they need are free.
+"""Execution of commands, which wait until the parts of the body that they need are free.
 
 Head, arms, legs, voice, LEDs and ears each have one owner at a time. `Rest` and `Stop` cancel what runs and come before
 everything. Of the others, those of the behaviour come before those of other modules; in each group they wait by
@@ -22,14 +22,14 @@ from lumen.robot.command_table import row_of
 FOREIGN = "m"
 """The prefix of the ids of commands that are not from the behaviour."""
 MAX_UNREAD_STARTS = 1_000
-"""Of how many commands that began it is known at most, where nobody asks."""
+"""The most starts of commands that are kept while `begun` is not called."""
 
 
 class Activity(Protocol):
     """A command under way."""
 
     def advance(self, now: float) -> bool:
-        """Live until `now` [s]; true once finished. Raises RobotError where it failed."""
+        """Continue until `now` [s]; return True once finished. Raises RobotError if it failed."""
         ...
 
     def cancel(self) -> None:
@@ -84,18 +84,18 @@ class _Task:
 
     @property
     def going(self) -> bool:
-        """Whether it is under way and nobody has ended it."""
+        """True while it is under way and not cancelled."""
         return self.activity is not None and not self.cancelled
 
     @property
     def turn(self) -> tuple[bool, bool, int]:
-        """Which of the tasks that wait begins first: the least."""
+        """The sort key of waiting tasks: the least begins first."""
         rank = row_of(self.command).rank
         return rank > 0, self.id.startswith(FOREIGN) and self.id[1:].isdecimal(), rank
 
 
 class _Ended:
-    """What `Stop` does: wait until these have ended."""
+    """The activity of `Stop`: it waits until these tasks have ended."""
 
     def __init__(self, tasks: Iterable[_Task], alive: list[_Task]) -> None:
         self.tasks, self.alive = tuple(tasks), alive
@@ -158,11 +158,11 @@ class Executor:
             self._end("error", task, {"reason": reason})
 
     def owner(self, part: str) -> str:
-        """The id of the command that moves this part now, empty where it is free."""
+        """Return the id of the command that moves this part now; empty if the part is free."""
         return next((t.id for t in self._tasks if t.activity and part in t.parts), "")
 
     def begun(self) -> list[str]:
-        """The ids of the commands that began since the last call."""
+        """Return the ids of the commands that began since the last call, at most MAX_UNREAD_STARTS."""
         begun = list(self._begun)
         self._begun.clear()
         return begun
@@ -227,12 +227,12 @@ class Executor:
         return self._skill(command, now)
 
     def _before(self, task: _Task) -> _Task | None:
-        """The move that this one goes on from, without a stop in between."""
+        """Return the move under way that this one continues without a stop in between; None for other commands."""
         moving = isinstance(task.command, Move)
         return next((t for t in self._tasks if moving and isinstance(t.command, Move) and t.going), None)
 
     def _displace(self, task: _Task) -> None:
-        """End the moves that would keep this command waiting for ever: they have no end of their own."""
+        """End moves that block this command: they have no end of their own, so it would wait for ever."""
         if not isinstance(task.command, Move):
             endless = (t for t in self._tasks if isinstance(t.command, Move) and not t.parts.isdisjoint(task.parts))
             for move in list(endless):

@@ -14,14 +14,14 @@ TEXTS_APART = 2
 """So many texts have to lie between two with the same gesture."""
 
 SETTLING = 0.06
-"""How long joints take to a gesture that begins or ends at once [s]: the time constant of their way."""
+"""The time constant with which joints follow a gesture that begins or ends abruptly [s]."""
 
 
 class GesturePlayer:
-    """How far gestures have each joint from where it stands [rad; hands 0..1].
+    """The offsets that gestures add to each joint [rad; hands 0..1].
 
-    What it remembers is the text that is said, the gestures of the last texts, how many texts there were, and where the
-    joints are on their way.
+    Its state is the text under way, the gestures of the last texts, the number of texts so far, and the present
+    offsets of the joints.
     """
 
     def __init__(self, body: Body, seed: int = 0) -> None:
@@ -49,11 +49,11 @@ class GesturePlayer:
         return names
 
     def hush(self, now: float) -> None:
-        """Nothing is said any more: what has not begun is left out."""
+        """Drop the gestures that have not begun, because the speech has ended."""
         self._plan = tuple(planned for planned in self._plan if self._begin + planned.at < now)
 
     def still(self) -> None:
-        """The motors are off: nothing moves."""
+        """Drop all gestures and offsets, because the motors are off."""
         self._offsets.clear()
         self._plan = ()
 

@@ -1,6 +1,6 @@
-"""The robot's life beneath its commands: small movements of the joints that nothing else moves.
+"""The robot's idle life beneath its commands: small movements of the joints that nothing else moves.
 
-A command never notices it: it is added to where joints are wanted, and taken back where a command begins.
+Commands are not affected: its offsets are added to the targets of joints, and withdrawn when a command begins.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
@@ -29,27 +29,27 @@ from lumen.robot.gesture_player import GesturePlayer
 from lumen.robot.joint_offsets import approach
 
 LIFE_PERIOD = 0.04
-"""How often it is computed where each joint is wanted [s]; in between joints go on evenly."""
+"""The time between two computations of the joints' targets [s]; joints move evenly in between."""
 
 SETTLING = 0.25
-"""How long joints take to a movement that begins or ends at once [s]: the time constant of their way."""
+"""The time constant with which joints follow a movement that begins or ends abruptly [s]."""
 
 LED_FOR = 1.0
-"""How long after an aim the head belongs to who aimed it [s]."""
+"""After an aim, the head stays under external control for this long [s]."""
 
 ANSWER_PAUSE = 1.0
-"""How long nothing was said before a text that is an answer [s]."""
+"""A text counts as an answer after this much silence [s]."""
 
 HEARD_TURN, HEARD_NOD = 1.0, 0.3
-"""How far it turns and nods at most to look where a sound came from [rad]."""
+"""The largest turn and nod towards a sound [rad]."""
 
 
 class LifeLayer:
-    """How far each joint is from where commands want it [rad; hands 0..1].
+    """The offset of each joint from the target of the commands [rad; hands 0..1].
 
-    It depends on the seed, on the times and calls since the beginning, and on nothing else. What it remembers is the
-    style, what asked for attention last, when the head was aimed last, which text was said last and when, since when
-    parts are free, and where the joints are on their way. `offsets` is what was added last; any thread may look at it.
+    It depends only on the seed, and on the times and calls since the beginning. Its state is the style, the last
+    cause of attention, the time of the last aim of the head, the last text and its time, the times since when parts
+    are free, and the present offsets of the joints. `offsets` has the last values; any thread may read it.
     """
 
     def __init__(self, body: Body, seed: int = 0) -> None:
@@ -72,7 +72,7 @@ class LifeLayer:
         self.style, self.speech.library = command.style, command.gestures
 
     def touched(self, sensor: str, now: float) -> None:
-        """Somebody touched the robot there: it looks, where the style says so."""
+        """Look towards a touched sensor, if the style has attention. `now` [s]."""
         if sensor in TOUCHED:
             self._attention = Attention(*TOUCHED[sensor], now)
 
@@ -96,28 +96,28 @@ class LifeLayer:
         self.heard(yaw + turned.get("yaw", 0.0), pitch + turned.get("pitch", 0.0), now)
 
     def say(self, said: Say, duration: float, now: float, words: Sequence[WordTime] = ()) -> None:
-        """It begins to say that, which takes `duration` [s]; `words` tells when each begins, where that is known."""
+        """Note that a text of `duration` [s] begins; `words` has the time at which each word begins, if known."""
         if now >= self._said_until + ANSWER_PAUSE:
             self._answers, self._answered_at = self._answers + 1, now
         self._said_until = now + duration
         self.speech.say(said, duration, now, words)
 
     def hush(self, now: float) -> None:
-        """Nothing is said any more."""
+        """Note that the speech has ended."""
         self._said_until = min(self._said_until, now)
         self.speech.hush(now)
 
     def led(self, joints: Collection[str], now: float) -> None:
-        """Somebody aims these joints: of the head they have it for a while."""
+        """Note an external aim of these joints; if one is of the head, that is left alone for LED_FOR [s]."""
         if any(turn.joint in joints for turn in self._turns.values()):
             self._led_at = now
 
     def leading(self, now: float) -> bool:
-        """Whether somebody leads the head at `now` [s]."""
+        """Return True while an external aim controls the head at `now` [s]."""
         return now < self._led_at + LED_FOR
 
     def still(self) -> None:
-        """The motors are off: nothing moves."""
+        """Drop all offsets, because the motors are off."""
         self._offsets.clear()
         self.offsets = {}
         self._free_since.clear()
@@ -141,7 +141,7 @@ class LifeLayer:
         """Where the offsets go to at `now` [s], without the way there.
 
         `free` are the parts of the body that nothing else moves, `vigour` how lively each may be (0 to 1). Arms and
-        legs live only where the legs are free, too: a robot that walks or sits down needs all of its balance.
+        legs move only if the legs are free, too: a robot that walks or sits down needs all of its balance.
         """
         alive = {part for part in free if part == HEAD or LEGS in free}
         found = {j: angle for j, angle in sway(self.style, self._seed, now).items() if self._part.get(j) in alive}
@@ -156,7 +156,7 @@ class LifeLayer:
         return {joint: angle * levels[self._part[joint]] for joint, angle in found.items()}
 
     def eyes(self, now: float) -> str:
-        """The colour of the eyes at `now` [s]: `off` where it blinks, empty where they stay as they are."""
+        """Return the colour of the eyes at `now` [s]: `off` during a blink, empty if they stay as they are."""
         blinks, colours = self.style.blinks, self.style.eyes
         if blinks and eyes_closed(blinks, self._seed, now):
             return "off"
@@ -165,19 +165,19 @@ class LifeLayer:
         return colours.speaking if now < self._said_until else colours.silent
 
     def _settled(self, now: float) -> Iterator[tuple[str, float]]:
-        """How far joints have sunk since nothing moves them."""
+        """Yield how far each joint has sunk since its part became free [rad]."""
         settles = self.style.settles
         for part, since in self._free_since.items() if settles else ():
             sunk = settle(settles, now - since) if settles else {}
             yield from ((joint, angle) for joint, angle in sunk.items() if self._part.get(joint) == part)
 
     def _aside(self, now: float) -> tuple[float, float]:
-        """How far the head is turned away before an answer."""
+        """Return how far the head turns and tilts away before an answer [rad]."""
         asides, since = self.style.asides, now - self._answered_at
         return aside(asides, self._seed, self._answers, since) if asides else (0.0, 0.0)
 
     def _head(self, now: float) -> tuple[float, float]:
-        """How far the head is turned and tilted: it nods to what others say, not to its own words."""
+        """Return the turn and tilt of the head [rad]; it nods only while it does not speak itself."""
         style = self.style
         down = nod(style.nods, self._seed, now) if style.nods and now >= self._said_until else 0.0
         yaw, pitch = self._aside(now)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # numpy takes longer to import than most commands
     from numpy.typing import NDArray
 
 FLOOR = "hall"
-"""The frame that the first link stands in: where the robot started, z up."""
+"""The parent frame of the first link: the place where the robot started, z up."""
 
 
 class LinkFrame(NamedTuple):
@@ -28,7 +28,7 @@ class LinkFrame(NamedTuple):
 
 
 class LinkShape(NamedTuple):
-    """What one sees of a link, in its frame: a box, ellipsoid, cylinder or capsule of half sizes [m], or triangles.
+    """The visible shape of a link, in its frame: a box, ellipsoid, cylinder or capsule of half sizes [m], or triangles.
 
     Of a capsule and a cylinder `size` is the radius and half the length along z; `colour` is red, green, blue, alpha.
     """

@@ -11,11 +11,11 @@ from lumen.language.motions import Cue, Interpolation, Keyframe, MotionDefinitio
 from lumen.language.robots import Body
 
 MAX_MOTION_DURATION = 600.0
-"""How long a motion from the bus may take [s]."""
+"""The longest motion from the bus [s]."""
 MAX_MOTION_KEYS = 20_000
-"""How many keys and cues one may have."""
+"""The most keys and cues of one motion."""
 LIMIT_TOLERANCE = 1e-6
-"""By how much an angle may lie beyond its joint's limit, for what decimals lose [rad]."""
+"""An angle may exceed its joint's limit by this, because decimals are rounded [rad]."""
 
 
 def encode_motion(motion: MotionDefinition) -> dict[str, Any]:
@@ -27,9 +27,9 @@ def encode_motion(motion: MotionDefinition) -> dict[str, Any]:
 
 
 def decode_motion(data: Any, body: Body) -> MotionDefinition:
-    """The motion that the data is, for this body.
+    """Return the motion in the data, for this body.
 
-    Raises RobotError for what is no motion, for joints and postures that the body lacks, and for angles beyond limits.
+    Raises RobotError for malformed data, for joints and postures that the body lacks, and for angles beyond limits.
     """
     if not isinstance(data, Mapping):
         raise BadCommandError("a `motion` must be an object with `name`, `duration` and `tracks`")

@@ -17,7 +17,7 @@ class NoRobot:
             self._answers.append(Event(f"error.command.{id}", {"reason": "there is no robot (--robot none)"}))
 
     def cancel(self, id: str) -> None:
-        """Nothing runs."""
+        """Do nothing, because no command runs."""
 
     def poll(self) -> Sequence[Event]:
         answers, self._answers = self._answers, []
@@ -30,4 +30,4 @@ class NoRobot:
         return None
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """Do nothing: there are no resources to release."""

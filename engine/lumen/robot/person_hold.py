@@ -1,4 +1,4 @@
-"""A robot that a person stopped moves for nobody, until a person lets it."""
+"""The hold of a robot that a person stopped: it refuses every movement until a person releases it."""
 
 from datetime import UTC, datetime
 from typing import NamedTuple
@@ -9,11 +9,11 @@ from lumen.ports import Aim, RobotCommand
 from lumen.robot.command_table import row_of
 
 HEAD_SENSORS = ("FrontTactil", "MiddleTactil", "RearTactil")
-"""Where a hand on the head is felt."""
+"""The tactile sensors of the head."""
 
 
 class StoppedBy(NamedTuple):
-    """Who stopped a robot, and when (UTC)."""
+    """The person who stopped a robot, and the time (UTC)."""
 
     by: str
     since: datetime
@@ -52,7 +52,7 @@ class PersonHold:
         self._touched, self._rests = False, False
 
     def stop(self, by: str, since: datetime | None = None) -> None:
-        """Nobody moves it from now on; the behaviour is told, each time."""
+        """Keep the robot still from now on; each call sends the behaviour a `stop` event."""
         self._touched = False
         if self.stopped is None:
             self._change(StoppedBy(by, since or datetime.now(UTC)))

@@ -1,4 +1,4 @@
-"""A robot that performs nothing, remembers everything, and takes its time: for stories, tests and authors."""
+"""A robot that records commands instead of moving, with realistic durations: for stories, tests and authors."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -28,18 +28,18 @@ from lumen.robot.silent_recording import SilentRecording
 from lumen.robot.skill_runner import SkillRunner
 
 TORSO_HEIGHT = 0.333
-"""Where the torso of a standing robot is above the floor [m]: NAO's; this robot has no model to ask."""
+"""The height of a standing robot's torso above the floor [m]: that of NAO, because this robot has no model."""
 
 PODIUM_HEIGHT = 0.5
-"""What the robot stands on [m]."""
+"""The height of the podium under the robot [m]."""
 
 FACE_HEIGHT_FRACTION = 0.93
-"""Where a visitor's face is, as a fraction of their height."""
+"""The height of a visitor's face, as a fraction of their height."""
 
 
 @dataclass
 class _Lasting:
-    """Takes until `until` [s], and no time at all once cancelled."""
+    """An activity that lasts until `until` [s], and ends at once if cancelled."""
 
     until: float
 
@@ -52,13 +52,13 @@ class _Lasting:
 
 @dataclass
 class _Skill(_Lasting):
-    """A verb of a feature, which ends with a result."""
+    """A verb of a feature; it ends with a result."""
 
     result: Mapping[str, Any]
 
 
 class _Playing(_Lasting):
-    """A motion, its words and sounds raised as events as they come."""
+    """A motion; its words and sounds become events at their times."""
 
     def __init__(self, until: float, begin: float, prompter: CueNotifier) -> None:
         super().__init__(until)
@@ -72,7 +72,7 @@ class _Playing(_Lasting):
 
 
 class _Walking(_Lasting):
-    """A walk that comes on evenly, wherever it is ended."""
+    """A walk at constant speed, which can end anywhere."""
 
     def __init__(self, until: float, begin: float, command: Walk | Move, reckoning: DeadReckoning) -> None:
         super().__init__(until)
@@ -145,11 +145,11 @@ class RecordingRobot(ExecutingRobot):
 
     @property
     def idle(self) -> bool:
-        """Whether nothing is under way, and nobody before it."""
+        """True if no command is under way, no event is unread, and no visitor is in front of it."""
         return self._executor.idle and not (self._noticed or self._visitor)
 
     def advance(self, dt: float) -> None:
-        """Let `dt` [s] pass."""
+        """Advance the robot's time by `dt` [s]."""
         self.time += dt
         self._noticed += self._executor.advance(self.time)
 
@@ -255,7 +255,7 @@ class RecordingRobot(ExecutingRobot):
         return _Lasting(until)
 
     def _offsets(self) -> Mapping[str, float]:
-        """How far its life has moved the joints from where commands want them."""
+        """Return the offsets of joints that life and gestures add to the commands [rad; hands 0..1]."""
         free = {part for part in WHOLE_BODY if not self._executor.owner(part)}
         offsets = self._life.wanted(self.time, free, lambda _part: 1.0)
         for joint, angle in self._life.speech.wanted(self.time, free if LEGS in free else ()).items():
@@ -263,10 +263,10 @@ class RecordingRobot(ExecutingRobot):
         return offsets
 
     def _free(self, joint: str) -> bool:
-        """Whether no command owns that joint."""
+        """Return True if no command owns that joint."""
         return not self._executor.owner(self._part.get(joint, ""))
 
 
 def _face_of(visitor: Visitor) -> Vector3:
-    """Where a visitor's face is, from the torso of a robot that stands on its podium [m]."""
+    """Return the position of a visitor's face relative to the torso of a robot on its podium [m]."""
     return visitor.x, visitor.y, visitor.height * FACE_HEIGHT_FRACTION - PODIUM_HEIGHT - TORSO_HEIGHT

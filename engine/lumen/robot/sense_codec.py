@@ -118,18 +118,18 @@ def _time(body: Mapping[str, Any]) -> float:
 
 
 def _felt(body: Mapping[str, Any], count: int) -> tuple[tuple[float, ...], dict[str, float], dict[str, float]]:
-    """What else the robot feels of itself: motors' temperatures, inertial unit, soles; empty where nothing is said."""
+    """Return the robot's other measurements: motors' temperatures, inertial unit, soles; empty if they are missing."""
     temperature = tuple(map(float, body.get("temperature", ())))
     return temperature if len(temperature) == count else (), _named(body, "inertial"), _named(body, "fsr")
 
 
 def _named(body: Mapping[str, Any], key: str) -> dict[str, float]:
-    """The numbers under that key, by their names; empty where nothing is said."""
+    """Return the numbers under that key, by their names; empty if they are missing."""
     return {str(name): float(value) for name, value in dict(body.get(key, {})).items()}
 
 
 def _position(body: Mapping[str, Any]) -> Whereabouts | None:
-    """Where the robot believes to be; None where it does not say."""
+    """Return the robot's estimate of its own place; None if it is missing."""
     said = body.get("position")
     return Whereabouts(*(float(said[name]) for name in Whereabouts._fields)) if isinstance(said, Mapping) else None
 

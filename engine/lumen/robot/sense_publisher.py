@@ -1,4 +1,4 @@
-"""A sense's own thread: it encodes and publishes what it is handed, and keeps nobody waiting but who wants to."""
+"""The thread of one sense: it encodes and publishes readings, and blocks no caller that does not wait on purpose."""
 
 import logging
 import re
@@ -20,7 +20,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass
 class PublishCounts:
-    """What became of a sense's readings: `dropped` for a newer one, `refused` by the bus; `off` says why none come."""
+    """Counts of a sense's readings: `dropped` for a newer one, `refused` by the bus; `off` is why the sense is off."""
 
     published: int = 0
     dropped: int = 0
@@ -80,7 +80,7 @@ class SensePublisher:
         self._thread = None if direct else self._started()
 
     def hand(self, handed: PendingReading) -> None:
-        """Take this reading next; the one that still waits gives way."""
+        """Publish this reading next; it replaces one that still waits."""
         if self._thread is None and not self.count.off:
             self._perform(handed)
             return
@@ -95,7 +95,7 @@ class SensePublisher:
             self._changed.notify()
 
     def arm(self) -> None:
-        """Try again where the sense is off, and log again what is refused: the cause may be gone."""
+        """Restart a sense that is off, and log refusals again, because their cause may be gone."""
         with self._changed:
             self._said.clear()
             off, self.count.off = self.count.off, ""
@@ -103,7 +103,7 @@ class SensePublisher:
                 self._thread = self._started()
 
     def close(self, timeout: float) -> bool:
-        """Publish what waits and end; whether that was done within `timeout` [s]."""
+        """Publish the waiting reading and end the thread; return True if that was done within `timeout` [s]."""
         with self._changed:
             self._ending = True
             self._changed.notify()
@@ -125,7 +125,7 @@ class SensePublisher:
             return handed
 
     def _perform(self, handed: PendingReading) -> bool:
-        """Encode and publish one reading; whether the sense goes on."""
+        """Encode and publish one reading; return False if the sense is off now."""
         try:
             self._send(handed)
         except RobotError as error:
@@ -133,7 +133,7 @@ class SensePublisher:
             return False
         except LumenError as error:
             self._refused(str(error))
-        except Exception as error:  # a fault of ours costs this reading
+        except Exception as error:  # a defect of Lumen costs this reading only
             self._refused(repr(error), error)
         finally:
             handed.end()
@@ -148,7 +148,7 @@ class SensePublisher:
         self.count.published += 1
 
     def _refused(self, reason: str, fault: Exception | None = None) -> None:
-        """Once per reason, whatever the numbers in it; with where it was raised where it is a fault of ours."""
+        """Count a refusal, and log each reason once, whatever its numbers; a `fault` of ours with its traceback."""
         self.count.refused += 1
         with self._changed:
             kind = _DIGITS.sub("#", reason)

@@ -39,14 +39,14 @@ def _date() -> str:
 class RobotServer:
     """A robot on a bus, as the project's routes `image`, `joint`, `sonar`, `tactile` and `battery` say.
 
-    Whoever owns the clock calls `sample` at each tick; that reads the senses that are due and begins the commands that
-    have come, and waits for nothing. Readings but images leave in the order they were taken, so that a simulation on
-    one seed says the same things in the same order; `settle` waits until they have, and once for a first image, which
-    takes as long as several others: OpenGL begins with it. `date` is what images are dated; `clock` [s] measures how
-    long a command has waited: time as modules live through it, whatever the robot's clock says. `listeners` hear of the
-    commands that come over the bus. Nobody moves a robot that a person stopped (`hold`). A `direct` one publishes
-    readings but images in `sample` itself, for time that waits for whoever hears them: threads would take turns at
-    every tick.
+    The owner of the clock calls `sample` at each tick; that reads the senses that are due and begins the commands that
+    have arrived, without waiting. Readings except images are sent in the order they were taken, so a simulation with
+    one seed sends the same messages in the same order; `settle` waits for them, and once for a first image, which
+    takes as long as several others, because it starts OpenGL. `date` gives the date of images; `clock` [s] measures how
+    long a command has waited: the time of the modules, whatever the robot's clock shows. `listeners` are notified of
+    commands from the bus. A robot that a person stopped does not move (`hold`). A `direct` one publishes readings
+    except images in `sample` itself, for clocks that wait for the receivers: threads would have to switch at every
+    tick.
     """
 
     def __init__(
@@ -76,30 +76,30 @@ class RobotServer:
         self._closed = False
 
     def recall(self, begun_before: DeduplicationLog) -> None:
-        """Perform nothing that the process before had begun, and note what is begun from now on."""
+        """Refuse commands that the previous process had begun, and record those that begin from now on."""
         self._orders.recall(begun_before)
 
     def resume(self, by: str) -> None:
-        """Let a robot move that a person stopped; where the behaviour has nothing to do for that, it stands up."""
+        """Let a robot move that a person stopped; it stands up if the behaviour has no transition for `resume`."""
         self._orders.resume(by)
 
     @property
     def counts(self) -> Mapping[str, PublishCounts]:
-        """What became of the readings on the route of each sense, and on those that are `of` one."""
+        """Return the counts of readings by route: the route of each sense, and those that are `of` one."""
         return {name: broadcast.count for name, broadcast in self._broadcasts.items()}
 
     @property
     def due(self) -> float:
-        """When it next has a reading to publish [s]."""
+        """Return when the next reading is due [s]; infinity if no sense is on."""
         return min((self._next[name] for name in self._routes if not self._broadcasts[name].count.off), default=inf)
 
     @property
     def waiting(self) -> bool:
-        """Whether it has commands to begin."""
+        """True while commands wait to begin."""
         return self._orders.waiting
 
     def sample(self, now: float) -> None:
-        """Read the senses that are due at `now` [s] and hand them on; begin the commands that have come."""
+        """Read the senses that are due at `now` [s] and publish them; begin the commands that have arrived."""
         for name, route in self._routes.items():
             if now + TIME_EPSILON >= self._next[name] and not self._broadcasts[name].count.off:
                 self._schedule(name, route, now)
@@ -108,7 +108,7 @@ class RobotServer:
         self._orders.begin()
 
     def use(self, project: Project) -> None:
-        """Go on with another bundle: its routes and periods from the next sample on, its motions for new commands.
+        """Switch to another bundle: its routes and periods from the next sample on, its motions for new commands.
 
         A sense that was switched off gets another chance.
         """
@@ -118,11 +118,11 @@ class RobotServer:
         self._orders.use(project)
 
     def settle(self, patience: float = SETTLE_TIMEOUT) -> bool:
-        """Wait until every reading but images has been published; whether that is so.
+        """Wait until every reading except images has been published; return False if that takes too long.
 
-        Publishing may take `patience` [s]; it takes longer where a subscriber is slow, who keeps nobody waiting. A
-        thread that the machine has not yet let begin is waited for, for what is said in which order would else depend
-        on what else the machine does.
+        Publishing may take `patience` [s] altogether, so that a slow subscriber does not block the caller. The time
+        until the machine has started a thread does not count, because the order of messages would otherwise depend
+        on the load of the machine.
         """
         first, self._first_image = self._first_image, None
         if first:
@@ -137,9 +137,9 @@ class RobotServer:
         return True
 
     def answer(self, event: Event) -> bool:
-        """Pass on what the robot says: of a command, to who sent it; what it recorded and noticed, to everybody.
+        """Pass on an event of the robot: reports of a command to its sender, recordings and perceptions to all.
 
-        True where it was about a command that came from the bus.
+        Return True if it was about a command from the bus.
         """
         self.hold.feel(event)
         if ".command." in event.name:
@@ -151,13 +151,13 @@ class RobotServer:
         return False
 
     def begins(self, command: RobotCommand, id: str = "") -> None:
-        """The robot starts this, under that id: what it says is on the bus as a text, too, for a voice of its own."""
+        """Publish the text of a speech command that the robot begins under that id, for an external voice."""
         if isinstance(command, Say) and TEXT_ROUTE in self._project.routes:
             body = {"name": self._project.robot, "text": command.text, "date": self._date()}
             self._tell(TEXT_ROUTE, {**body, "language": command.language}, MessageOrigin(cause=id))
 
     def close(self) -> None:
-        """Publish what was taken and end the threads; harmless when repeated."""
+        """Publish the readings that were taken and end the threads; repeated calls do nothing."""
         if self._closed:
             return
         self._closed = True
@@ -174,13 +174,13 @@ class RobotServer:
             _log.warning("a message of the robot on `%s` was not sent: %s", route, error)
 
     def _wanted(self, route: Route) -> bool:
-        """Whether it is to be read for this route: nobody draws a picture, or packs angles, that nobody takes."""
+        """Return False for an image, or a route `of` a sense, without subscribers, to save rendering and encoding."""
         if not route.of and route.sense != Sense.IMAGE:
             return True
         return self._listeners is None or self._listeners.heard(route.key_for(self._project.robot))
 
     def _schedule(self, name: str, route: Route, now: float) -> None:
-        """The next time on the grid of the sense's period; where ticks are coarser than that, a period from now."""
+        """Set the next time on the grid of the sense's period; a period from now if ticks are coarser than that."""
         period = route.every or DEFAULT_SENSE_PERIOD
         self._next[name] += period
         if self._next[name] <= now:
@@ -205,7 +205,7 @@ class RobotServer:
         return self._robot.read_other(sense) if isinstance(self._robot, HasOtherSenses) else None
 
     def _listen(self, project: Project) -> None:
-        """Give every route of a sense what publishes it: the one of its name first, then those that are `of` it."""
+        """Give every route of a sense its publisher: the one of its name first, then those that are `of` it."""
         self._project = project
         senses = {sense: i for i, sense in enumerate(table("senses"))}
         rows = [(name, route) for name, route in project.routes.items() if route.sense in senses]
@@ -229,7 +229,7 @@ class RobotServer:
 
 
 class _Speech(CommandListener):
-    """Publishes the texts that commands from the bus let the robot say."""
+    """Publishes the texts of speech commands from the bus."""
 
     def __init__(self, server: RobotServer) -> None:
         self._server = server

@@ -1,4 +1,4 @@
-"""Recording where nobody makes a sound: in a simulated hall visitors' words are typed."""
+"""Recordings of silence, for a simulated hall, in which visitors' words are typed."""
 
 from lumen.language.events import RECORDED, Event
 from lumen.ports import Record
@@ -7,7 +7,7 @@ from lumen.robot.sense_codec import RECORDING_RATE, recording_body
 
 
 class SilentRecording:
-    """Hands `notice` silence as long as the command's duration, at `until` [s]; nothing where it is cancelled."""
+    """Passes silence of the command's duration to `notice` at `until` [s]; nothing if it is cancelled."""
 
     def __init__(self, command: Record, until: float, notice: EventSink) -> None:
         self._command, self._until, self._notice = command, until, notice

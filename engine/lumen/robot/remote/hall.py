@@ -20,7 +20,7 @@ _log = logging.getLogger(__name__)
 
 
 class RemoteHall:
-    """What a visitor does in a simulated hall, sent to the process that simulates it, and how the robot sees them."""
+    """Sends a visitor's actions to the process that simulates the hall, and receives how the robot sees the visitor."""
 
     def __init__(self, project: Project, bus: Bus) -> None:
         self._project, self._bus = project, bus

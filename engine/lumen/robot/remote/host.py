@@ -1,4 +1,4 @@
-"""A body on the bus: the senses out, commands in, and the simulated hall around it."""
+"""A robot's body on the bus: it publishes senses, receives commands, and serves the simulated hall around it."""
 
 import logging
 from collections import deque
@@ -18,17 +18,17 @@ from lumen.robot.server import RobotServer
 from lumen.upkeep.threads import MessageGuard
 
 FACE_REPORT_PERIOD = 0.1
-"""How often at most it is published where the visitor's face is seen [s]."""
+"""The shortest time between two messages about the visitor's face [s]."""
 MAX_VISITOR_DISTANCE, MAX_VISITOR_HEIGHT = 100.0, 3.0
 
 _log = logging.getLogger(__name__)
 
 
 class RobotHost(CommandListener):
-    """Lumen Server for a robot, and for the hall around it where it is simulated.
+    """Lumen Server for a robot, and for the hall around it if that is simulated.
 
-    Whoever owns the clock calls `tick`; what the robot answered and noticed since is published, and returned.
-    `listeners` hear of the commands that come over the bus.
+    The owner of the clock calls `tick`, which publishes and returns the robot's answers and perceptions since.
+    `listeners` are notified of commands from the bus.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class RobotHost(CommandListener):
             self._undo = bus.subscribe(self._key, self._visitor_messages.append)
 
     def use(self, project: Project) -> None:
-        """Go by another bundle from now on."""
+        """Switch to another bundle; the new key of the hall is subscribed before the old one is given up."""
         self._project, key = project, project.key_of(HALL_ROUTE)
         if self._hall and key != self._key:
             undo, self._key = self._undo, key
@@ -61,7 +61,7 @@ class RobotHost(CommandListener):
         self.server.use(project)
 
     def tick(self, now: float) -> list[Event]:
-        """Do what the visitor does, publish the senses that are due, begin commands, and publish what came of them."""
+        """Apply visitors' actions, publish due senses, begin commands, and publish and return the robot's events."""
         while self._visitor_messages and self._hall:
             message = self._visitor_messages.popleft()
             with self._guard(message.key):
@@ -80,14 +80,14 @@ class RobotHost(CommandListener):
 
     @property
     def waiting(self) -> bool:
-        """Whether something has come, or is to be told, at the next tick."""
+        """True if messages about visitors, or events to publish, wait for the next tick."""
         return bool(self._visitor_messages or self._happened)
 
     def noticed(self, event: Event) -> None:
         self.notice(event)
 
     def notice(self, event: Event) -> None:
-        """Tell everybody of something at the next tick, as if the robot had noticed it."""
+        """Publish an event at the next tick, as if the robot had noticed it."""
         self._happened.append(event)
 
     def close(self) -> None:
@@ -126,7 +126,7 @@ class RobotHost(CommandListener):
 
 
 def _visitor(place: Mapping[str, Any]) -> Visitor | None:
-    """Somebody in the hall, None where nobody could be as the body says."""
+    """Return the visitor that a message places in the hall; None if its numbers are missing or out of range."""
     names = [field.name for field in fields(Visitor)]
     numbers = [place.get(name) for name in names]
     if not all(map(is_finite_number, numbers)):

@@ -30,14 +30,14 @@ from lumen.robot.robot_routes import (
 from lumen.robot.sense_codec import decode_reading
 
 RESEND_PERIOD = 1.0
-"""How long a command may stay unanswered before it is sent again [s].
+"""An unanswered command is sent again after this long [s].
 
 The robot performs it once all the same, unless it stops the robot: to stop twice is safe.
 """
 COMMAND_ANSWER_TIMEOUT = 5.0
-"""How long one may stay without any answer [s]: it failed then, and is not wanted any more."""
+"""A command without any answer fails after this long [s], and is no longer wanted."""
 OUTCOME_QUERY_PERIOD = 5.0
-"""How long after its last report the robot is queried for the outcome of a command [s]."""
+"""The outcome of a command is queried this long after its last report [s]."""
 AIM_TTL = 0.2
 COMMAND_TTL = 2.0
 MAX_PENDING_REPORTS = 10_000
@@ -62,7 +62,7 @@ class _Pending:
 
 
 Delegate = Callable[[str, Perform], bool]
-"""Has somebody else perform a motion under that id; whether there is somebody."""
+"""Lets another module perform a motion under that id; returns False if there is no such module."""
 
 
 class RemoteRobot:
@@ -136,7 +136,7 @@ class RemoteRobot:
             self._order(whole, command)
 
     def forward(self, whole: str, command: RobotCommand) -> None:
-        """Have the robot perform somebody else's command, under the whole id that it has there."""
+        """Have the robot perform another module's command, under the full id that it has there."""
         self._order(whole, command, delegable=False)
 
     def cancel(self, id: str) -> None:
@@ -186,7 +186,7 @@ class RemoteRobot:
         return None if newest is None else newest[0].time + self._clock() - newest[1]
 
     def close(self) -> None:
-        """Listen no more; the robot goes on with what was sent."""
+        """End the subscriptions; the robot continues with the commands that were sent."""
         for undo in self._undo.values():
             undo()
         self._undo.clear()
@@ -202,7 +202,7 @@ class RemoteRobot:
         return any(isinstance(p.command, Rest | Stop) and not p.heard for p in self._pending.values())
 
     def _call_off(self) -> None:
-        """What is on its way to the robot now must not be performed after what stops it."""
+        """Commands that are still on their way must not be performed after the one that stops the robot."""
         for whole, pending in list(self._pending.items()):
             if pending.held:
                 self._end(whole, "cancelled")
