@@ -68,7 +68,7 @@ class BoundedRobot(CheckedRobot):
 
     @property
     def busy(self) -> bool:
-        """Whether a verb of a feature is under way here."""
+        """True while a verb of a feature is under way here."""
         return self._skills.busy
 
     def close(self) -> None:
@@ -110,4 +110,4 @@ class _Nothing:
         return True
 
     def cancel(self) -> None:
-        """It ends at once."""
+        """Do nothing, because it ends at once."""

@@ -63,7 +63,7 @@ def stops(body: Any) -> bool:
 
 
 def stops_all(body: Any) -> bool:
-    """Whether a body asks the robot to end everything."""
+    """Return True if a body orders the robot to end all its commands."""
     if not stops(body):
         return False
     parameter = lowered(body, "a command").get("parameter")

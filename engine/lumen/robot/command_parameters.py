@@ -12,7 +12,7 @@ MAX_MAGNITUDE = 2.0**63
 LANGUAGES_2015 = {"english": "en", "indonesian": "id", "bahasa": "id"}
 
 PoseSource = Callable[[], Mapping[str, float]]
-"""Where the joints stand now [rad]."""
+"""The present angles of the joints [rad]."""
 
 
 class CommandParameters:

@@ -40,7 +40,7 @@ MAX_WAITING_OWN = 1_000
 """The number of commands of the behaviour that may wait beside them."""
 MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
-"""How old an aim may be [s]: there is a newer one by then."""
+"""The greatest age of an aim [s]: a newer one exists by then."""
 MAX_RUNNING_COMMANDS = 100
 MAX_REMEMBERED_MOTIONS = 20
 """The number of latest motions whose analysis is cached."""
@@ -139,7 +139,7 @@ class CommandReceiver:
 
     @property
     def waiting(self) -> bool:
-        """Whether something has come that is not begun."""
+        """True while commands have arrived that are not begun."""
         return bool(self._received or self._aims)
 
     def begin(self) -> None:
@@ -196,7 +196,7 @@ class CommandReceiver:
             self._robot.start(self._number(), Wake())
 
     def close(self) -> None:
-        """Take no more commands; who still waits for an answer gets one."""
+        """Accept no more commands, and answer those that are still open."""
         for _, undo in self._undo.values():
             undo()
         with self._coming:
@@ -375,7 +375,7 @@ class CommandReceiver:
         return f"{FOREIGN}{next(self._numbers)}"
 
     def _angles(self) -> dict[str, float]:
-        """Where the joints stand."""
+        """Return the present angles of the joints."""
         reading = self._robot.read(Sense.JOINT)
         return dict(zip(reading.names, reading.angles, strict=True)) if isinstance(reading, Joints) else {}
 
@@ -393,5 +393,5 @@ class CommandReceiver:
 
 
 def _delivered_again(known: Message, message: Message) -> bool:
-    """Whether this is the known message itself, delivered a second time; without an id, it counts as a new one."""
+    """Return True if this is the known message delivered a second time; without an id, it counts as a new one."""
     return bool(message.id) and (known.id, known.time, known.body) == (message.id, message.time, message.body)

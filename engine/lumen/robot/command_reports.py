@@ -1,4 +1,4 @@
-"""How commands from the bus stand: reported to the sender and to everybody who watches, and again on request."""
+"""Reports on the states of commands from the bus: to the sender and all subscribers, and again on request."""
 
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
@@ -42,7 +42,7 @@ class CommandRecord:
 
     @property
     def known_as(self) -> str:
-        """Under which id it is reported."""
+        """The id under which it is reported."""
         return self.id or self.asker.correlation_id or self.at
 
     def report(self) -> dict[str, Any]:

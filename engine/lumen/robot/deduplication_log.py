@@ -1,4 +1,4 @@
-"""Which commands a robot has begun, for the process that takes over from one that was killed."""
+"""A log of the commands that a robot has begun, for the process that follows one that was killed."""
 
 import json
 import logging

@@ -173,7 +173,7 @@ class Executor:
 
     @property
     def idle(self) -> bool:
-        """Whether nothing is under way, and nothing left to tell."""
+        """True if no command is under way, and no answer or start is unread."""
         return not (self._tasks or self._answers or self._begun)
 
     def advance(self, now: float) -> list[Event]:

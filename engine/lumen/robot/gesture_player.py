@@ -11,7 +11,7 @@ from lumen.motion.gestures import GESTURE_SHARE, PlannedGesture, gesture_offsets
 from lumen.robot.joint_offsets import approach
 
 TEXTS_APART = 2
-"""So many texts have to lie between two with the same gesture."""
+"""The number of texts between two with the same gesture."""
 
 SETTLING = 0.06
 """The time constant with which joints follow a gesture that begins or ends abruptly [s]."""

@@ -1,4 +1,4 @@
-"""How joints go to where something beneath all commands wants them: no jerk, no joint too fast."""
+"""Moves joints to the offsets of life and gestures beneath all commands: without jerks, and not too fast."""
 
 from collections.abc import Mapping
 

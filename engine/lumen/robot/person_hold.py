@@ -25,7 +25,7 @@ class StoppedBy(NamedTuple):
 
 
 def on_head(event: Event) -> bool:
-    """Whether the robot noticed a hand on its head."""
+    """Return True if the robot noticed a hand on its head."""
     return event.name == "touched" and isinstance(event.data, dict) and event.data.get("sensor") in HEAD_SENSORS
 
 
@@ -64,12 +64,12 @@ class PersonHold:
         self._notice(Event("resume", {"by": by}))
 
     def feel(self, event: Event) -> None:
-        """Hear what the robot noticed: a hand on its head lets the behaviour wake it."""
+        """Receive an event of the robot: a hand on its head lets the behaviour wake it."""
         if on_head(event):
             self._touched = True
 
     def admit(self, command: RobotCommand, *, behavior: bool) -> str:
-        """Let a command begin: empty, else why it may not; `behavior` is whether that of the exhibition asks."""
+        """Return why a command may not begin, empty if it may; `behavior` is True for commands of the behaviour."""
         if not row_of(command).moves:
             self._rests = self._rests or (behavior and isinstance(command, Rest))
             return ""

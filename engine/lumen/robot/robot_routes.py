@@ -1,4 +1,4 @@
-"""Under which keys a robot and its brain talk, where the project's routes do not say otherwise."""
+"""The routing keys between a robot and its brain, unless the project's routes name others."""
 
 from typing import Any
 

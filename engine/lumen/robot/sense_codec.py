@@ -135,11 +135,11 @@ def _position(body: Mapping[str, Any]) -> Whereabouts | None:
 
 
 def image_body(image: Image, number: int, date: str, size: Size | None = None, camera: str = "") -> dict[str, Any]:
-    """The body of a frame of that size: `number` counts frames, `date` is when it was taken (ISO 8601), `camera` by
-    which camera.
+    """Return the body of a frame of that size: `number` counts frames, `date` is its time (ISO 8601), `camera` the
+    name of its camera.
 
-    Renders and compresses, so call it from the thread that owns the camera. Raises RobotError where the robot can't
-    give a picture.
+    Renders and compresses, so call it from the thread that owns the camera. Raises RobotError if the robot cannot
+    give an image.
     """
     pixels = image.pixels(size) if size else image.pixels()
     jpeg, (height, width) = _jpeg(pixels), pixels.shape[:2]

@@ -103,7 +103,7 @@ class RunningSkill:
         self._changed = Condition()
 
     def advance(self, now: float) -> bool:
-        """Let the performer live until `now` [s]; return True once it has ended or was cancelled."""
+        """Run the performer until `now` [s]; return True once it has ended or was cancelled."""
         with self._changed:
             self._now = now
             if self._until is not None and now >= self._until:
@@ -127,11 +127,11 @@ class RunningSkill:
 
     @property
     def over(self) -> bool:
-        """Whether the performer has ended, or will not begin: it was cancelled before, or has no thread."""
+        """True if the performer has ended, or will not begin: it was cancelled before, or has no thread."""
         return self._over or bool(self.thread.lost) or (self.cancelled and not self._entered)
 
     def end(self) -> None:
-        """Let the performer end early."""
+        """Make the performer end early."""
         with self._changed:
             self.cancelled = True
             self._changed.notify_all()
@@ -162,7 +162,7 @@ class RunningSkill:
             self._changed.notify_all()
 
     def _settled(self) -> bool:
-        """Whether the performer has ended, or waits for a time to come."""
+        """True if the performer has ended, or waits for a later time."""
         waits = self._until is not None and self._now < self._until < inf
         return waits or self._over or self._left or bool(self.thread.lost)
 

@@ -29,7 +29,7 @@ class RemoteHall:
         self._undo: Callable[[], None] = bus.subscribe(self._key, self._see)
 
     def use(self, project: Project) -> None:
-        """Go by the routes of this project from now on."""
+        """Switch to the routes of this project."""
         self._project, key = project, project.key_of(SEEN_ROUTE)
         if key != self._key:
             undo, self._key = self._undo, key
@@ -56,7 +56,7 @@ class RemoteHall:
         self._do({"plugged": plugged})
 
     def happen(self, event: Event) -> None:
-        """Let the robot notice something by itself, as a story has it."""
+        """Make the robot notice an event of a story."""
         self._do({"event": event.name, "data": event.data})
 
     def close(self) -> None:

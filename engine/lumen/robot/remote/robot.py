@@ -98,7 +98,7 @@ class RemoteRobot:
         self.use(project)
 
     def use(self, project: Project) -> None:
-        """Go by the routes of this project from now on; what is new is listened to before what is gone is not."""
+        """Switch to the routes of this project; new keys are subscribed before old ones are given up."""
         self._project = project
         wanted = {
             project.key_of(REPORT_ROUTE): self._received.append,
@@ -198,11 +198,11 @@ class RemoteRobot:
         self._send(way, {**encode_command(command), "id": whole}, COMMAND_TTL, whole)
 
     def _stopping(self) -> bool:
-        """Whether something that stops the robot is on its way to it."""
+        """Return True while a command that stops the robot is on its way."""
         return any(isinstance(p.command, Rest | Stop) and not p.heard for p in self._pending.values())
 
     def _call_off(self) -> None:
-        """Commands that are still on their way must not be performed after the one that stops the robot."""
+        """Cancel commands that are still on their way: they must not be performed after one that stops the robot."""
         for whole, pending in list(self._pending.items()):
             if pending.held:
                 self._end(whole, "cancelled")
