@@ -1,4 +1,4 @@
-"""What the engine does is what it did when the goldens were recorded, to the byte."""
+"""The engine's output equals the recorded goldens, byte for byte."""
 
 from collections.abc import Iterator
 from pathlib import Path

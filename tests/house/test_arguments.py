@@ -1,4 +1,4 @@
-"""The public modules, called with what they do not take: UsageError says what is wrong."""
+"""The public modules raise a UsageError that explains wrong arguments."""
 
 from collections.abc import Callable
 from math import inf, nan

@@ -1,4 +1,4 @@
-"""What the documentation shows can be typed. `make docs` runs all of it; here is the quick part."""
+"""The commands in the documentation can be typed. `make docs` runs them all; this is the quick part."""
 
 import argparse
 import importlib

@@ -1,4 +1,4 @@
-"""What a test starts ends with the process that started it, also where that is killed."""
+"""Processes that a test starts end with the process that started them, even if that is killed."""
 
 import os
 import signal

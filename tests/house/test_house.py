@@ -1,4 +1,4 @@
-"""What stays true of the house, whoever builds on it; `python scripts/shape.py` prints where it is not."""
+"""The rules of the code base that every change must keep; `python scripts/shape.py` prints violations."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Tests are marked by what they name, through whatever helpers; the functions here are looked through, never called."""
+"""Tests are marked by the names they use, also through helpers; the functions here are only analysed, never called."""
 
 from collections.abc import Iterator
 from functools import cache

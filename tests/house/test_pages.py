@@ -1,4 +1,4 @@
-"""The contributors' pages say what is so: every file and name in them is there, and the floors are the contract's."""
+"""The contributors' pages are correct: every file and name in them exists, and the floors are the contract's."""
 
 import importlib
 import importlib.util

@@ -1,4 +1,4 @@
-"""What names a moved module or file is found in code by syntax, and elsewhere by spelling."""
+"""References to a moved module or file are found in code by syntax, and elsewhere by spelling."""
 
 from collections.abc import Callable
 

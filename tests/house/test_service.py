@@ -1,4 +1,4 @@
-"""The unit file for systemd: systemd takes it, and its command starts an exhibition that ends in order on SIGTERM."""
+"""The unit file for systemd: systemd accepts it, and its command starts an exhibition that ends in order on SIGTERM."""
 
 import configparser
 import shutil

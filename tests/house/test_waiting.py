@@ -1,4 +1,4 @@
-"""A wait that fails says what it waited for, and what it saw last."""
+"""A wait that fails reports its condition, and the last value that it saw."""
 
 import threading
 

@@ -1,4 +1,4 @@
-"""What `lumen schema` prints for each kind of file, and the schemas of messages; their words in `words/`.
+"""The output of `lumen schema` for each kind of file, and the schemas of messages; their words in `words/`.
 
 A description is improved more often than a schema, so it is left out of `schemas/` and held by its path.
 """
