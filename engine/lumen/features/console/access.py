@@ -1,4 +1,4 @@
-"""Who is at a page: by a PIN, or by a session that a PIN has begun; and how fast PINs may be tried."""
+"""Sign-in to the pages: by a PIN, or by a session that a PIN has begun; and limits on how fast PINs may be tried."""
 
 import base64
 import hashlib
@@ -19,15 +19,15 @@ from lumen.upkeep.regular_files import read_regular
 
 COOKIE = "lumen_session"
 SESSION_TIME = 16 * 3600.0
-"""How long somebody stays signed in [s]: a day in a museum."""
+"""The lifetime of a session [s]: a day in a museum."""
 SHORTEST_PIN = 4
 MAX_NAME = 60
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
-"""How long an address waits after its first wrong PIN, twice as long after each further one, and at most [s]."""
+"""The pause of an address after its first wrong PIN that counts, doubled by each further one, and its maximum [s]."""
 FREE_TRIES = 3
-"""Wrong PINs of an address that cost nothing: people mistype."""
+"""Wrong PINs of an address without a pause: people mistype."""
 ALL_TRIES, ALL_PERIOD = 20, 10.0
-"""So many wrong PINs at a time from anywhere, then one in so long [s]."""
+"""All addresses together may try this many wrong PINs at once, then one per period [s]."""
 MAX_ADDRESSES = 1_000
 SECRET_FILE = "console.key"
 _SECRET_BYTES = 32
@@ -42,7 +42,7 @@ class TooFastError(Exception):
 
 
 class Access:
-    """Knows people by the PINs of the roles; without any PIN everybody is an author, which is for loopback only.
+    """Identifies people by the PINs of the roles; without any PIN each is an author, which is for loopback only.
 
     Sessions are signed with a `secret`, so that they outlive the console; those that were ended are not accepted.
     """
@@ -54,7 +54,10 @@ class Access:
         self._ended: OrderedDict[str, float] = OrderedDict()
 
     def person(self, address: str, bearer: str, cookie: str) -> Person:
-        """Who asks from an address. Raises TooFastError where PINs are tried too fast."""
+        """Return the person who sends a request: the role of the PIN in `bearer`, else that of the session in `cookie`.
+
+        Raises TooFastError if PINs are tried too fast.
+        """
         if not self.pins:
             return Person(Role.AUTHOR)
         if bearer:
@@ -62,23 +65,23 @@ class Access:
         return self._signed(cookie)
 
     def role(self, address: str, pin: str) -> Role:
-        """The role of a PIN, nobody's for a wrong one. Raises TooFastError before it looks."""
+        """Return the role of a PIN, `NOBODY` for a wrong one. Raises TooFastError, before any check, if it is early."""
         self._guard.check(address)
         given, found = pin.encode("utf-8", "surrogatepass"), Role.NOBODY
-        for role, wanted in self.pins.items():  # all of them: how long it takes says nothing
+        for role, wanted in self.pins.items():  # no early end: the time taken must not reveal a role
             if hmac.compare_digest(_digest(given), _digest(wanted)) and role > found:
                 found = role
         self._guard.note(address, right=found > Role.NOBODY)
         return found
 
     def sign(self, person: Person) -> str:
-        """A session of that person, as a cookie's value."""
+        """Return a new session of that person, as the value of a cookie."""
         said = [person.role.word, person.name[:MAX_NAME], time.time() + SESSION_TIME, secrets.token_hex(8)]
         body = base64.urlsafe_b64encode(json.dumps(said).encode()).decode()
         return f"{body}.{self._mark(body)}"
 
     def end(self, cookie: str) -> None:
-        """Accept a session no more."""
+        """End the session of a cookie: it is not accepted again."""
         self._ended[cookie] = time.time()
         while len(self._ended) > MAX_ADDRESSES:
             self._ended.popitem(last=False)
@@ -97,14 +100,14 @@ class Access:
 
 
 class PinGuard:
-    """Makes who tries PINs wait: an address longer each time, and all together where many of them try."""
+    """Limits attempts at PINs: a longer pause for an address each time, and a limit for all addresses together."""
 
     def __init__(self) -> None:
         self._wrong: OrderedDict[str, tuple[int, float]] = OrderedDict()
         self._all = TokenBucket(ALL_TRIES, time.monotonic())
 
     def check(self, address: str) -> None:
-        """Raises TooFastError where it is too early."""
+        """Raise TooFastError if this address, or all addresses together, must wait."""
         now = time.monotonic()
         count, at = self._wrong.get(address, (0, 0.0))
         pause = pause_after(count - FREE_TRIES + 1, FIRST_PAUSE, LONGEST_PAUSE)
@@ -114,7 +117,7 @@ class PinGuard:
             raise TooFastError(left)
 
     def note(self, address: str, *, right: bool) -> None:
-        """A PIN was tried."""
+        """Record an attempt of an address; a right PIN clears its wrong ones."""
         if right:
             self._wrong.pop(address, None)
             return
@@ -125,7 +128,10 @@ class PinGuard:
 
 
 def pins_from(said: Mapping[str, str], environment: Mapping[str, str]) -> dict[Role, str]:
-    """The PINs that variables of the environment hold, by the roles of lumen.yaml. Raises UsageError."""
+    """Return the PINs from environment variables, by role; `said` has the variable for each role's word.
+
+    Raises UsageError if a PIN is missing, too short or used twice.
+    """
     found: dict[Role, str] = {}
     for word, variable in said.items():
         pin = environment.get(variable.removeprefix("$"), "")
@@ -142,7 +148,7 @@ def pins_from(said: Mapping[str, str], environment: Mapping[str, str]) -> dict[R
 
 
 def secret_in(root: Path) -> bytes:
-    """What sessions are signed with, kept in the home of the project; empty where nothing can be kept."""
+    """Return the key that signs sessions, stored in the home of the project; empty if it cannot be stored."""
     home = Home(home_of(root))
     try:
         kept = read_regular(home.folder / SECRET_FILE, 2 * _SECRET_BYTES, follow=False)

@@ -1,4 +1,4 @@
-"""The console's way to a bus: reached anew whenever it was lost, in a thread that nobody waits for."""
+"""The console's connection to a bus, made again whenever it is lost, in a thread that blocks no other."""
 
 import logging
 import threading
@@ -12,20 +12,20 @@ from lumen.run.reaching import Reached
 from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.2
-"""How often it is looked whether the bus is still there [s]."""
+"""The time between two checks of the connection [s]."""
 AWAY = "the broker is not connected: no command reaches a robot until it is back"
 RETRY_PERIOD = 0.5
-"""How long after a bus could not be reached it is tried again [s]."""
+"""The pause after a failed attempt to reach the bus [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 class BusLink:
-    """Holds a bus open, from `start` to `close`: `reached` is it, None while there is none, and `trouble` says why.
+    """Holds a bus open from `start` to `close`: `reached` is the bus, or None; `trouble` is the reason if it is None.
 
-    `patterns` are subscribed to on each bus; `heard` gets what comes, `answered` what comes as an answer to us,
-    `returned` the keys of messages that nobody takes; all of that on threads of the bus. `changed` is called when the
-    bus has come or gone.
+    On each bus it subscribes to `patterns`. `heard` receives their messages, `answered` those on the key for
+    answers, `returned` the keys of messages that no process receives; all on threads of the bus. `changed` is called
+    when the bus becomes available or is lost.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class BusLink:
 
     @property
     def up(self) -> bool:
-        """Whether the bus takes messages now."""
+        """True while the bus accepts messages."""
         broker = self.reached.bus.ability(UsesBroker) if self.reached else None
         return self.reached is not None and not (broker and broker.away)
 
@@ -99,7 +99,7 @@ class BusLink:
             returning.returns(self._returned)
 
     def _watch(self, bus: Bus) -> None:
-        """Return once it is gone for good; a broker that is away comes back by itself."""
+        """Return once the bus is lost for good or the link closes; a broker that is away reconnects by itself."""
         ends, was = bus.ability(EndsWithExhibition), self.up
         while not self._ending.wait(LOOK_PERIOD) and not (ends and ends.gone.is_set()):
             if self.up is not was:

@@ -1,4 +1,4 @@
-"""What robots see: their newest image, asked for only while somebody looks."""
+"""The newest camera image of each robot, subscribed to only while a page shows it."""
 
 import asyncio
 import base64
@@ -16,19 +16,19 @@ BOUNDARY = "lumen-frame"
 MEDIA_TYPE = f"multipart/x-mixed-replace; boundary={BOUNDARY}"
 JPEG = "data:image/jpeg;base64,"
 MAX_IMAGE = 4_000_000
-"""Characters of an image on the bus."""
+"""The most characters that an image on the bus may have."""
 PERIOD = 1 / 15
-"""How long after an image the next is sent at the earliest [s]."""
+"""The shortest time between two images of a stream [s]."""
 SILENCE = 10.0
-"""How long a robot may send no image until the stream ends [s]."""
+"""A stream ends after this long without an image [s]."""
 FRESH = 2.0
-"""How old an image may be that is shown by itself [s]."""
+"""The greatest age of a still image [s]."""
 LINGER = 2.0
-"""How long after the last looker images are still asked for [s]."""
+"""The subscription stays for this long after the last viewer left [s]."""
 
 
 class WatchedCamera:
-    """The newest image of one robot; `frame` is it, `count` how many there were."""
+    """The newest image of one robot: `frame` is its JPEG data, `count` the number of images so far."""
 
     def __init__(self) -> None:
         self.frame, self.count, self.lookers = b"", 0, 0
@@ -74,11 +74,11 @@ class Cameras:
             camera.came.set()
 
     def looked_at(self, robot: str) -> bool:
-        """Whether images of a robot are asked for."""
+        """Return True while the console is subscribed to the images of a robot."""
         return robot in self._cameras and self._cameras[robot].bus is not None
 
     async def stream(self, robot: str) -> AsyncIterator[bytes]:
-        """Images as parts of one answer, only the newest; it ends where none comes any more."""
+        """Yield the newest images as parts of one multipart answer; end after SILENCE [s] without an image."""
         camera = self._cameras.setdefault(robot, WatchedCamera())
         camera.lookers += 1
         seen = camera.count
@@ -101,7 +101,7 @@ class Cameras:
             self._looked(camera)
 
     async def still(self, robot: str) -> bytes:
-        """The newest image; empty where there is none, or an old one. Others are asked for, for a while."""
+        """Return the newest image, empty if there is only an old one or none. The subscription stays for LINGER [s]."""
         camera = self._cameras.setdefault(robot, WatchedCamera())
         camera.lookers += 1
         try:
@@ -111,7 +111,7 @@ class Cameras:
         return camera.frame if time.monotonic() - camera.at < FRESH else b""
 
     async def _listen(self, robot: str, camera: WatchedCamera) -> None:
-        """Subscribe on the bus that there is, unless that was done."""
+        """Subscribe to the images on the present bus, if there is one, unless that is done already."""
         bus = self._watch.link.bus
         if bus is None or bus is camera.bus:
             return
@@ -119,7 +119,7 @@ class Cameras:
             await camera.listen(bus, self._watch.keys.of(robot).image)
 
     def _looked(self, camera: WatchedCamera) -> None:
-        """Somebody looks no more; others may."""
+        """Count one viewer less, and end the subscription after a while if it was the last one."""
         camera.lookers -= 1
         camera.wanted = time.monotonic()
         asyncio.get_running_loop().call_later(LINGER, self._leave, camera)
@@ -131,7 +131,7 @@ class Cameras:
 
 
 def jpeg_in(body: Any) -> bytes | None:
-    """The image in a message; None where it is none, or is too large."""
+    """Return the JPEG data in a message; None if it has none, or too much."""
     url = body.get("contentUrl") if isinstance(body, dict) else None
     if not isinstance(url, str) or not url.startswith(JPEG) or len(url) > MAX_IMAGE:
         return None

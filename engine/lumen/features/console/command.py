@@ -34,7 +34,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """0 once it was ended. It goes on without the exhibition, and with the next one."""
+    """Serve until it is ended, and return 0. It survives the end of the exhibition, and connects to the next one."""
     demand("console", "`lumen console`", "starlette", "uvicorn")
     give_back()
     from lumen.features.console.access import pins_from
@@ -54,7 +54,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _end_with_parent(end: Callable[[], None]) -> None:
-    """Whoever has begun us holds the other end of our standard input; it is closed when that process is gone."""
+    """Call `end` when the parent process is gone, which closes its end of our standard input."""
     while sys.stdin.buffer.read(1024):
         pass
     end()

@@ -1,4 +1,4 @@
-"""Commands from pages: sent once, however often they come, and followed until they are over."""
+"""Commands from pages: each id is sent once, however often it arrives, and followed until its outcome is known."""
 
 import asyncio
 import time
@@ -21,19 +21,19 @@ from lumen.run.presence import ROBOT_PART
 from lumen.run.resting import STOP_TIMEOUT, no_robot, stop_behavior
 
 SENT_TIMEOUT = 0.8
-"""How long a bus may take to have a message [s]; then it counts as not sent."""
+"""A message that the bus does not have after this long counts as not sent [s]."""
 REST_TTL = 5.0
-"""How long a wish to rest may be on its way [s], that of the route `stop`."""
+"""The time to live of a command to rest [s], that of the route `stop`."""
 LOOK_PERIOD = 0.02
-"""How often it is looked whether the robot that is to rest is still there [s]."""
+"""The time between two checks for the presence of a robot that must rest [s]."""
 PRESENCE_PATIENCE = 1.5
-"""How long after it was told to rest a robot that was not heard of may still turn out to be there [s]."""
+"""After a command to rest, a robot that seems absent may still report its presence for this long [s]."""
 MAX_REMEMBERED = 1_000
 FINISHED, FAILED, UNSENT, SENT = "finished", "failed", "unsent", "sent"
 
 
 class PageCommand:
-    """One command: `sent` when it is known whether the bus has it, `over` when it is known what became of it."""
+    """One command: `sent` is set once it is known if the bus has it, `over` once its outcome is known."""
 
     def __init__(self, id: str, robot: str, command: str, by: str) -> None:
         self.id, self.robot, self.command, self.by = id, robot, command, by
@@ -49,17 +49,17 @@ class PageCommand:
             self.over.set()
 
     def to_json(self) -> dict[str, Any]:
-        """The answer to who sent it."""
+        """Return the answer to the page that sent it; `seconds` [s] is from its arrival to its state."""
         return {"id": self.id, "state": self.state, "seconds": self.seconds, "reason": self.reason, **self.more}
 
     def block(self) -> bytes:
-        """As a server-sent event for all pages."""
+        """Return the command as a server-sent event for all pages."""
         told = {"robot": self.robot, "command": self.command, "by": self.by, **self.to_json()}
         return b"event: command\ndata: " + orjson.dumps(told) + b"\n\n"
 
 
 class Commands:
-    """Sends the commands of all pages over one watch; `streams` tell everybody."""
+    """Sends the commands of all pages over one watch; `streams` show them on all pages."""
 
     def __init__(self, watch: Watch, streams: Streams) -> None:
         self._watch, self._streams = watch, streams
@@ -67,7 +67,7 @@ class Commands:
         self._tasks = set[asyncio.Task[None]]()
 
     def send(self, id: str, robot: str, command: str, fields: Fields, person: Person) -> PageCommand:
-        """Send a command, unless one of that id was; raises UsageError for one that can't be understood."""
+        """Send a command and return it; an id sent before returns its command again. Raises UsageError if malformed."""
         if known := self._known.get(id):
             return known
         one = PageCommand(id, robot, command, person.by)
@@ -94,7 +94,7 @@ class Commands:
         self._streams.tell(one.block())
 
     async def _all(self, one: PageCommand, orders: list[tuple[str, Order]]) -> None:
-        """The same for several robots: sent where all are, finished where all have; `robots` says how each stands."""
+        """Follow a command to several robots: it is sent or finished once all are; `robots` has the state of each."""
         each = [PageCommand(one.id, name, one.command, one.by) for name, _ in orders]
         for part, (name, order) in zip(each, orders, strict=True):
             self._begin(self._one(part, name, order))
@@ -141,7 +141,7 @@ class Commands:
                 self._stop_behavior(robot)
 
     async def _robot_answers(self, exchange: Exchange, view: KnownRobot | None) -> None:
-        """Return when there is an answer. Raises BusUnreachableError where the robot's process has ended."""
+        """Return when there is an answer. Raises BusUnreachableError if the robot's process has ended."""
         sent = time.monotonic()
         while exchange.answers.empty():
             if view and view.lacks(ROBOT_PART) and time.monotonic() - sent > PRESENCE_PATIENCE:
@@ -157,12 +157,12 @@ class Commands:
         )
 
     def _note(self, robot: str, text: str, by: str) -> None:
-        """Have it in the journal who did that, where the behaviour does not hear of it."""
+        """Write into the journal who did that, for a command that does not pass through the behaviour."""
         if bus := self._watch.link.bus:
             with suppress(BusError):
                 bus.publish(self._watch.keys.of(robot).operator, NOTE(text=text, by=by))
 
     def _stop_behavior(self, robot: str) -> None:
-        """The behaviour hears of it where the robot can't say so."""
+        """Inform the behaviour of the stop, because the robot cannot."""
         if bus := self._watch.link.bus:
             stop_behavior(bus, robot)

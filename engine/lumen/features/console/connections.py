@@ -1,4 +1,4 @@
-"""The connections of the console's server, so that who never reads can be cut off."""
+"""The connections of the console's server, so that clients that never read can be cut off."""
 
 import asyncio
 from typing import Any, cast
@@ -6,15 +6,15 @@ from typing import Any, cast
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 READ_TIMEOUT = 10.0
-"""How long who is connected may read nothing of what waits for it [s]."""
+"""The longest time that a client may leave data unread [s]."""
 HIGH_WATER = 262_144
-"""How much may wait for one before its stream waits, too [bytes]; the system's own buffers come on top."""
+"""The most unread data of a client before its stream waits [bytes], in addition to the system's own buffers."""
 
 _open: dict[tuple[str, int], asyncio.Transport] = {}
 
 
 class KnownConnection(H11Protocol):
-    """A connection that is known by the address of who made it."""
+    """A connection that `cut_off` finds by the address of its client."""
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         super().connection_made(transport)
@@ -30,6 +30,6 @@ class KnownConnection(H11Protocol):
 
 
 def cut_off(client: tuple[str, int] | None) -> None:
-    """End a connection at once, whatever waits for it."""
+    """End the connection of a client at once; unsent data is lost."""
     if client and (transport := _open.get(client)):
         transport.abort()

@@ -1,4 +1,4 @@
-"""A day of an exhibition: its visits, and the numbers that a museum wants of them."""
+"""A day of an exhibition: its visits, and the statistics that a museum needs."""
 
 import csv
 import io
@@ -22,9 +22,9 @@ from lumen.language.modules import VISITOR_KEY
 HEARD = "heard"
 MAX_TEXT = 200
 MAX_STRETCH = 1_000
-"""Entries between two visits that are looked at as one."""
+"""The most entries between two visits that form one stretch."""
 MAX_ROWS = 1_000
-"""Different texts of a kind that are told."""
+"""The most rows of one kind in the JSON."""
 
 
 @dataclass
@@ -52,7 +52,7 @@ class DayVisit:
 
 
 class AwaitedAnswer(NamedTuple):
-    """A question (`ask`) that was not answered yet, what was heard, and in which visit."""
+    """A question to the knowledge (`ask`) without an answer so far, the sentence that was heard, and its visit."""
 
     text: str
     language: str
@@ -61,7 +61,7 @@ class AwaitedAnswer(NamedTuple):
 
 
 class DayMark(NamedTuple):
-    """What somebody marked: at which position, when [s since 1970], in which words."""
+    """A mark that a person set: its position, its time [s since 1970], its text, and the person."""
 
     position: int
     at: float
@@ -87,7 +87,7 @@ class QuietStretch:
 
 @dataclass
 class Day:
-    """What happened on a day, and on which `dates` something did."""
+    """The visits and counts of one day, and the `dates` on which there is something to show."""
 
     day: date
     dates: list[date]
@@ -106,7 +106,7 @@ class Day:
     marks: list[DayMark] = field(default_factory=list)
 
     def to_json(self) -> dict[str, Any]:
-        """For the page: `numbers` are of the whole day, rows of a text and how often, the most frequent first."""
+        """Return the object for the page; rows of `numbers` are a text and its count, the most frequent first."""
         lengths = [visit.ended - visit.began for visit in self.visits]
         numbers: dict[str, Any] = {
             "visits": len(lengths),
@@ -135,7 +135,7 @@ COUNTED = ("asked", "missed", "answers", "languages")
 
 
 def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: date | None) -> Day:
-    """What the entries of a journal hold of a day, by the exhibition's clock; of the last one where none is wanted."""
+    """Return a day from the entries of a journal, by the exhibition's clock; the last with visits by default."""
     clock, watch, replayer = JournalClock(), VisitWatch(), Replayer(machines)
     days: dict[date, Day] = {}
     visit: DayVisit | None = None
@@ -179,7 +179,7 @@ def day_of(entries: Iterable[RecordedEntry], machines: MachineSource, wanted: da
 
 
 def _lie_between(day: Day, entry: RecordedEntry, at: float) -> None:
-    """Keep where something came of an entry that belongs to no visit, in stretches that no visit interrupts."""
+    """Add an entry outside all visits to the present stretch, or begin a new one after a visit or MAX_STRETCH."""
     if not _is_told(entry):
         return
     last = day.between[-1] if day.between else None
@@ -191,7 +191,7 @@ def _lie_between(day: Day, entry: RecordedEntry, at: float) -> None:
 
 
 def _is_told(entry: RecordedEntry) -> bool:
-    """Whether a page has a line for it, as `entry_words` has it."""
+    """Return True if a page shows a line for the entry; must agree with `text_of` of `entry_words`."""
     if isinstance(entry, JournalJump):
         return bool(entry.said or ENGLISH.jump(entry.kind))
     if entry.entered or entry.commands:
@@ -200,7 +200,7 @@ def _is_told(entry: RecordedEntry) -> bool:
 
 
 def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep, behavior: str) -> None:
-    """What was said, and whether it was understood."""
+    """Count falls, what the visitor said and whether it was understood, and what the robot said."""
     entry = taken.entry
     if not isinstance(entry, JournalInput) or entry.redacted:
         return
@@ -229,7 +229,7 @@ def _count(day: Day, visit: DayVisit | None, taken: ReplayedStep, behavior: str)
 
 
 def _ask(day: Day, visit: DayVisit | None, entry: JournalInput) -> None:
-    """What was asked, and whether it was answered; the ids begin anew with each run."""
+    """Follow questions to the knowledge until they are answered. An id used again means that a new run began."""
     kind, _, id = entry.event.name.partition(".command.")
     data = entry.event.data if isinstance(entry.event.data, Mapping) else {}
     if kind == "answer" and not data.get("filler"):
@@ -253,10 +253,10 @@ def _unanswered(day: Day, id: str) -> None:
 
 
 def understood(entry: JournalInput, taken: ReplayedStep) -> bool:
-    """Whether something came of what a visitor said, and not what comes of anything that nobody expected.
+    """Return True if the behaviour reacted to a visitor's sentence by more than a fallback.
 
-    That is the row `else` of `hears`, or a transition without a guard, of a state that has another one for the same
-    event with one.
+    A fallback is the row `else` of `hears`, or a transition without a guard in a state that has another transition
+    with a guard for the same event.
     """
     if taken.step is None or taken.machine is None:
         return bool(entry.entered or entry.exited or entry.commands)
@@ -282,11 +282,11 @@ def _name(visit: DayVisit, taken: ReplayedStep) -> None:
 
 
 RISKY = ("=", "+", "-", "@", "\t", "\r")
-"""What a cell may not begin with: a spreadsheet would take it for a formula."""
+"""Text that begins with one of these gets an apostrophe: a spreadsheet would read it as a formula."""
 
 
 def day_csv(day: Day) -> str:
-    """Rows of `what`, `name` and `value`: the visits, then the day's numbers."""
+    """Return CSV with the columns `date`, `what`, `name` and `value`: the visits, then the day's statistics."""
     told, text = day.to_json(), io.StringIO()
     write = csv.writer(text)
     write.writerow(["date", "what", "name", "value"])

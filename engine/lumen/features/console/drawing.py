@@ -1,4 +1,4 @@
-"""What a robot's links look like, and where they are: from its joints, by its project's own model."""
+"""The shapes and poses of a robot's links, from its joint angles and its project's own model."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -18,9 +18,9 @@ DIGITS = 4
 
 
 class Drawing:
-    """The robot of the project in `root`, of several that one, without a name the first.
+    """The robot of that name of the project in `root`; the first if it has several and the name is empty.
 
-    Raises LumenError where its files have errors, or MuJoCo is not installed.
+    Raises LumenError if its files have errors, or MuJoCo is not installed.
     """
 
     def __init__(self, root: Path, robot: str = "") -> None:
@@ -29,7 +29,7 @@ class Drawing:
         self._links = links_of(self._project.body, model_files(self._project)[0])
 
     def shape(self) -> dict[str, Any]:
-        """The links with their shapes, and the stage [m]."""
+        """Return the links with their shapes, and the stage [m], as JSON data."""
         found: dict[str, list[dict[str, Any]]] = {}
         for one in self._links.shapes():
             found.setdefault(one.link, []).append(
@@ -47,7 +47,7 @@ class Drawing:
         }
 
     def pose(self, body: Any) -> dict[str, list[float]] | None:
-        """Each link as x, y, z [m] and a rotation w, i, j, k in the hall, by its name; None for no joint angles."""
+        """Return each link's x, y, z [m] and rotation w, i, j, k in the hall, by name; None without joint angles."""
         if not isinstance(body, Mapping):
             return None
         joints = decode_reading(Sense.JOINT, body, tuple(self._project.body.joints))
@@ -56,7 +56,7 @@ class Drawing:
         return dict(self._placed(joints))
 
     def _placed(self, joints: Joints) -> Iterator[tuple[str, list[float]]]:
-        """Parents come before their children."""
+        """Yield the links with their poses. The frames of parents come before those of their children."""
         known: dict[str, tuple[Any, Any]] = {}
         for frame in self._links.frames(joints):
             position, rotation = np.asarray(frame.position), np.asarray(frame.rotation)

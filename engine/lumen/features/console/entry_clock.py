@@ -1,4 +1,4 @@
-"""When entries of a journal were made, as pages of it tell: in order, and not from its beginning."""
+"""The times of entries in pages of a journal: in order, but not from its beginning."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,7 @@ from lumen.language.numbers import is_number
 class ToldPage(NamedTuple):
     """Entries of a journal that follow each other, each with its `position`.
 
-    `epoch` is when the exhibition's time 0 was where the first of them was made [s since 1970], None where nobody says.
+    `epoch` is the exhibition's time 0 that holds for the first entry [s since 1970], None if unknown.
     """
 
     entries: Sequence[Mapping[str, Any]]
@@ -22,8 +22,8 @@ class ToldPage(NamedTuple):
 class EntryClock:
     """Follows the entries of a page.
 
-    Where nobody says when time 0 was, the next entry that says so counts, and where there is none, the newest was made
-    just now.
+    If the page has no `epoch`, the first entry that has one counts; if none does, the last entry is assumed to be of
+    this moment.
     """
 
     def __init__(self, page: ToldPage) -> None:
@@ -33,7 +33,7 @@ class EntryClock:
             self._epoch = time.time() - _number(page.entries[-1].get("at"))
 
     def of(self, entry: Mapping[str, Any]) -> str:
-        """When the next one was made, ISO 8601 in UTC."""
+        """Return the time of the next entry, ISO 8601 in UTC."""
         told = _epoch_in(entry)
         self._epoch = told if told is not None else self._epoch or 0.0
         try:

@@ -1,4 +1,4 @@
-"""The latest entries of a robot's journal, each encoded once for all who listen."""
+"""The latest entries of a robot's journal, each encoded once for all pages."""
 
 from bisect import bisect_right
 from collections import deque
@@ -12,9 +12,9 @@ from lumen.features.console.entry_clock import EntryClock, ToldPage
 from lumen.features.console.entry_words import told_of
 
 KEPT = 2_000
-"""Entries."""
+"""The most entries in a ring."""
 PAGE = 200
-"""How many somebody gets at a time."""
+"""The most entries that `after` returns."""
 
 
 class EncodedEntry(NamedTuple):
@@ -25,9 +25,9 @@ class EncodedEntry(NamedTuple):
 
 
 class EntryRing:
-    """Entries of one robot without a gap after `first`, the position before the oldest that is kept.
+    """Consecutive entries of one robot. `first` is the position before the oldest that is kept.
 
-    `last` is the newest's, `run` counts how often the journal has begun anew.
+    `last` is the position of the newest; `run` counts how often the journal has begun anew.
     """
 
     def __init__(self, robot: str) -> None:
@@ -37,13 +37,13 @@ class EntryRing:
         self._kept: deque[EncodedEntry] = deque()
 
     def begin(self, after: int) -> None:
-        """From now on the entries after that position are kept; those before are forgotten."""
+        """Drop all entries, and keep those after this position from now on."""
         self.run += self.known
         self.known, self.first, self.last = True, after, after
         self._kept.clear()
 
     def add(self, page: ToldPage) -> int:
-        """Keep what is new of a page of the journal; how many that is."""
+        """Keep the new entries of a page of the journal, and return their number."""
         new = [entry for entry in self.encoded(page) if entry.position > self.last]
         for entry in new:
             self._kept.append(entry)
@@ -53,14 +53,14 @@ class EntryRing:
         return len(new)
 
     def after(self, position: int) -> Sequence[EncodedEntry] | None:
-        """Some of those after a position, the oldest first; None where not all of them are kept any more."""
+        """Return up to PAGE entries after a position, the oldest first; None if some after it are no longer kept."""
         if position < self.first:
             return None
         begin = bisect_right(self._kept, position, key=lambda entry: entry.position)
         return list(islice(self._kept, begin, begin + PAGE))
 
     def encoded(self, page: ToldPage) -> list[EncodedEntry]:
-        """The entries of a page, each with its robot, its time (ISO 8601), a line for people and its kind."""
+        """Encode the entries of a page, each with its robot, its time (ISO 8601), a line of text and its kind."""
         found, clock = [], EntryClock(page)
         for entry in page.entries:
             more = {"robot": self.robot, "at_time": clock.of(entry), **told_of(entry)}

@@ -1,4 +1,4 @@
-"""An entry of the journal as a line for people, in each language of the pages, and what kind of entry it is."""
+"""Entries of the journal as lines of text in each language of the pages, and the kinds of entries."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
@@ -14,12 +14,12 @@ ERROR = "error."
 PERSON = "person"
 MARK, NOTE = "mark", "note"
 OFTEN, ENDS = ("face", CLOCK_SET), ("done.command.", "cancelled.command.", "lost.command.")
-"""What comes again and again, and after each command: told where something comes of it."""
+"""Frequent events, and prefixes of events that follow each command: shown only if they have an effect."""
 
 
 @dataclass(frozen=True)
 class EntryPhrases:
-    """What lines about entries are made of, in one language."""
+    """The phrases for lines about entries, in one language; `{}` is replaced."""
 
     says: str = "says “{}”"
     heard: str = "heard “{}”"
@@ -41,15 +41,15 @@ class EntryPhrases:
     code: str = "en"
 
     def deed(self, kind: str) -> str:
-        """A command that is not spoken, by its class."""
+        """Return the phrase for a command other than speech, by the name of its class."""
         return DEEDS.get(self.code, {}).get(kind, kind.lower())
 
     def person(self, by: str) -> str:
-        """A person as named in the journal: a name, or a role in the language of the page."""
+        """Return a person as the page shows them: a name as it is, a role in the language of the page."""
         return PEOPLE.get(self.code, {}).get(by, by)
 
     def jump(self, kind: str) -> str:
-        """A jump of that kind; the kind itself where it is one that is not known here."""
+        """Return the phrase for a jump of that kind; the kind itself if it is unknown here."""
         name = kind.replace(" ", "_")
         return str(getattr(self, name)) if name in KNOWN else kind
 
@@ -81,9 +81,10 @@ OTHERS = {
 
 
 def kind_of(entry: Mapping[str, Any]) -> str:
-    """`person` for what somebody wanted, else `says`, `does` or `state` for what came of it, else how it came.
+    """Return `person` for a person's order, else `says`, `does` or `state` by its effect, else how it arrived.
 
-    That is `heard`, `timer`, `goto`, or the kind of a jump: `start`, `reload`, `resume` and the like.
+    The latter is `heard`, `timer` or the like. Jumps return `mark`, `person` for a note, or their own kind, such as
+    `start`, `reload` or `resume`.
     """
     said = _said(entry)
     if MARK in said:
@@ -102,14 +103,14 @@ def kind_of(entry: Mapping[str, Any]) -> str:
 
 
 def told_of(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """What a page shows of an entry: its `kind`, its `text`, and its `texts` in other languages where they differ."""
+    """Return what a page shows of an entry: `kind`, `text`, and `texts` by language for those that differ from it."""
     text = text_of(entry)
     others = {code: other for code, words in OTHERS.items() if text and (other := text_of(entry, words)) != text}
     return {"text": text, "kind": kind_of(entry), **({"texts": others} if others else {})}
 
 
 def text_of(entry: Mapping[str, Any], words: EntryPhrases = ENGLISH) -> str:
-    """What happened and what came of it; empty where nothing did that anybody would miss, as for another face."""
+    """Return the event and its effects as a line; empty for frequent events, such as a face, without an effect."""
     if told := _noted(_said(entry), words):
         return told
     if "jump" in entry:
@@ -128,7 +129,7 @@ def _said(entry: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _noted(said: Mapping[str, Any], words: EntryPhrases) -> str:
-    """What somebody marked, or did to the robot themselves; empty where nobody did."""
+    """Return the text of a person's mark or note, with the person; empty if there is none."""
     what = next((key for key in (MARK, NOTE) if key in said), "")
     if not what:
         return ""
@@ -153,7 +154,7 @@ def _received(entry: Mapping[str, Any], words: EntryPhrases) -> str:
 
 
 def _by(cause: object, words: EntryPhrases) -> str:
-    """Which person it was, as the end of a line."""
+    """Return the person who caused an entry, as the end of its line; empty for other causes."""
     person = isinstance(cause, list) and len(cause) > 3 and cause[0] == PERSON and cause[3]
     return words.by.format("", words.person(str(person))) if person else ""
 

@@ -1,4 +1,4 @@
-"""Messages of the console and what comes back: whether the bus has them, whether somebody takes them, the answers."""
+"""Messages of the console with their results: whether the bus has them, whether a process receives them, answers."""
 
 import asyncio
 import uuid
@@ -13,22 +13,22 @@ from lumen.ports import Message
 from lumen.run.asking import OPERATOR_ANSWERS
 
 ECHO = {"console": "echo"}
-"""Sent to ourselves behind a message: when it is back the bus has both, for it keeps their order."""
+"""Sent to ourselves right after a message: the bus keeps their order, so it has both once this is back."""
 
 
 class Exchange:
-    """One message and what comes back: `answers`, `echo` once the bus has it, `nobody` where nobody takes it."""
+    """One message with its `answers`; `echo` is set once the bus has it, or `nobody` if no process receives it."""
 
     def __init__(self) -> None:
         self.answers: asyncio.Queue[Any] = asyncio.Queue()
         self.echo, self.nobody = asyncio.Event(), asyncio.Event()
 
     async def taken(self, timeout: float) -> bool:
-        """Whether the bus has it, and somebody takes it, known within `timeout` [s]."""
+        """Return True if the bus has it within `timeout` [s] and did not return it as undeliverable."""
         return await _first(timeout, self.echo, self.nobody) and not self.nobody.is_set()
 
     async def answer(self, timeout: float) -> Any:
-        """The next answer. Raises BusUnreachableError where there is none within `timeout` [s]."""
+        """Return the next answer. Raises BusUnreachableError if none comes within `timeout` [s], or none can come."""
         nobody = asyncio.ensure_future(self.nobody.wait())
         answer = asyncio.ensure_future(self.answers.get())
         try:
@@ -42,14 +42,14 @@ class Exchange:
 
 
 class Exchanges:
-    """All that wait for answers over a link."""
+    """All open exchanges over one link."""
 
     def __init__(self, link: BusLink) -> None:
         self._link = link
         self._open: dict[str, tuple[str, Exchange]] = {}
 
     def take(self, message: Message) -> None:
-        """A message came on the key for answers, to us or to somebody else; in the loop."""
+        """Give a message on the key for answers to its exchange, if it is one of ours. Call it in the loop."""
         if found := self._open.get(message.correlation_id):
             if message.body == ECHO:
                 found[1].echo.set()
@@ -57,18 +57,18 @@ class Exchanges:
                 found[1].answers.put_nowait(message.body)
 
     def ours(self, message: Message) -> bool:
-        """Whether it is an answer that somebody waits for; any thread may ask."""
+        """Return True if an open exchange waits for this answer. Any thread may call it."""
         return message.correlation_id in self._open
 
     def nobody_takes(self, key: str) -> None:
-        """A message under this key came back; in the loop."""
+        """Mark the exchanges of this key as received by no process. Call it in the loop."""
         for sent, exchange in self._open.values():
             if sent == key:
                 exchange.nobody.set()
 
     @contextmanager
     def send(self, key: str, body: Any, *, ttl: float, by: str = "", echo: bool = False) -> Iterator[Exchange]:
-        """Send a message that is worth something for `ttl` [s], in somebody's name. Raises BusError where none goes."""
+        """Send a message that expires after `ttl` [s], from the sender `by`. Raises BusError if it cannot be sent."""
         bus = self._link.bus
         if bus is None:
             raise BusClosedError(self._link.trouble or "there is no bus")
@@ -84,13 +84,13 @@ class Exchanges:
             del self._open[mark]
 
     async def request(self, key: str, body: Any, timeout: float) -> Any:
-        """The first answer to a question. Raises BusError where there is none within `timeout` [s]."""
+        """Send a question and return the first answer. Raises BusError if none comes within `timeout` [s]."""
         with self.send(key, body, ttl=timeout) as exchange:
             return await exchange.answer(timeout)
 
 
 async def _first(timeout: float, *events: asyncio.Event) -> bool:
-    """Whether one of them is set within `timeout` [s]."""
+    """Return True if one of the events is set within `timeout` [s]."""
     waiting = [asyncio.ensure_future(event.wait()) for event in events]
     try:
         done, _ = await asyncio.wait(waiting, timeout=timeout, return_when=asyncio.FIRST_COMPLETED)

@@ -1,4 +1,4 @@
-"""The paths about many houses: how they are, and what stops a rollout; asked of the centre on the console's bus."""
+"""The paths about many houses: their status, and decisions on a rollout; sent to the centre on the console's bus."""
 
 from typing import Any
 
@@ -12,12 +12,12 @@ from lumen.features.console.requests import DeniedError, Reception, as_json
 from lumen.language.fleet_keys import ORDER
 
 ANSWER_TIMEOUT = 5.0
-"""How long a centre may take [s]."""
+"""The time limit for the answer of a centre [s]."""
 DECISIONS = ("pause", "go", "abort")
 
 
 class FleetPages:
-    """Answers from what a centre says."""
+    """Passes requests on to the fleet's centre, and returns its answers."""
 
     def __init__(self, reception: Reception) -> None:
         self._reception = reception

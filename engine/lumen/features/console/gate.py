@@ -1,4 +1,4 @@
-"""What stands before every request: from this address, from our own pages, JSON, not too large."""
+"""The checks before every request: its host, its origin, its type, which must be JSON, and its size."""
 
 import asyncio
 import ipaddress
@@ -14,7 +14,7 @@ from lumen.features.console.connections import READ_TIMEOUT, cut_off
 from lumen.features.console.proxies import TrustedProxies
 
 MAX_BODY = 65_536
-"""Of what is posted [bytes]."""
+"""The largest body of a request [bytes]."""
 POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; style-src 'self'; script-src 'self'; connect-src 'self'; "
     "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
@@ -35,7 +35,7 @@ WRITING = ("POST", "PUT", "PATCH", "DELETE")
 
 
 class Gate:
-    """Refuses what a foreign page, a rebound name or a careless program may send; adds headers to every answer.
+    """Refuses requests of foreign pages, rebound names and careless programs; adds headers to every answer.
 
     `hosts` are names and addresses under which the console is reached, besides the address of the connection itself.
     The addresses that `proxies` report are believed.
@@ -82,20 +82,20 @@ class Gate:
 
 
 def refused(status: int, reason: str, **headers: str) -> JSONResponse:
-    """An answer that says in a sentence why not."""
+    """Return a JSON answer with the reason, a sentence."""
     return JSONResponse({"reason": reason}, status, headers)
 
 
 def _readable(host: str) -> bool:
     try:
-        urlsplit(f"//{host}").port  # noqa: B018  it raises where it is none
+        urlsplit(f"//{host}").port  # noqa: B018  it raises if the port is invalid
     except ValueError:
         return False
     return not any(sign in host for sign in "/@?#\\ ")
 
 
 def _same_address(name: str, here: str) -> bool:
-    """Whether a host is written as the very address at which the connection came in; loopback has several."""
+    """Return True if a host is the very address at which the connection came in; loopback has several."""
     try:
         one, other = ipaddress.ip_address(name), ipaddress.ip_address(here)
     except ValueError:
@@ -104,7 +104,7 @@ def _same_address(name: str, here: str) -> bool:
 
 
 async def _read(receive: Receive, headers: Mapping[str, str]) -> tuple[bytes, tuple[int, str] | None]:
-    """The body, or why it is refused."""
+    """Return the body, and None or the status and reason of a refusal."""
     too_large = 413, f"the request body is too large: send at most {MAX_BODY} bytes"
     length = headers.get("content-length", "0")
     if length.isdigit() and int(length) > MAX_BODY:
@@ -122,7 +122,7 @@ async def _read(receive: Receive, headers: Mapping[str, str]) -> tuple[bytes, tu
 
 
 def _given(body: bytes, receive: Receive) -> Receive:
-    """Receives a body that was read already, then whatever comes."""
+    """Return a `receive` that first gives a body that was read already, then what follows."""
     read: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
 
     async def again() -> Message:
@@ -132,7 +132,7 @@ def _given(body: bytes, receive: Receive) -> Receive:
 
 
 def _guarded(send: Send, client: tuple[str, int] | None) -> Callable[[Message], Awaitable[None]]:
-    """Sends with our headers, and cuts off who does not read what is sent."""
+    """Return a `send` that adds our headers, and cuts off a client that does not read for READ_TIMEOUT [s]."""
 
     async def told(message: Message) -> None:
         if message["type"] == "http.response.start":
@@ -148,7 +148,7 @@ def _guarded(send: Send, client: tuple[str, int] | None) -> Callable[[Message], 
 
 
 def json_object(body: bytes) -> dict[str, Any]:
-    """The object that was posted. Raises ValueError that says what would be right."""
+    """Return the JSON object in a body. Raises ValueError if the body is no JSON, or no object."""
     try:
         data = json.loads(body or b"null")
     except (ValueError, RecursionError):

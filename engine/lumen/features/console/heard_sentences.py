@@ -1,4 +1,4 @@
-"""Sentences of visitors without names, with the states that heard them and the row that took them."""
+"""Sentences of visitors without names, with the states that heard them and the row that matched."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -22,7 +22,7 @@ class HearingState(NamedTuple):
 
 
 class HeardSentence(NamedTuple):
-    """A sentence, the states that heard it, and the key of the row that took it; empty if none did."""
+    """A sentence, the states that heard it, and the key of the row that matched; empty if none did."""
 
     text: str
     language: str
@@ -38,7 +38,7 @@ class HeardSentence(NamedTuple):
 
 
 def heard_sentence(behavior: str, taken: ReplayedStep, text: str) -> tuple[HeardSentence, dict[str, list[str]]] | None:
-    """Return a sentence as it was heard, and the keys of the rows of each of its states; None if none has rows.
+    """Return a sentence as it was heard, and the keys of the rows of each of its states; None if they have no rows.
 
     Names that the behaviours held before or afterwards are taken out of it. Guards see the context of that moment.
     """
@@ -61,7 +61,7 @@ def heard_sentence(behavior: str, taken: ReplayedStep, text: str) -> tuple[Heard
 
 
 def _named(behavior: str, machine: MachineDefinition, snapshot: Snapshot) -> Iterator[tuple[str, Running]]:
-    """The behaviours that run, each with the name of its file."""
+    """Yield the name of the file and the state of each running behaviour."""
     names, waiting = {id(machine): behavior}, [machine]
     while waiting:
         for name, inner in waiting.pop().invoked.items():
@@ -73,7 +73,7 @@ def _named(behavior: str, machine: MachineDefinition, snapshot: Snapshot) -> Ite
 
 
 def _hearing_paths(one: Running) -> Iterator[str]:
-    """Of each region the innermost active state that has rows."""
+    """Yield, for each active region, the path of the innermost active state that has rows."""
     states = one.machine.states
     active = [path for path, state in states.items() if state.name in one.snapshot.configuration or not path]
     outer = {states[path].parent for path in active}

@@ -25,11 +25,11 @@ from lumen.upkeep.judge_process import MAX_MEMORY, AnswerPipe, answering, limit_
 
 TOO_LONG_AGO = "too long ago"
 REPLAY_TIME = 10.0
-"""How long visits are played with the saved files [s]; the others are said to be unknown."""
+"""The time limit for replaying visits with the saved files [s]; the rest are reported as unknown."""
 
 
 def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
-    """A day, for a page or as a `csv`: from this machine's files, or from pages of entries that are read (`told`)."""
+    """Answer with a day, for a page or as `csv`: from this machine's files, or from pages read here if it is `told`."""
     from lumen.features.console.day import day_csv
     from lumen.features.console.kept_days import KeptDays
 
@@ -44,21 +44,21 @@ def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose:
 
 
 def entries(pipe: AnswerPipe, root: Path, robot: str, first: int, last: int) -> Iterator[bytes]:
-    """The entries between two positions, from this machine's files."""
+    """Answer with the entries between two positions, from this machine's files."""
     from lumen.features.console.kept_days import KeptDays
 
     yield orjson.dumps(KeptDays(root, robot).entries(first, last, MAX_SHOWN), default=str)
 
 
 def why(pipe: AnswerPipe, root: Path, robot: str, question: str, what: str, at: str | None) -> Iterator[bytes]:
-    """Why something happened, or did not, from the journal."""
+    """Answer from the journal why something happened, or did not."""
     from lumen.run.recalling import answer_from_journal
 
     yield orjson.dumps(answer_from_journal(str(root), question, what, at, TOO_LONG_AGO, robot), default=str)
 
 
 def replay(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
-    """What the files on the disk would have done in the visits that are kept; nothing where that can't be said."""
+    """Replay the recorded visits with the files on the disk; answer NOTHING if those have errors or that fails."""
     from lumen.lint import check_files
     from lumen.project.files import read_files
     from lumen.run.replaying.journals import KeptBundles, chosen
@@ -79,7 +79,7 @@ def replay(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
 def saying(
     pipe: AnswerPipe, root: Path, robot: str, behavior: str, state: str, row: str, language: str, text: str
 ) -> Iterator[bytes]:
-    """Add a sentence of a visitor to the sayings, with the row that should have taken it."""
+    """Add a sentence of a visitor to the sayings, with the row that should have matched it."""
     from lumen.language.sayings import Saying
     from lumen.run.new_saying import write_saying
 
@@ -102,14 +102,14 @@ def story(pipe: AnswerPipe, root: Path, robot: str, position: int, visitor: str,
 
 
 def shape(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
-    """What the robot's links look like, and its stage."""
+    """Answer with the shapes of the robot's links, and its stage."""
     from lumen.features.console.drawing import Drawing
 
     yield orjson.dumps(Drawing(root, robot).shape())
 
 
 def poses(pipe: AnswerPipe, root: Path, robot: str) -> Iterator[bytes]:
-    """The poses of its links, one for each question with joint angles; `null` for any other question."""
+    """Answer each question that has joint angles with the poses of the links, any other with `null`."""
     from lumen.features.console.drawing import Drawing
 
     drawing = Drawing(root, robot)
@@ -131,7 +131,7 @@ def _read(questions: Iterable[bytes]) -> Iterator[Any]:
 
 
 def main(name: str, root: str, arguments: str) -> None:
-    """Do a job; a LumenError is an answer."""
+    """Do a job and send its answers; a LumenError is sent as an answer, too."""
     search_rarely()
     with answering(MAX_MEMORY) as pipe:
         limit_time(JOB_TIME)

@@ -1,4 +1,4 @@
-"""What takes much memory or time, in a process that ends with it: one at a time, and few that wait for their turn."""
+"""Work that needs much memory or time, in a process of its own: one at a time, with a short queue."""
 
 import asyncio
 import sys
@@ -15,20 +15,20 @@ from lumen.upkeep.judge_process import Fault, JudgeProcess, NoAnswerError
 
 PROGRAM = "lumen.features.console.job"
 MAX_WAITING = 8
-"""Jobs under way or waiting; one more is refused."""
+"""The most jobs that run or wait; further ones are refused."""
 MAX_ANSWER = 64 << 20
-"""What a job may answer [bytes]."""
+"""The largest answer of a job [bytes]."""
 
 
 class Jobs:
-    """Does jobs (`lumen.features.console.job` has them) for the project in `root`. Everything raises DeniedError."""
+    """Runs the jobs of `lumen.features.console.job` for the project in `root`. Its methods raise DeniedError."""
 
     def __init__(self, root: Path) -> None:
         self.root, self._turn = root, asyncio.Lock()
         self._waiting = 0
 
     async def do(self, job: str, *arguments: Any, told: AsyncIterator[bytes] | None = None) -> bytes:
-        """Return what a job answers; it reads what it is `told`, line by line. What `told` raises is raised."""
+        """Run a job and return its answer; the job reads the lines of `told`. Errors of `told` are passed on."""
         if self._waiting >= MAX_WAITING:
             raise DeniedError(503, f"{MAX_WAITING} such requests are running already: try again in a moment")
         self._waiting += 1
@@ -41,7 +41,7 @@ class Jobs:
             self._waiting -= 1
 
     def begin(self, job: str, *arguments: Any) -> JudgeProcess:
-        """Start a process that does a job, until it is ended."""
+        """Start a process that does a job, and return it; the caller must end it."""
         line = [sys.executable, "-m", PROGRAM, job, str(self.root), orjson.dumps(arguments).decode()]
         process = JudgeProcess(line, MAX_ANSWER)
         try:
@@ -70,7 +70,7 @@ async def _answer(process: JudgeProcess) -> bytes:
 
 
 def why_none(error: LumenError | NoAnswerError) -> str:
-    """Why a job has no answer, as a sentence."""
+    """Return the reason why a job has no answer, as a sentence."""
     if isinstance(error, LumenError):
         return str(error)
     if error.fault is Fault.SIZE:

@@ -1,4 +1,4 @@
-"""Days of an exhibition, from the journal of this machine or from entries that somebody tells."""
+"""Days of an exhibition, from the journal of this machine or from entries that the exhibition sends."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from datetime import date, datetime
@@ -22,11 +22,11 @@ from lumen.run.one_robot import one_robot
 from lumen.run.replaying.journals import KeptBundles
 
 WINDOW = 86_400.0 * 1.5
-"""How long before the end of a day a file may have begun that holds something of it [s]."""
+"""A file holds entries of a day only if it began within this time before the end of the day [s]."""
 
 
 class KeptDays:
-    """Days of the project in `root`, of the first of several robots unless one is named."""
+    """Days of the project in `root`; of the first robot if it has several and `robot` is empty."""
 
     def __init__(self, root: Path, robot: str = "") -> None:
         self._robot = one_robot(root, robot)
@@ -34,7 +34,7 @@ class KeptDays:
         self._here = list[Project | None]()
 
     def day(self, wanted: date | None) -> Day | None:
-        """A day from the files of this machine, the last where none is wanted; None where there are no files."""
+        """Return a day from the files of this machine, the last by default; None if there are no files."""
         files = sorted(self._files(), key=lambda row: row[1])
         if not files:
             return None
@@ -61,11 +61,11 @@ class KeptDays:
         return {"entries": found, "epoch": epoch or None}
 
     def told(self, pages: Iterable[Any], wanted: date | None) -> Day:
-        """A day from pages of entries with their positions, as an exhibition tells them."""
+        """Return a day from pages of entries with their positions, as an exhibition sends them."""
         return self._still_open(day_of((entry for page in pages for entry in _recorded(page)), self._machine, wanted))
 
     def _still_open(self, found: Day) -> Day:
-        """The day without those unanswered questions that are in a passage by now, and sentences that are sayings."""
+        """Return the day without the questions that a passage has by now and the sentences that are sayings by now."""
         if found.unanswered:
             known = knowledge_parts(read_files(self._root, self._robot)).knowledge.values()
             answered = {
@@ -86,7 +86,7 @@ class KeptDays:
         return found
 
     def _machine(self, hash: str, behavior: str) -> MachineDefinition | None:
-        """What ran then; where that was not kept, what is here now."""
+        """Return the behaviour of that bundle if it was kept, else that of the present files; None if it has errors."""
         if kept := self._kept.machine(hash, behavior):
             return kept
         if not self._here:

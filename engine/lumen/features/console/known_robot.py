@@ -1,4 +1,4 @@
-"""What is known of one robot: what its exhibition says, its senses, its processes, its files."""
+"""The state of one robot in the console: its exhibition's answers, its senses, its processes, its files."""
 
 import re
 import time
@@ -13,46 +13,46 @@ from lumen.language.numbers import is_number
 from lumen.run.presence import HERE, LEAVES, LOST_AFTER
 
 MAX_NAMES = 50
-"""Names that are known at a time; a robot may still say that of a visitor who has gone."""
+"""The most names that are kept; a robot may still say the name of a visitor who has left."""
 LEFT_OUT = "…"
 
 
 class SpokenNames:
-    """Remembers the names that a robot has heard or recognised lately; any thread may say one."""
+    """The names that a robot heard or recognised lately. `add` may be called from any thread."""
 
     def __init__(self) -> None:
         self._names: tuple[str, ...] = ()
 
     def add(self, name: object) -> None:
-        """Somebody is called that."""
+        """Remember a name. Ignore values that are not strings, blank ones and those already known."""
         if isinstance(name, str) and (known := name.strip()) and known not in self._names:
             self._names = (*self._names, known)[-MAX_NAMES:]
 
     def without(self, text: str) -> str:
-        """The text without these names, however they are written in it."""
+        """Return the text with each of these names replaced by `…`, in upper or lower case."""
         for name in sorted(self._names, key=len, reverse=True):  # Ani Putri before Ani
             text = re.sub(rf"(?<!\w){re.escape(name)}(?!\w)", LEFT_OUT, text, flags=re.IGNORECASE)
         return text
 
 
 SILENT_AFTER = 2.5
-"""How long an exhibition may say nothing until it counts as away [s]."""
+"""An exhibition that has not answered for this long counts as disconnected [s]."""
 CLOCK_TOLERANCE = 0.7
-"""How far a clock may seem to have moved until it is believed [s]: an answer takes its time."""
+"""Smaller changes of a clock are ignored [s]: they may be the delay of an answer."""
 MAX_PROCESSES = 30
 SEEN_FOR = 1.5
-"""How long a face that was seen counts [s]."""
+"""A face is shown for this long after it was last seen [s]."""
 MAX_NAME = 100
 NO_NAMES = ("unknown", "face unrecognized", "error cvException")
-"""What the eyes say of a face that they do not know."""
+"""The names that the face recognition reports for an unknown face."""
 FOR_NOBODY = ("robot", "connected", "heard", "stopped", "saying", "language", "languages")
-"""What is shown to who has no role: enough for subtitles and Rest, no name and nothing that a visitor said."""
+"""The keys shown without a role: enough for subtitles and Rest, but no name and nothing that a visitor said."""
 
 
 class KnownRobot:
-    """One robot as the console knows it; `version` counts what a page would show differently.
+    """One robot as the console knows it; `version` increases with each change that a page would show.
 
-    `entries` are the latest of its journal.
+    `entries` holds the latest entries of its journal.
     """
 
     def __init__(self, robot: str) -> None:
@@ -75,21 +75,21 @@ class KnownRobot:
 
     @property
     def position(self) -> int | None:
-        """That of the last entry of its journal; None where its exhibition does not say, or has written none yet."""
+        """The position of the last entry of its journal; None if its exhibition reports none or wrote no entry yet."""
         found = self.said.get("position")
         return found if type(found) is int and found >= 0 else None
 
     def answered(self, said: Mapping[str, Any]) -> None:
-        """Its exhibition has said how it is."""
+        """Store the status that its exhibition has sent."""
         self._answered, self._heard = time.monotonic(), iso_time(time.time())
         self._names.add(said.get("visitor"))
         told = {**said, "ahead": self._ahead(said.get("time"))}
-        if not self.connected or {**told, "time": ""} != {**self.said, "time": ""}:  # it goes on by itself
+        if not self.connected or {**told, "time": ""} != {**self.said, "time": ""}:  # time always passes
             self.said, self.connected = told, True
             self.version += 1
 
     def look(self, up: bool) -> None:
-        """Some time has passed: is it still there, has it felt anything? `up` is whether the bus is."""
+        """Update what depends on time: its connection, lost processes, senses and faces. `up`: the bus is connected."""
         silent = time.monotonic() - self._answered > SILENT_AFTER
         if self.connected and (silent or not up):
             self.connected = False
@@ -104,7 +104,7 @@ class KnownRobot:
             self.version += 1
 
     def feel(self, sense: str, body: Mapping[str, Any]) -> None:
-        """It has felt something; any thread may say so."""
+        """Store the body of a message of a sense, from any thread. `look` shows it on the pages."""
         match sense:
             case "battery" | "sonar":
                 self._sensed[sense] = {key: value for key, value in body.items() if key != "time"}
@@ -122,7 +122,7 @@ class KnownRobot:
                     self._sensed["temperatures"] = dict(zip(names, hot, strict=True))
 
     def present(self, body: Mapping[str, Any]) -> None:
-        """One of its processes says that it is there, or that it leaves."""
+        """Store the presence message of one of its processes: it is there, or it leaves."""
         session, state = str(body.get("session"))[:40], str(body.get("state"))[:20]
         parts = [str(part)[:40] for part in body.get("parts", ())][:20]
         known = self._processes.get(session)
@@ -137,25 +137,25 @@ class KnownRobot:
         known |= {"heard": iso_time(time.time()), "at": time.monotonic()}
 
     def lacks(self, part: str) -> bool:
-        """Whether a process that was this part has gone, and no other has come."""
+        """Return True if a process had this part, and no running process has it now."""
         parts = [said for said in self._processes.values() if part in said["parts"]]
         return bool(parts) and not any(said["state"] == HERE and not self._away(said) for said in parts)
 
     def told(self, files: Mapping[str, Any]) -> None:
-        """What its exhibition says of saved files."""
+        """Store the answer of its exhibition about saved files."""
         if files != self.files:
             self.files = dict(files)
             self.version += 1
 
     def to_json(self, *, full: bool) -> dict[str, Any]:
-        """The object for a page; `full` for who has a role."""
+        """Return the object for a page; all of it if `full`, which needs a role."""
         processes = [{k: v for k, v in said.items() if k != "at"} for said in self._processes.values()]
         said = {"robot": self.robot, **self.said, "connected": self.connected, "heard": self._heard or None}
         said |= {"senses": self.senses, "processes": processes, "files": self.files, "seen": self.seen}
         return said if full else self._for_nobody(said)
 
     def block(self, *, full: bool) -> bytes:
-        """The same as a server-sent event, encoded once."""
+        """Return the same as a server-sent event, encoded once per version."""
         version, block = self._blocks.get(full, (-1, b""))
         if version != self.version:
             block = b"event: now\ndata: " + orjson.dumps(self.to_json(full=full)) + b"\n\n"
@@ -163,14 +163,14 @@ class KnownRobot:
         return block
 
     def _for_nobody(self, said: Mapping[str, Any]) -> dict[str, Any]:
-        """What is shown to who has no role: what the robot says aloud, but for whom it says it to."""
+        """Return the part shown without a role; names are removed from what the robot is saying."""
         shown = {key: said[key] for key in FOR_NOBODY if key in said}
         if isinstance(saying := shown.get("saying"), Mapping):
             shown["saying"] = {**saying, "text": self._names.without(str(saying.get("text", "")))}
         return shown
 
     def _faces(self) -> dict[str, Any]:
-        """What its eyes found just now, in the image [px of 320 x 240]; who that is, where they know."""
+        """Return the face seen just now, by its place in the image [px of 320 x 240], with its name if it is known."""
         now = time.monotonic()
         if now - self._saw > SEEN_FOR:
             return {"faces": []}
@@ -178,7 +178,10 @@ class KnownRobot:
         return {"faces": [{**self._seen, "name": known}]}
 
     def _ahead(self, told: object) -> float:
-        """How far the exhibition's clock, which a story sets, is ahead of ours [s]; it stays while it is near."""
+        """Return how far the exhibition's clock, which a story can set, is ahead of ours [s].
+
+        A time that cannot be read, or a difference below CLOCK_TOLERANCE, leaves the former value.
+        """
         before = float(self.said.get("ahead", 0.0))
         try:
             ahead = time_of(str(told)) - time.time()

@@ -1,4 +1,4 @@
-"""What may be commanded, by whom, and which message of the bus that is."""
+"""The commands of the pages: the role that each needs, and its message on the bus."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -13,27 +13,27 @@ MAX_TEXT = 1_000
 MAX_NAME = 200
 REST = "rest"
 LONG, SHORT = 300.0, 15.0
-"""How long the answer to a command may take [s]: to one that is over when the robot is done, to others."""
+"""The time limits of answers [s]: LONG for commands that end when the robot is done, SHORT for others."""
 
 
 class Order(NamedTuple):
-    """A command as a message: its key and body, how long its last answer may take [s], and what that says.
-
-    `note` is what the journal keeps of it besides, where the behaviour does not hear of it.
-    """
+    """A command as a message of the bus."""
 
     key: str
     body: dict[str, Any]
     timeout: float
+    """The time limit of its last answer [s]."""
     outcome: Callable[[Any], str | None]
+    """Reads an answer: returns why it failed, empty if it succeeded, None if more answers follow."""
     note: str = ""
+    """A line for the journal, for commands that do not pass through the behaviour."""
 
 
 Fields = Mapping[str, Any]
 
 
 def robot_outcome(answer: Any) -> str | None:
-    """Why a robot did not do it, empty where it did; None where it is still at it."""
+    """Return why a robot failed, empty if it finished; None while it is still busy."""
     match answer:
         case "command finished":
             return ""
@@ -48,11 +48,11 @@ def robot_outcome(answer: Any) -> str | None:
 
 
 def verdict_outcome(answer: Any) -> str | None:
-    """The same of an exhibition that answers questions."""
+    """Return why an exhibition refused a question, empty if it accepted it."""
     match answer:
         case {"verdict": "refused"}:
             return str(answer.get("reason") or "it was refused")
-        case {"verdict": "done", "waiting": str()}:  # for a person's GO: it is not taken yet
+        case {"verdict": "done", "waiting": str()}:  # it waits for a person's approval
             return ""
         case {"verdict": "done", "taken": False}:
             return str(answer.get("reason") or "nothing reacts to that event now")
@@ -63,7 +63,7 @@ def verdict_outcome(answer: Any) -> str | None:
 
 
 def reload_outcome(answer: Any) -> str | None:
-    """The same of orders about files, which may be answered several times."""
+    """Return why an order about files was refused, empty if not; None for an answer that is not the final one."""
     match answer:
         case {"final": False}:
             return None
@@ -76,7 +76,7 @@ def reload_outcome(answer: Any) -> str | None:
 
 
 def order_of(command: str, fields: Fields, keys: RobotKeys, by: str) -> Order:
-    """The message that a command is. Raises UsageError that says what would be right."""
+    """Return the message for a command. Raises UsageError for an unknown command or a malformed field."""
     make = _MAKERS.get(command)
     if make is None:
         raise UsageError(f"there is no command `{command[:40]}`: choose one of {', '.join(NEEDS)}")
@@ -84,7 +84,7 @@ def order_of(command: str, fields: Fields, keys: RobotKeys, by: str) -> Order:
 
 
 def text_in(fields: Fields, name: str, most: int = MAX_NAME, *, needed: bool = True) -> str:
-    """The text of a field. Raises UsageError."""
+    """Return the text of a field. Raises UsageError if it is no string, too long, or blank although `needed`."""
     value = fields.get(name, "")
     if not isinstance(value, str) or len(value) > most or (needed and not value.strip()):
         raise UsageError(f"`{name}` must be a string of {'1' if needed else '0'} to {most} characters")

@@ -1,4 +1,4 @@
-"""The console beside an exhibition: a process of its own, begun again where it dies; the exhibition goes on."""
+"""The console of an exhibition: a process of its own, restarted if it dies; the exhibition is not affected."""
 
 import os
 import subprocess
@@ -18,15 +18,15 @@ from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
-"""How long after its end it is begun again [s], twice as long after each further one, and at most."""
+"""The pause before the first restart, doubled for each further one, and the longest pause [s]."""
 LOOK_PERIOD = 0.5
 STABLE = 30.0
-"""How long it has to live to count as well [s]."""
+"""A process that ran longer than this resets the pause [s]."""
 END_TIMEOUT = 5.0
 
 
 class ConsolePart(Part):
-    """Has `lumen console` run for the project in `root` on the bus at `url`; `tell` hears what it says."""
+    """Runs `lumen console` for the project in `root` on the bus at `url`; `tell` receives the lines that it prints."""
 
     patient = True
 
@@ -40,7 +40,7 @@ class ConsolePart(Part):
 
     @property
     def pid(self) -> int | None:
-        """Of the process, None while there is none."""
+        """The id of the process, None while it does not run."""
         return self._process.pid if self._process else None
 
     def tick(self, now: float, changes: Sequence[Event]) -> None:

@@ -1,4 +1,4 @@
-"""The paths about what was, and what would be: why, why not, days, entries, files, and a fork."""
+"""The paths about the past and about alternatives: why, why not, days, entries, files, and a fork."""
 
 from collections.abc import AsyncIterator, Mapping, Sequence
 from datetime import date
@@ -23,17 +23,17 @@ from lumen.language.operator_requests import FORK, WHY, WHY_NOT, OperatorRequest
 from lumen.run.new_passage import write_passage
 
 MAX_REMOTE = 40_000
-"""Entries that are asked of an exhibition for its day, the last ones."""
+"""The most entries, counted from the last, that are requested from an exhibition for a day."""
 
 
 class JournalSource:
-    """Entries of the robots of a watch. Everything raises BusError where the exhibition does not answer."""
+    """Entries of the robots of a watch. All methods raise BusError if the exhibition does not answer."""
 
     def __init__(self, watch: Watch) -> None:
         self._watch = watch
 
     async def pages(self, robot: str) -> AsyncIterator[bytes]:
-        """The last entries of a robot, pages of them as JSON; nothing is kept here."""
+        """Yield the last entries of a robot, in pages as JSON; none of them is kept in memory."""
         view = self._watch.robots[robot]
         begin, count = max(0, (view.position or view.entries.last) - MAX_REMOTE), 0
         while count < MAX_REMOTE and (page := (await self._watch.page(robot, begin)).entries):
@@ -42,7 +42,7 @@ class JournalSource:
             yield orjson.dumps(page)
 
     async def entries(self, view: KnownRobot, first: int, last: int) -> list[EncodedEntry]:
-        """The entries of a journal between two positions."""
+        """Return the entries of a journal from `first` to `last`, up to a page beyond MAX_SHOWN."""
         found = list[EncodedEntry]()
         while first <= last and len(found) < MAX_SHOWN and (page := await self._watch.page(view.robot, first)).entries:
             found += [one for one in view.entries.encoded(page) if first <= one.position <= last]
@@ -51,7 +51,7 @@ class JournalSource:
 
 
 QUESTION_TIMEOUT = 20.0
-"""How long an exhibition may take for a question about the past [s]."""
+"""The time limit for an exhibition's answer about the past [s]."""
 MAX_QUESTION = 500
 MAX_STORY_NAME = 200
 MAX_FOUND = 200
@@ -64,7 +64,7 @@ SAID = ("behavior", "state", "row", "language", "text")
 
 
 class Past:
-    """Answers from what exhibitions tell, and from the journal of the own project, by jobs."""
+    """Answers from the exhibitions, and by jobs from the journal of the console's own project."""
 
     def __init__(self, reception: Reception, jobs: Jobs) -> None:
         self._reception, self._jobs = reception, jobs
@@ -96,7 +96,7 @@ class Past:
         at = request.query_params.get("at") or None
         try:
             said = await self._request(view, question(what=what, **({"at": at} if at else {})))
-        except DeniedError:  # it does not answer: its journal may
+        except DeniedError:  # its journal may hold the answer
             if not self._is_ours(view):
                 raise
             said = {"kept": "later"}
@@ -195,7 +195,7 @@ class Past:
         return Response(drawn, headers=NO_STORE, media_type="application/json")
 
     async def _passage(self, request: Request) -> Response:
-        """A question that nobody could answer is saved as a passage, and judged as any file that is saved."""
+        """Save an unanswered question with its answer as a passage; it is then checked as any saved file."""
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         if not self._is_ours(self._reception.robot(data.get("robot"))):
@@ -208,7 +208,7 @@ class Past:
         return as_json({"file": file.as_posix()})
 
     async def _saying(self, request: Request) -> Response:
-        """Save a sentence of a visitor as a saying, with the row of `hears` that should have taken it."""
+        """Save a sentence of a visitor as a saying, with the row of `hears` that should have matched it."""
         self._reception.person(request, Role.AUTHOR)
         data = await self._reception.posted(request)
         view = self._reception.robot(data.get("robot"))
@@ -243,11 +243,11 @@ class Past:
         return self._reception.robot(request.query_params.get("robot"))
 
     def _is_ours(self, view: KnownRobot) -> bool:
-        """Whether it is a robot of the project whose folder we know."""
+        """Return True for a robot of the console's own project."""
         return self._watch.keys.is_ours(view.robot)
 
     def _home(self, view: KnownRobot) -> str:
-        """Which of the robots of the project whose folder we know; the first where it is none of them."""
+        """Return the name for the folder of one of our own robots; empty, for the first, if it is another robot."""
         return self._watch.keys.home(view.robot) if self._is_ours(view) else ""
 
     async def _request(self, view: KnownRobot, body: dict[str, Any]) -> dict[str, Any]:
@@ -282,7 +282,7 @@ def _as_entries(found: Sequence[EncodedEntry], *, more: bool = False) -> Respons
 
 
 def _others(said: Any) -> dict[str, tuple[str, str]]:
-    """The question and the answer in other languages, by their codes. Raises UsageError."""
+    """Return the question and the answer in other languages, by language code. Raises UsageError if malformed."""
     if not isinstance(said, dict | None):
         raise UsageError("`also` must be an object with a `question` and an `answer` for each language")
     found = {}

@@ -1,16 +1,20 @@
-"""Who may do what: roles, from nobody to author."""
+"""Roles and their rights, from `nobody` to `author`."""
 
 from enum import IntEnum
 from typing import NamedTuple
 
 
 class Role(IntEnum):
-    """What somebody may: `NOBODY` let a robot rest, `SHOW` break nothing, `OPERATOR` steer, `AUTHOR` everything."""
+    """The rights of a person, in ascending order: each role may do all that the lower ones may."""
 
     NOBODY = 0
+    """A person without a PIN may make a robot rest."""
     SHOW = 1
+    """Look, set marks, approve, and press the buttons that the behaviour offers."""
     OPERATOR = 2
+    """Control the robot and the behaviour."""
     AUTHOR = 3
+    """Change the files, too."""
 
     @property
     def word(self) -> str:
@@ -18,14 +22,14 @@ class Role(IntEnum):
 
 
 class Person(NamedTuple):
-    """Somebody at a page: a role, and the name that they gave, if any."""
+    """A person at a page: a role, and the name given at sign-in, if any."""
 
     role: Role
     name: str = ""
 
     @property
     def by(self) -> str:
-        """As what they stand in journals."""
+        """The name of the person in journals: their own, else that of the role."""
         return self.name or (self.role.word if self.role else "a person at the console")
 
 

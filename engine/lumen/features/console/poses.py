@@ -1,4 +1,4 @@
-"""Where a robot's links are and what they look like, for who draws it; from processes that end when nobody looks."""
+"""Poses and shapes of a robot's links, for drawing it; computed by processes that end after the last viewer left."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -13,18 +13,18 @@ from lumen.features.console.watch import Watch
 from lumen.upkeep.judge_process import JudgeProcess, NoAnswerError
 
 PERIOD = 1 / 15
-"""How long after a pose the next is sent at the earliest [s]."""
+"""The shortest time between two poses [s]."""
 HEARTBEAT = 1.0
 POSE_TIME = 20.0
-"""How long a pose may take [s]: the first one loads the model."""
+"""The time limit of one pose [s]: the first one loads the model."""
 LINGER, RETRY = 5.0, 5.0
-"""How long the process stays after the last looker, and until it is begun anew where it has died [s]."""
+"""The life of the process after the last viewer left, and the pause before a failed one is restarted [s]."""
 
 
 class Poses:
-    """Poses of a robot of this console's own project; other robots have models that nobody here knows.
+    """Poses of a robot of this console's own project; the models of other robots are unknown here.
 
-    Everything raises DeniedError where that has errors, or MuJoCo is not installed.
+    Raises DeniedError from every method if the project has errors, or MuJoCo is not installed.
     """
 
     def __init__(self, watch: Watch, jobs: Jobs, robot: str) -> None:
@@ -36,14 +36,14 @@ class Poses:
         self.closing = False
 
     async def shape(self) -> bytes:
-        """The links with their shapes, and the stage [m], as JSON; made once for a bundle of files."""
+        """Return the links with their shapes, and the stage [m], as JSON; computed once per bundle of files."""
         bundle = self._watch.robots[self._robot].said.get("bundle")
         if self._shape is None or self._shape[0] != bundle:
             self._shape = bundle, await self._jobs.do("shape", self._home)
         return self._shape[1]
 
     async def stream(self) -> AsyncIterator[bytes]:
-        """Server-sent events `pose` as it moves, only the newest; `trouble` where there is none, with the reason."""
+        """Yield server-sent events: `pose` with the newest pose after each move, `trouble` with the reason if none."""
         seen, waited, view = -1, 0.0, self._watch.robots[self._robot]
         self._lookers += 1
         try:
@@ -68,7 +68,7 @@ class Poses:
         return self._watch.keys.home(self._robot)
 
     async def _placed(self, view: KnownRobot) -> bytes:
-        """The event of where it is now, computed once for all that look."""
+        """Return the event with its present pose, computed once for all viewers."""
         async with self._turn:
             moved = view.moved
             if self._pose[0] != moved:

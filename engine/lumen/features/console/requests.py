@@ -1,4 +1,4 @@
-"""What the paths of the console have in common: who asks, about which robot, and answers that say why not."""
+"""Shared parts of the console's paths: the person and the robot of a request, and answers that refuse one."""
 
 from typing import Any
 
@@ -16,13 +16,13 @@ from lumen.upkeep.ratelimit import RateLimiter
 
 NO_STORE = {"Cache-Control": "no-store"}
 REQUESTS_PER_SECOND = 60.0
-"""How many requests an address may send; what lets a robot rest is never counted."""
+"""The rate limit of an address [1/s]; a command to rest is never counted."""
 ALL = "*"
-"""Instead of a robot's name: all of them."""
+"""Used instead of a robot's name: all robots."""
 
 
 class DeniedError(Exception):
-    """Answered with a status and a sentence."""
+    """A request is refused; the answer has this HTTP status, the reason as a sentence, and these headers."""
 
     def __init__(self, status: int, reason: str, **headers: str) -> None:
         super().__init__(reason)
@@ -30,13 +30,13 @@ class DeniedError(Exception):
 
 
 class Reception:
-    """Says who asks and what about. Everything here raises DeniedError."""
+    """Finds the person, the robot and the data of a request. Everything here raises DeniedError but `resting`."""
 
     def __init__(self, watch: Watch, access: Access) -> None:
         self.watch, self.access, self._limiter = watch, access, RateLimiter()
 
     def person(self, request: Request, needs: Role = Role.NOBODY) -> Person:
-        """Who asks, who has to be at least `needs`."""
+        """Return the person who sends a request. Raises DeniedError for a role below `needs` or too many requests."""
         address = address_of(request)
         if self._limiter.wait(address, REQUESTS_PER_SECOND):
             raise DeniedError(429, "too many requests: wait a second. Rest always works", **{"Retry-After": "1"})
@@ -49,14 +49,14 @@ class Reception:
         return person
 
     def resting(self, request: Request) -> Person:
-        """Who wants a robot to rest: nobody is refused, and nothing is counted."""
+        """Return the person who lets a robot rest: no one is refused, and the request does not count."""
         try:
             return self._known(request, address_of(request), bearer=False)
         except TooFastError:
             return Person(Role.NOBODY)
 
     def robot(self, name: object) -> KnownRobot:
-        """The robot of that name; where there is one only it need not be named."""
+        """Return the robot of that name; the name may be left out if there is only one robot."""
         known = self.watch.robots
         if not name and len(known) == 1:
             return next(iter(known.values()))
@@ -66,7 +66,7 @@ class Reception:
         return known[name]
 
     async def posted(self, request: Request) -> dict[str, Any]:
-        """The object that was posted."""
+        """Return the JSON object in the body of a request."""
         try:
             return json_object(await request.body())
         except ValueError as error:
@@ -87,7 +87,7 @@ def as_json(data: Any, status: int = 200, **headers: str) -> Response:
 
 
 async def say_why_not(request: Request, error: Exception) -> Response:
-    """A refusal, a path that is none, or a fault of ours, as JSON."""
+    """Return the answer to an error, as JSON: a refusal, an unknown path or method, or a fault of the console."""
     match error:
         case DeniedError():
             return refused(error.status, error.reason, **error.headers)

@@ -1,4 +1,4 @@
-"""Under which keys the robots of a bus speak and listen: this project's as its routes say, others as usual."""
+"""The routing keys of the robots of a bus: from the routes of this project, the default keys for other robots."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -14,22 +14,25 @@ from lumen.run.reload.requests import STATUS, command_key
 PRESENCE, IMAGE = "presence", "image"
 SENSES = ("battery", "sonar", "joint")
 FACES = ("face", "recognised")
-"""Routes that are always listened to; images only while somebody looks."""
+"""Routes that are always subscribed to; images only while a page shows them."""
 HEARD = (PRESENCE, *SENSES, *FACES)
 
 
 class RobotKeys(NamedTuple):
-    """Where one robot takes questions, orders about files, commands, and what stops it; and where its images come."""
+    """The routing keys of one robot."""
 
     operator: str
+    """Questions to its exhibition."""
     config: str
+    """Orders about its files."""
     command: str
     stop: str
+    """Commands to rest or to resume."""
     image: str
 
 
 class KeyBook:
-    """The keys of all robots; those of the project in `root` where its lumen.yaml can be read."""
+    """The keys of all robots; those of the project in `root` follow its lumen.yaml if that can be read."""
 
     def __init__(self, root: Path) -> None:
         self._own = ""
@@ -39,10 +42,10 @@ class KeyBook:
         settings = main_settings(root)
         self._root, self._told_apart = root, bool(settings and settings.told_apart)
         self.robots: Sequence[str] = tuple(settings.robots) if settings else ()
-        """Those that are there in any case: of the project, else who was reached."""
+        """Robots that exist in any case: those of the project, else the one that was reached."""
 
     def use(self, reached: Reached) -> Sequence[str]:
-        """A bus was reached; the patterns to subscribe to there."""
+        """Read the routes again for a bus that was reached, and return the patterns to subscribe to there."""
         self._reached, self._own = reached, reached.robot
         settings = main_settings(self._root)
         ours = settings is not None and reached.robot in settings.robots
@@ -58,11 +61,11 @@ class KeyBook:
         return [*usual, *told, *(key for (robot, name), key in heard.items() if key != default_key(name, robot))]
 
     def is_ours(self, robot: str) -> bool:
-        """Whether it is one of the project whose folder we know."""
+        """Return True for a robot of the console's own project."""
         return robot in self.robots
 
     def home(self, robot: str) -> str:
-        """What the folder of one of ours is called, empty where lumen.yaml has one `robot:`."""
+        """Return the name of the folder of one of our own robots; empty if lumen.yaml has a single `robot:`."""
         return robot if self._told_apart else ""
 
     def of(self, robot: str) -> RobotKeys:
@@ -80,13 +83,13 @@ class KeyBook:
         )
 
     def _keys(self, robot: str) -> Mapping[str, str]:
-        """The keys of those routes of one of ours that lumen.yaml has."""
+        """Return the keys of the routes that lumen.yaml has for one of our own robots."""
         settings = main_settings(self._root, robot if self._told_apart else "")
         rows = settings.routes if settings else {}
         return {name: rows[name].key_for(robot) for name in (*HEARD, IMAGE, COMMAND_ROUTE, STOP_ROUTE) if name in rows}
 
     def sense(self, key: str) -> tuple[str, str]:
-        """The robot and the route of a key that was heard; empty texts where it is none of the senses."""
+        """Return the robot and the route of a key; two empty strings if it belongs to no sense."""
         if row := self._heard.get(key):
             return row
         for name in FACES:

@@ -1,4 +1,4 @@
-"""The console as a server: a port of this machine, until a signal ends it."""
+"""The console as an HTTP server on a port of this machine, until a signal ends it."""
 
 import asyncio
 import ipaddress
@@ -22,15 +22,15 @@ from lumen.features.console.watch import Watch
 from lumen.run.reaching import Reached
 
 END_TIMEOUT = 1
-"""How long what is under way may take when it is to end [s]."""
+"""The time limit for requests under way when the server ends [s]."""
 
 
 class Console:
-    """Listens at `address` from the beginning, and serves while it is `run`, until a signal or `end`.
+    """Listens at `address` from its construction, and serves in `run` until a signal or `end`.
 
-    `reach` opens the bus of the project in `root`. `pins` are those of the roles; without any everybody may do
-    everything, so that it must be on loopback and behind no proxy. `hosts` are other names of this machine, `proxies`
-    the addresses of trusted proxies. Port 0 is any that is free. Raises UsageError.
+    `reach` opens the bus of the project in `root`. `pins` are those of the roles; without any, every client may do
+    everything, so it must be on loopback and behind no proxy. `hosts` are other names of this machine, `proxies` the
+    addresses of trusted proxies. Port 0 is any free port. Raises UsageError if PINs are missing or the port is taken.
     """
 
     def __init__(
@@ -71,12 +71,12 @@ class Console:
             self._listener.close()
 
     def end(self) -> None:
-        """Have it end, from any thread."""
+        """Make `run` return. Any thread may call it."""
         self._server.should_exit = True
 
 
 class _Server(uvicorn.Server):
-    """Ends the streams first, which would never end by themselves."""
+    """Ends the streams before it shuts down, because they would never end by themselves."""
 
     def __init__(self, config: uvicorn.Config, site: Site) -> None:
         super().__init__(config)
@@ -84,7 +84,7 @@ class _Server(uvicorn.Server):
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """uvicorn raises what it captured again; here the end is in order."""
+        """Restore the handlers without raising the captured signal again, as uvicorn does: this end is in order."""
         if threading.current_thread() is not threading.main_thread():
             yield
             return
@@ -101,7 +101,7 @@ class _Server(uvicorn.Server):
 
 
 def is_loopback(host: str) -> bool:
-    """Whether only this machine reaches it."""
+    """Return True if only this machine can reach the host."""
     try:
         return host == "localhost" or ipaddress.ip_address(host).is_loopback
     except ValueError:

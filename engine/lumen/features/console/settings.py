@@ -1,4 +1,4 @@
-"""What stands under `console:` of lumen.yaml: where its pages are, and who may do what there."""
+"""The settings under `console:` of lumen.yaml: the address of the pages, and the PINs of the roles."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,16 +8,15 @@ CONSOLE_HOST, CONSOLE_PORT = "127.0.0.1", 8080
 
 @dataclass(frozen=True, slots=True)
 class ConsoleSettings:
-    """`lumen run` has a console beside it where this is `wanted`.
-
-    `pins` names for a role (`show`, `operator`, `author`) the variable of the environment that holds its PIN; `hosts`
-    are other names under which it is reached. `proxies` are addresses or networks of proxies before it, whose
-    headers about a request are believed.
-    """
+    """The section `console:` of lumen.yaml."""
 
     wanted: bool = False
+    """`lumen run` starts a console in a process of its own."""
     port: int = CONSOLE_PORT
     host: str = CONSOLE_HOST
     pins: Mapping[str, str] = field(default_factory=dict)
+    """For each role (`show`, `operator`, `author`), the environment variable that holds its PIN."""
     hosts: tuple[str, ...] = ()
+    """Other names under which browsers reach the console."""
     proxies: tuple[str, ...] = ()
+    """Addresses or networks of trusted proxies, whose headers about a request are believed."""

@@ -1,4 +1,4 @@
-"""The paths of what is seen: the camera, and the robot's shape and poses."""
+"""The paths of images: the camera, and the robot's shape and poses."""
 
 from starlette.requests import Request
 from starlette.responses import Response, StreamingResponse
@@ -15,7 +15,7 @@ STREAM = "text/event-stream"
 
 
 class Sights:
-    """Shows robots to those who have a role."""
+    """Serves images and drawings of robots to people who have a role."""
 
     def __init__(self, reception: Reception, jobs: Jobs) -> None:
         self._reception = reception
@@ -33,7 +33,7 @@ class Sights:
             poses.closing = True
 
     def poses(self, robot: str) -> Poses:
-        """Where the links of that robot are."""
+        """Return the poses of that robot, which are created once."""
         if robot not in self._drawings:
             self._drawings[robot] = Poses(self._reception.watch, self._jobs, robot)
         return self._drawings[robot]

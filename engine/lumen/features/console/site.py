@@ -1,4 +1,4 @@
-"""The console's paths: pages, what happens, commands, and who is here."""
+"""The console's paths: pages, events, commands, and sign-in."""
 
 import re
 import time
@@ -33,12 +33,12 @@ from lumen.project.project_folders import FLEET_FILE
 
 PAGES = Path(__file__).parent / "pages"
 MAX_STREAMS = 300
-"""Streams that are open at a time, of all pages together."""
+"""The most streams that all pages together may have open."""
 _ID = re.compile(r"[A-Za-z0-9._:-]{1,100}")
 
 
 class Site:
-    """Answers requests from a watch, of the project in `root`; `app` is what serves them."""
+    """Answers requests from a watch, for the project in `root`; `app` is the ASGI application."""
 
     def __init__(self, watch: Watch, access: Access, root: Path) -> None:
         self.watch, self.access, self._root = watch, access, root
@@ -122,7 +122,7 @@ class Site:
         return StreamingResponse(_outcome(command), media_type="application/json", headers=headers)
 
     def _meant(self, robot: object, *, rests: bool) -> str:
-        """The robot's name; what rests may go to all, and to one that is not known yet."""
+        """Return the robot's name. A command to rest may go to all robots, or to one that is not known yet."""
         known = self.watch.link.reached is not None and self.watch.robots
         if rests and (robot == ALL or (not known and isinstance(robot, str) and robot)):
             return str(robot)
@@ -157,7 +157,7 @@ class Site:
 
 
 def _check_button(view: KnownRobot, data: dict[str, object]) -> None:
-    """Raises DeniedError for an event that no button of the states which are active now sends."""
+    """Raise DeniedError unless a button of the active states sends this event."""
     buttons = view.said.get("buttons")
     for button in buttons if isinstance(buttons, list) else ():
         if button.get("event") == data.get("event") and (button.get("data") or {}) == (data.get("data") or {}):

@@ -1,4 +1,4 @@
-"""Server-sent events: what happens, to each page that listens, once and in order."""
+"""Server-sent events: each page receives robots, entries and commands once and in order."""
 
 import time
 from collections.abc import AsyncIterator, Mapping
@@ -11,18 +11,18 @@ from lumen.features.console.known_robot import KnownRobot
 from lumen.features.console.watch import Watch
 
 HEARTBEAT = 1.0
-"""How often a page hears something in any case [s]."""
+"""A page receives at least a comment this often [s]."""
 NOW_PERIOD = 0.25
-"""How long after a robot was shown it is shown again at the earliest [s]."""
+"""The shortest time between two `now` events of a robot [s]."""
 RECENT = 100
-"""Entries that who names no position gets first."""
+"""A page without a position first receives this many of the latest entries."""
 AGAIN = 500
-"""How long after it lost us a browser comes again [ms]."""
+"""The pause of a browser before it reconnects [ms]."""
 
 
 @dataclass
 class ReadPosition:
-    """How far a page has read of a robot's journal, in which `run` of it; it saw `version` of the robot `at` [s]."""
+    """The last position that a page has of a robot's journal in its `run`; it saw `version` of the robot `at` [s]."""
 
     position: int
     run: int
@@ -31,19 +31,20 @@ class ReadPosition:
 
 
 class Listener(NamedTuple):
-    """Who listens: to which robot (empty: to all), after which positions, `full` where it has a role.
-
-    `once` is for who wants only what there is.
-    """
+    """A page that receives events."""
 
     robot: str
+    """The robot that it shows; empty for all."""
     after: Mapping[str, int]
+    """The last position that it has, by robot; `""` is for any robot."""
     full: bool
+    """It has a role, so it receives everything."""
     once: bool
+    """End after what is there now."""
 
 
 def positions_in(text: str, robot: str) -> dict[str, int]:
-    """The positions in `Last-Event-ID` or `?after=`: `12` of that robot (empty: of any), or `NAO:12,NAO2:5`."""
+    """Return the positions in `Last-Event-ID` or `?after=`: `12` for that robot (empty: any), or `NAO:12,NAO2:5`."""
     found = {}
     for part in text.split(","):
         name, _, number = part.strip().rpartition(":")
@@ -64,7 +65,7 @@ class Streams:
         self._watch.changes.tell()
 
     async def events(self, who: Listener) -> AsyncIterator[bytes]:
-        """The stream of one page, from now until it is closed."""
+        """Yield the events of one page until the page or the console closes, or for one round if `once` is set."""
         cursors: dict[str, ReadPosition] = {}
         command = self.commands[-1][0] if self.commands else 0
         self._watch.lookers += 1
@@ -98,7 +99,7 @@ class Streams:
             self._watch.lookers -= 1
 
     def tell(self, block: bytes) -> None:
-        """Tell all pages of a command."""
+        """Send an event about a command to all pages that have a role."""
         number = self.commands[-1][0] + 1 if self.commands else 1
         self.commands = [*self.commands[-49:], (number, block)]
         self._watch.changes.tell()
@@ -121,7 +122,7 @@ class Streams:
         return cursor
 
     async def _entries(self, view: KnownRobot, cursor: ReadPosition) -> AsyncIterator[EncodedEntry]:
-        """What is new of a robot's journal: from the ring, and what is not there any more from its exhibition."""
+        """Yield the new entries of a robot's journal: from the ring, or from its exhibition if they are older."""
         while cursor.run >= 0 and not self.closing:
             found = view.entries.after(cursor.position)
             if found is None:

@@ -1,4 +1,4 @@
-"""Watches all robots of a bus: asks their exhibitions how they are and what happened, again and again."""
+"""Watches all robots of a bus: requests the status and the new journal entries of each exhibition periodically."""
 
 import asyncio
 import time
@@ -28,13 +28,13 @@ class Changes:
         self._next = asyncio.Event()
 
     def tell(self) -> None:
-        """There was one; in the loop."""
+        """Count a change and wake all that wait. Call it in the loop."""
         self.count += 1
         self._next.set()
         self._next = asyncio.Event()
 
     async def wait(self, seen: int, timeout: float) -> bool:
-        """Whether there was one after the first `seen`, at most `timeout` [s] from now."""
+        """Return True once the count differs from `seen`, False after `timeout` [s]."""
         if self.count != seen:
             return True
         try:
@@ -45,23 +45,23 @@ class Changes:
 
 
 PERIOD = 0.25
-"""How often an exhibition is asked while somebody looks [s]."""
+"""The time between two requests to an exhibition while a page is open [s]."""
 IDLE_PERIOD = 1.0
-"""How often while nobody does [s]."""
+"""The same while no page is open [s]."""
 SENSES_PERIOD = 1.0
-"""How often what a robot feels is shown anew [s]."""
+"""The time between two updates of the shown senses [s]."""
 FILES_PERIOD = 3.0
-"""How often an exhibition is asked about its files [s]."""
+"""The time between two requests about an exhibition's files [s]."""
 QUESTION_TIMEOUT = 2.0
 BEFORE = 500
 """Entries before the newest that are fetched at the beginning."""
 MAX_ROBOTS = 50
 FULL_PAGE = 100
-"""Entries on a page after which the next is asked for at once."""
+"""After a page with this many entries, the next one is requested at once."""
 
 
 class Watch:
-    """The robots of a bus, by name; `changes` tells the loop that any of them is another one than before.
+    """The robots of a bus, by name; `changes` notifies the loop after any of them has changed.
 
     `start` and everything else here is for the console's loop. `reach` opens the bus of the project in `root`.
     """
@@ -70,7 +70,7 @@ class Watch:
         self.changes, self.keys = Changes(), KeyBook(root)
         self.robots: dict[str, KnownRobot] = {}
         self.lookers = 0
-        """How many look at the moment."""
+        """The number of open streams of pages."""
         self.felt: Callable[[str, str, Mapping[str, Any]], None] = lambda _robot, _sense, _body: None
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._news = set[str]()
@@ -110,7 +110,7 @@ class Watch:
         self._later(self.exchanges.nobody_takes, key)
 
     def _heard(self, message: Message) -> None:
-        """On a thread of the bus."""
+        """Store a message of a sense, a presence or a status of files. Called on a thread of the bus."""
         body = message.body
         if not isinstance(body, Mapping):
             return
@@ -141,7 +141,7 @@ class Watch:
         self.changes.tell()
 
     def _know(self, robot: str) -> KnownRobot | None:
-        """The view of a robot, which is watched from now on; None where there are too many."""
+        """Return the view of a robot and begin to watch a new one; None if there are MAX_ROBOTS already."""
         if robot not in self.robots and len(self.robots) < MAX_ROBOTS:
             self.robots[robot] = KnownRobot(robot)
             self._tasks[robot] = self._loop.create_task(self._watch(self.robots[robot]))
@@ -168,7 +168,7 @@ class Watch:
                 await asyncio.sleep(PERIOD if self.lookers else IDLE_PERIOD)
 
     async def _request(self, view: KnownRobot) -> bool:
-        """Ask how it is and what happened; whether there is more of that."""
+        """Request its status and its new entries; return True if there are more entries."""
         keys = self.keys.of(view.robot)
         said = await self.exchanges.request(keys.operator, NOW(), QUESTION_TIMEOUT)
         if not isinstance(said, dict) or "robot" not in said:  # an older Lumen
@@ -186,7 +186,7 @@ class Watch:
         return entries.add(await self.page(view.robot, entries.last + 1)) >= FULL_PAGE
 
     async def page(self, robot: str, begin: int) -> ToldPage:
-        """Entries of the journal from a position on, some. Raises BusError where nobody answers."""
+        """Return a page of entries of the journal from a position on. Raises BusError if no exhibition answers."""
         question = JOURNAL(**{"from": begin})
         said = await self.exchanges.request(self.keys.of(robot).operator, question, QUESTION_TIMEOUT)
         said = said if isinstance(said, dict) else {}
@@ -203,7 +203,7 @@ class Watch:
 
 
 def _without_path(reach: Callable[[], Reached], root: Path) -> Callable[[], Reached]:
-    """Reach the same; why that is impossible is told to everybody, so the project's path is left out."""
+    """Return `reach` with the project's path removed from its errors, because every page shows them."""
 
     def reached() -> Reached:
         try:
