@@ -1,4 +1,4 @@
-"""A snapshot without somebody's name, while it runs and as it was written."""
+"""Removes a visitor's name from a snapshot, while it runs and in its written form."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,7 +10,7 @@ from lumen.statechart.type_checks import fits, type_checks
 
 
 def forgetful(machine: MachineDefinition, snapshot: Snapshot, person: PersonName) -> Snapshot:
-    """The snapshot without the name, in what is remembered and what timers bring; itself where it is not in there.
+    """Return the snapshot without the name in its context and its timers; the same object if the name is not in it.
 
     A value that its type does not allow any more is the one that the key has first, which is the author's, and stays.
     """
@@ -47,5 +47,5 @@ def forgetful_data(frozen: Mapping[str, Any], person: PersonName) -> dict[str, A
 
 
 def _values(context: Any, person: PersonName) -> Any:
-    """The keys are the author's words, and stay."""
+    """Remove the name from values. Keys stay, because the author chose them."""
     return {key: person.scrubbed(value) for key, value in context.items()} if isinstance(context, dict) else context

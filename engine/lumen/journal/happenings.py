@@ -1,4 +1,4 @@
-"""What on the bus is worth keeping what led to it."""
+"""Messages on the bus that are unusual enough to save what led to them."""
 
 from lumen.language import operator_requests
 from lumen.language.routing_keys import CONFIG_STATUS, INTERNAL_ALIASES, OPERATOR_REQUEST, key_of_robot
@@ -10,7 +10,7 @@ NOT_TAKEN = {"refused": "reload-refused", "rolled back": "reload-rolled-back"}
 
 
 def happening(message: Message, robot: str) -> str:
-    """What happened to this robot, in a word or what somebody wrote; empty where it is nothing out of the ordinary.
+    """Return what a message reports about this robot, as a word or the text of a mark; empty for usual messages.
 
     A fall, an error that the behaviour hears of, files that are refused or taken back, and a mark.
     """
@@ -29,5 +29,5 @@ def happening(message: Message, robot: str) -> str:
 
 
 def _keys(key: str, robot: str) -> tuple[str, str]:
-    """A key of ours with the robot's name, and what it is called where there is one robot."""
+    """Return one of our keys with the robot's name, and its alias without a name, for a single robot."""
     return key_of_robot(key, robot), INTERNAL_ALIASES[key]

@@ -1,7 +1,7 @@
 """One file of the journal of inputs: a line that says what it is, then frames of entries, a line of JSON each.
 
 A frame is its length and the CRC-32 of its content (4 bytes each, little-endian), and the content: a piece of one
-deflate stream that goes on from frame to frame, flushed at the end of each. So text that was said once is short later,
+deflate stream that spans all frames, flushed at the end of each. So text that occurred before is short later,
 and every frame can be read as soon as it is there.
 """
 
@@ -22,9 +22,9 @@ from lumen.upkeep.regular_files import read_regular
 
 _HEAD = struct.Struct("<II")
 MAX_FRAME_BYTES = 64_000_000
-"""A frame that says to be longer is damage."""
+"""A frame with a greater length is damaged [bytes]."""
 MAX_TEXT_BYTES = 64_000_000
-"""Of one frame, unpacked."""
+"""The largest content of one frame, unpacked [bytes]."""
 
 
 class FramePacker:
@@ -34,13 +34,13 @@ class FramePacker:
         self._deflate = zlib.compressobj(6)
 
     def pack(self, text: bytes) -> bytes:
-        """The next frame."""
+        """Return the next frame, which holds this text."""
         content = self._deflate.compress(text) + self._deflate.flush(zlib.Z_SYNC_FLUSH)
         return _HEAD.pack(len(content), zlib.crc32(content)) + content
 
 
 def unpack(data: bytes, start: int = 0) -> Iterator[tuple[bytes, int]]:
-    """The texts of the frames from `start` on, each with where its frame ends, until one is cut or damaged."""
+    """Yield the texts of the frames from `start` on, each with the offset of its end, until one is cut or damaged."""
     inflate, at = zlib.decompressobj(), start
     while at + _HEAD.size <= len(data):
         length, crc = _HEAD.unpack_from(data, at)
@@ -61,26 +61,27 @@ JOURNAL_VERSION = 1
 JOURNAL_SUFFIX = ".journal"
 MAX_HEADER_BYTES = 10_000
 MAX_FILE_BYTES = 256_000_000
-"""Of one file; a new one is begun long before."""
+"""The largest file that is read [bytes]; the writer begins a new one long before."""
 
 encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
 
 
 class JournalHeader(NamedTuple):
-    """What the first line of a file says.
-
-    `first` is the position of its first entry, which says where the behaviour stood; `run` names the run that wrote it,
-    `bundle` the files that ran, `began` when it was opened [s since 1970], `story` what was played, if anything.
-    `matcher` is the version of the rules by which sentences found their rows; 0 if no state `hears`.
-    """
+    """The first line of a file."""
 
     first: int
+    """The position of its first entry, which holds the state of the behaviour."""
     run: str
+    """The id of the run that wrote it."""
     bundle: str
+    """The hash of the files that ran."""
     began: float
+    """When it was opened [s since 1970]."""
     story: str = ""
+    """The name of the story that was played, if any."""
     version: int = JOURNAL_VERSION
     matcher: int = 0
+    """The version of the rules by which sentences matched their rows; 0 if no state `hears`."""
 
     def line(self) -> bytes:
         said = self._asdict()
@@ -98,7 +99,7 @@ class JournalContent(NamedTuple):
 
 
 def read_header(line: bytes, name: str) -> JournalHeader:
-    """Raises JournalError that says what to do, where it is none, or another Lumen's."""
+    """Return the header in a line. Raises JournalError, with what to do, if it is none or of another Lumen."""
     try:
         data = json.loads(line)
         version = data.pop("lumen-journal")
@@ -122,7 +123,7 @@ def read_header(line: bytes, name: str) -> JournalHeader:
 
 
 def header_of(file: Path) -> JournalHeader:
-    """The header of a file, without reading the rest. Raises JournalError where it can't be read."""
+    """Return the header of a file without reading the rest. Raises JournalError if it cannot be read."""
     try:
         with file.open("rb") as opened:
             return read_header(opened.readline(MAX_HEADER_BYTES), file.name)
@@ -131,12 +132,12 @@ def header_of(file: Path) -> JournalHeader:
 
 
 def read_journal(file: Path) -> JournalContent:
-    """What a file holds, as far as it can be read. Raises JournalError where it is none."""
+    """Return the content of a file as far as it is readable. Raises JournalError if it is no journal."""
     return read_content(_bytes(file), file.name)
 
 
 def read_lines(file: Path) -> list[bytes]:
-    """The lines of its entries, the first at the header's position. Raises JournalError where it is none."""
+    """Return the lines of its entries, the first at the header's position. Raises JournalError if it is no journal."""
     data = _bytes(file)
     end = _header_end(data)
     read_header(data[:end], file.name)
@@ -144,7 +145,7 @@ def read_lines(file: Path) -> list[bytes]:
 
 
 def read_content(data: bytes, name: str) -> JournalContent:
-    """What these bytes hold. Raises JournalError where they are none."""
+    """Return the content of these bytes of a file. Raises JournalError if they are no journal."""
     end = _header_end(data)
     header = read_header(data[:end], name)
     entries, read = list[RecordedEntry](), end
@@ -159,9 +160,9 @@ def read_content(data: bytes, name: str) -> JournalContent:
 
 
 def each_entry(file: Path) -> Iterator[RecordedEntry]:
-    """What `read_journal` reads, one after another: a file of a busy day is large once it is unpacked.
+    """Yield the entries of `read_journal` one by one: a file of a busy day is large once it is unpacked.
 
-    Raises JournalError where it is none.
+    Raises JournalError if it is no journal.
     """
     data = _bytes(file)
     end = _header_end(data)
@@ -174,7 +175,7 @@ def each_entry(file: Path) -> Iterator[RecordedEntry]:
 
 
 def line_of(entry: RecordedEntry) -> bytes:
-    """An entry as it stands in a frame. Raises TypeError, ValueError or RecursionError where it is no JSON data."""
+    """Return an entry as a line of a frame. Raises TypeError, ValueError or RecursionError if it is no JSON data."""
     return encode(entry_data(entry)).encode("utf-8", "surrogatepass") + b"\n"
 
 
@@ -190,12 +191,12 @@ def _bytes(file: Path) -> bytes:
 
 
 def entry_of(line: bytes, position: int) -> RecordedEntry:
-    """The entry of such a line. Raises JournalError where it is none."""
+    """Return the entry in such a line. Raises JournalError if it has no entry."""
     return read_entry(_decoded(line), position)
 
 
 def _decoded(line: bytes) -> Any:
-    """orjson is quick, and reads neither NaN nor half characters."""
+    """Decode a line. orjson is fast, but reads neither NaN nor lone surrogates, which `json` does."""
     try:
         return orjson.loads(line)
     except ValueError:

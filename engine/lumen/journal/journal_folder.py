@@ -18,23 +18,23 @@ from lumen.upkeep.own_folders import NO_LINK, private_folder
 
 JOURNAL_FOLDER = "journal"
 REHEARSED_FOLDER = "rehearsed"
-"""Below it: the runs of stories and programs, which push out no visit."""
+"""The folder within it for runs of stories and programs, which must not displace visits."""
 DAY = 86400.0
 MEGABYTE = 1_000_000
 
 
 class JournalFolder:
-    """Files of a journal, kept for `keep` days, and `size` MB together; the newest stays in any case."""
+    """The files of a journal, kept for `keep` days and up to `size` MB in total; the newest always stays."""
 
     def __init__(self, folder: Path, keep: float, size: float) -> None:
         self.folder, self._keep, self._size = folder, keep, size
 
     def files(self) -> list[Path]:
-        """The files, the oldest first."""
+        """Return the files, the oldest first."""
         return sorted(self.folder.glob(f"*{JOURNAL_SUFFIX}"))
 
     def next_position(self) -> int:
-        """The position that follows the last one that is kept. Raises JournalError where that can't be read."""
+        """Return the position after the last entry that can be read; 0 if there is none."""
         for file in reversed(self.files()):
             try:
                 content = read_journal(file)
@@ -44,7 +44,7 @@ class JournalFolder:
         return 0
 
     def open(self, header: JournalHeader) -> BinaryIO:
-        """A new file that begins with this header; one of this run that has no entry yet gives way. Raises OSError."""
+        """Create and return a file with this header; it replaces one of this run without entries. Raises OSError."""
         private_folder(self.folder)
         name = f"{header.first:012d}-{file_stamp(header.began)}-{header.run[:8]}{JOURNAL_SUFFIX}"
         handle = os.open(self.folder / name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND | NO_LINK, 0o600)
@@ -53,7 +53,7 @@ class JournalFolder:
         return file
 
     def prune(self, now: float) -> None:
-        """Delete what is older than wanted, and the oldest of what is more than wanted."""
+        """Delete files that are older than the limit, and the oldest ones beyond the size limit; keep the newest."""
         left = 0
         for number, file in enumerate(reversed(self.files())):
             with suppress(OSError):
@@ -70,17 +70,17 @@ class JournalFolder:
 
 
 def newest(home: Path) -> Path | None:
-    """The file of a home that its run writes, or wrote last."""
+    """Return the journal file of a home that a run writes, or wrote last."""
     return max((home / JOURNAL_FOLDER).glob(f"*{JOURNAL_SUFFIX}"), default=None)
 
 
 def named_bundles(home: Path) -> set[str]:
-    """The hashes of the bundles that the kept journals of a home need; those that can't be read need none."""
+    """Return the hashes of the bundles that the journals of a home need; unreadable files need none."""
     return {header.bundle for _, header in headers(home / JOURNAL_FOLDER)}
 
 
 def headers(folder: Path) -> Iterator[tuple[Path, JournalHeader]]:
-    """The files of a journal and of what was rehearsed beside it, each with its header, where it can be read."""
+    """Yield the files of a journal, with those of rehearsals in its folder, and their headers; skip unreadable ones."""
     for file in sorted(folder.rglob(f"*{JOURNAL_SUFFIX}")):
         with suppress(JournalError):
             yield file, header_of(file)
@@ -88,14 +88,14 @@ def headers(folder: Path) -> Iterator[tuple[Path, JournalHeader]]:
 
 MAX_ENTRIES = 2_000
 MAX_BYTES = 4_000_000
-"""Of all their lines together."""
+"""The total size of their lines [bytes]."""
 
 PositionedLine = tuple[int, bytes]
 """The position of an entry, and its line of JSON."""
 
 
 class JournalTail:
-    """The lines of the last entries that a run has made, whether or not a disk took them; any thread may read.
+    """The lines of the last entries of a run, whether or not they are on the disk; any thread may read them.
 
     The positions are those of the journal. One that the disk refused has one, too.
     """
@@ -108,17 +108,17 @@ class JournalTail:
 
     @property
     def next(self) -> int:
-        """The position of the entry that comes next."""
+        """The position of the next entry."""
         return self._next
 
     @property
     def first(self) -> int:
-        """The position of the oldest entry here; `next` where there is none."""
+        """The position of the oldest entry here; `next` if it is empty."""
         with self._lock:
             return self._next - len(self._lines)
 
     def begin(self, position: int) -> None:
-        """The first entry will have this position."""
+        """Set the position of the first entry."""
         self._next = position
 
     def add(self, lines: Sequence[bytes]) -> None:
@@ -130,16 +130,16 @@ class JournalTail:
                 self._size -= len(self._lines.popleft())
 
     def since(self, position: int, most: int) -> list[PositionedLine]:
-        """Up to `most` entries, those from `position` on; the oldest here where that is gone."""
+        """Return up to `most` entries from `position` on, or from the oldest here if that is gone."""
         with self._lock:
             first = self._next - len(self._lines)
             begin = max(position - first, 0)
             return list(enumerate(islice(self._lines, begin, begin + most), first + begin))
 
     def forget(self, person: PersonName) -> None:
-        """Take somebody's name out; on the thread that adds.
+        """Remove a visitor's name. Call it on the thread that adds.
 
-        Who was named before the first entry here is not known: no digest is kept until a keyframe without the name.
+        Earlier entries may have named the visitor, so no digest is kept until a keyframe without the name.
         """
         entries = [entry_of(line, position) for position, line in self.since(0, self._most)]
         lines = [line_of(entry) for entry in redacted(entries, person, within=True)]

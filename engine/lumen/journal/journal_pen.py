@@ -1,4 +1,4 @@
-"""What was told of a running behaviour, as lines of its journal."""
+"""Turns steps and jumps of a running behaviour into lines of its journal."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -14,25 +14,25 @@ from lumen.language.projects import Project
 from lumen.statechart import Snapshot, Step, serialize
 
 KEYFRAME_PERIOD = 60.0
-"""How often it is written where the behaviour stands [s of the exhibition], besides each time it has come home."""
+"""The time between two keyframes [s of the exhibition]; a return to the waiting state also writes one."""
 
 LARGE = 50_000
-"""A keyframe of more bytes is written only when as much has been written besides: a behaviour that comes home with each
-step, and remembers much, fills no disk."""
+"""A keyframe larger than this [bytes] is written only after entries of the same size: so a behaviour with much memory
+that returns to its waiting state with each step does not fill the disk."""
 
 NO_JSON = (TypeError, ValueError, RecursionError)
-"""What is raised for data that JSON can't hold."""
+"""The errors raised for data that JSON cannot represent."""
 
 
 class Stepped(NamedTuple):
-    """A step that was taken."""
+    """A step of the behaviour, and the kind of its input."""
 
     step: Step
     how: How
 
 
 class Jumped(NamedTuple):
-    """Where the behaviour went on from, by no step."""
+    """A change of the behaviour's state without a step."""
 
     kind: JumpKind
     project: Project
@@ -42,7 +42,7 @@ class Jumped(NamedTuple):
 
 
 class JournalPen:
-    """Knows where the behaviour stands after all that was written."""
+    """Encodes entries, and remembers the behaviour's state after the last one."""
 
     def __init__(self) -> None:
         self._digest = StepDigest()
@@ -53,15 +53,15 @@ class JournalPen:
 
     @property
     def bundle(self) -> str:
-        """The hash of the files that run, empty before anything was written."""
+        """The hash of the files that run, empty before the first entry."""
         return self._project.hash if self._project else ""
 
     def write(self, told: Stepped | Jumped) -> list[bytes]:
-        """The lines of an entry, and of the keyframe that follows it where one is due."""
+        """Return the lines of an entry, and of the keyframe after it if one is due."""
         return self._stepped(*told) if isinstance(told, Stepped) else self._jumped(told)
 
     def keyframe(self, *, gone: int = 0) -> list[bytes]:
-        """Where the behaviour stands, empty where that is not known; a gap where entries are `gone` before it."""
+        """Return the behaviour's state as a keyframe, or as a gap if entries are `gone` before it; empty if unknown."""
         if self._project is None or self._snapshot is None:
             return []
         said = {"lost": gone} if gone else {}

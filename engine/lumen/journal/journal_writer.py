@@ -1,4 +1,4 @@
-"""Who writes the journal of inputs: on a thread of its own, so that no step waits for a disk."""
+"""Writes the journal of inputs on a thread of its own, so that no step waits for a disk."""
 
 import logging
 import os
@@ -23,35 +23,35 @@ from lumen.talk.hearing import MATCHER
 from lumen.upkeep.threads import WatchedThread
 
 MAX_WAITING = 20_000
-"""Entries that wait for the disk at a time; what happens then is lost, and counted."""
+"""The most entries that wait for the disk; further ones are lost, and counted."""
 WRITE_PERIOD = 0.25
-"""How long a step that asks for nothing may wait to be written [s]; any other is written at once."""
+"""The longest delay before a step without commands is written [s]; other steps are written at once."""
 SYNC_PERIOD = 0.5
-"""How often the system is asked to bring it to the disk [s], at most."""
+"""The shortest time between two syncs to the disk [s]."""
 MAX_LINES, MAX_LINES_BYTES = 1000, 2_000_000
-"""Entries in one frame, and after how many bytes no more are added to it."""
+"""The most entries in one frame, and the size after which no more are added [bytes]."""
 FILE_BYTES = 1_000_000
-"""After which a new file is begun."""
+"""A file larger than this is ended, and a new one begun [bytes]."""
 RETRY_PERIOD = 5.0
-"""How long after a disk has refused something it is tried again [s]."""
+"""The pause after a write that failed [s]."""
 
 _log = logging.getLogger(__name__)
 
 
 def hears(project: Project) -> bool:
-    """Whether a state of a project lists in `hears` what it reacts to."""
+    """Return True if a state of the project has `hears`."""
     return any(t.hears for m in project.behaviors.values() for state in m.states.values() for t in state.transitions)
 
 
 class JournalWriter:
-    """Keeps what it is told in the files of a folder, as an `InputRecorder`; `story` is what is played, if anything.
+    """Writes steps and jumps to the files of a folder, as an `InputRecorder`; `story` names the story played, if any.
 
-    The last of it is in the `tail`, from which whoever asks often is answered. Without a folder it is there alone, and
-    its positions count from 0.
+    The last entries are also in `tail`, for frequent requests. Without a folder they are only there, and positions
+    count from 0.
 
-    Where the disk refuses, or is too slow for `MAX_WAITING` entries, entries are lost: that is counted in `lost`, a gap
-    says so in the journal, and `trouble` says why. What is `rehearsed` has time: a
-    step waits for a slow disk, and a power cut may take what was written last.
+    If the disk refuses, or is too slow for `MAX_WAITING` entries, entries are lost: `lost` counts them, a gap marks
+    them in the journal, and `trouble` is the reason. If it is `rehearsed`, a step
+    waits for a slow disk, and a power cut may lose the last entries.
     """
 
     def __init__(self, folder: JournalFolder | None, *, story: str = "", rehearsed: bool = False) -> None:
@@ -73,13 +73,13 @@ class JournalWriter:
         self._thread.start()
 
     def stepped(self, step: Step, how: How) -> None:
-        """A step was taken; from the thread that takes it."""
+        """Queue a step for writing. Call it on the thread that runs the behaviour."""
         if self._rehearsed and len(self._waiting) >= MAX_WAITING:
             self.flush()
         if len(self._waiting) >= MAX_WAITING or (self._overflow and len(self._waiting) > MAX_WAITING // 2):
             self._overflow += 1
         elif self._overflow and self._project:
-            self._overflow += 1  # what led there is lost, too
+            self._overflow += 1  # this step is lost, too
             self.jumped("gap", self._project, step.snapshot, step.commands)
         else:
             self._waiting.append(Stepped(step, how))
@@ -89,7 +89,7 @@ class JournalWriter:
     def jumped(
         self, kind: JumpKind, project: Project, snapshot: Snapshot, commands: Sequence[Command] = (), **said: Any
     ) -> None:
-        """The behaviour goes on from somewhere else; from the thread that takes its steps."""
+        """Queue a change of the state without a step. Call it on the thread that runs the behaviour."""
         if self._overflow:
             said, self._overflow = {**said, "lost": self._overflow}, 0
         self._project = project
@@ -97,19 +97,19 @@ class JournalWriter:
         self._wake.set()
 
     def forget(self, person: PersonName) -> None:
-        """Have somebody's name taken out of all files; any thread may."""
+        """Queue the removal of a visitor's name from all files. Any thread may call it."""
         self._waiting.append(person)
         self._wake.set()
 
     def flush(self, patience: float = 5.0) -> bool:
-        """Wait until what was told is written, at most so long [s]; whether it is."""
+        """Wait up to `patience` [s] until all that is queued is written; return True if it is."""
         written = threading.Event()
         self._waiting.append(written)  # in the queue, so that it is set after all that was told before, and not earlier
         self._wake.set()
         return written.wait(patience)
 
     def close(self, patience: float = 5.0) -> None:
-        """Write what is left, at most so long [s], and end."""
+        """Write the rest of the queue, for up to `patience` [s], and end the thread."""
         self._closing = True
         self._wake.set()
         if self._thread.started:
@@ -132,7 +132,7 @@ class JournalWriter:
                 return
 
     def _write_next(self) -> None:
-        """What waits, in one frame; a file is about one bundle, and begins with where the behaviour stands."""
+        """Write the queue as one frame. Each file is about one bundle, and begins with a keyframe."""
         lines, size = list[bytes](), 0
         if self._bytes > FILE_BYTES or time.strftime("%j") != self._day:
             self._end_file()
@@ -179,7 +179,7 @@ class JournalWriter:
             self._lose(len(lines))
 
     def _begin_file(self, folder: JournalFolder, told: Stepped | Jumped) -> bool:
-        """Open the next file; false where the disk refuses, or has just refused."""
+        """Open the next file; return False if the disk refuses, or has just refused."""
         if time.monotonic() < self._retry:
             return False
         bundle = told.project.hash if isinstance(told, Jumped) else self._pen.bundle
@@ -209,7 +209,7 @@ class JournalWriter:
                 self._fail(error)
 
     def _fail(self, error: OSError) -> None:
-        """The disk refuses: entries are lost until it does no more."""
+        """Handle an error of the disk: entries are lost until a later attempt succeeds."""
         self._retry = time.monotonic() + RETRY_PERIOD
         if not self.trouble:
             self.trouble = f"the journal can't be written: {(error.strerror or str(error)).lower()}"

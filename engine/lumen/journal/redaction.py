@@ -1,4 +1,4 @@
-"""A file of the journal without somebody: what names them is taken out in place, and marked."""
+"""Removes a visitor's name from a file of the journal; the changed entries are marked."""
 
 import os
 from collections.abc import Iterable, Iterator
@@ -14,10 +14,10 @@ LINES_PER_FRAME = 1000
 
 
 def redact(file: Path, person: PersonName) -> int:
-    """Take somebody's name out of a file, which is replaced as a whole; how many entries named them.
+    """Remove a visitor's name from a file, which is replaced as a whole; return how many entries named them.
 
-    What can't be read is deleted: nobody can say whom it names. The file stays as old as it was, and is not kept
-    longer. Raises ModuleError where it can't be written anew.
+    Unreadable content is deleted, because it may hold the name. The file keeps its time, so it is not kept longer.
+    Raises ModuleError if it cannot be replaced.
     """
     try:
         content = read_journal(file)
@@ -38,13 +38,15 @@ def redact(file: Path, person: PersonName) -> int:
 
 
 def names(entry: RecordedEntry, person: PersonName) -> bool:
-    """Whether an entry says the name of that person."""
+    """Return True if an entry contains the name of that person."""
     return person.is_in(entry_data(entry))
 
 
 def redacted(entries: Iterable[RecordedEntry], person: PersonName, *, within: bool = False) -> Iterator[RecordedEntry]:
-    """The entries without the name. From the first that said it on no digest is kept, which somebody might try names
-    against, until a keyframe that does not say it; from the beginning on where it was `within` what came before.
+    """Yield the entries without the name.
+
+    From the first entry that has it, or from the beginning if `within`, until a keyframe without it, no digest is
+    kept: names could be guessed by comparing digests.
     """
     for entry in entries:
         found = names(entry, person)
@@ -73,7 +75,7 @@ def _packed(content: JournalContent, person: PersonName) -> Iterator[bytes]:
 
 
 def _emptied(file: Path) -> bool:
-    """Whether a file held nothing; it is deleted in any case."""
+    """Delete a file; return True if it was empty."""
     try:
         size = file.stat().st_size
         file.unlink()
