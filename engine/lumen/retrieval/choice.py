@@ -13,17 +13,17 @@ from lumen.retrieval.features import Features
 from lumen.retrieval.ranking import UNANSWERABLE
 
 RIDGE = 1.0
-"""How much weights are held back, in units of what one question tells of features of variance 1."""
+"""The ridge penalty on the weights of features that are scaled to variance 1."""
 NONE_RIDGE = 1e-3
-"""How much the worth of “none” is."""
+"""The ridge penalty on the utility of “none”."""
 STEPS, ENOUGH = 60, 1e-6
-"""Newton's steps at most, and how small a step is the last."""
+"""The most Newton steps, and the size of a step below which it stops."""
 LONGEST = 3.0
-"""How far a step goes at most: far from the solution, Newton's goes too far."""
+"""The longest step: far from the solution, Newton's method overshoots."""
 
 
 def probabilities(features: NDArray[np.float32], weights: tuple[float, ...], none: float) -> NDArray[np.float64]:
-    """How probably each passage is the one, of features of shape (…, passages, features); what is left is for none."""
+    """Return each passage's probability, from features of shape (…, passages, features); “none” has the rest."""
     worth = np.asarray(features, np.float64) @ np.array(weights)
     most = np.maximum(worth.max(axis=-1, keepdims=True, initial=-np.inf), none)
     share = np.exp(worth - most)
@@ -32,7 +32,10 @@ def probabilities(features: NDArray[np.float32], weights: tuple[float, ...], non
 
 
 def shares(known: Sequence[bool]) -> NDArray[np.float64]:
-    """How much each question counts, 1 on average, by whether it has an answer; together UNANSWERABLE have none."""
+    """Return the weight of each question, 1 on average, so that those without an answer have the share UNANSWERABLE.
+
+    All weights are 1 if the questions are all of one kind.
+    """
     has = np.array(known, bool)
     if has.all() or not has.any():
         return np.ones(len(has))
@@ -41,7 +44,10 @@ def shares(known: Sequence[bool]) -> NDArray[np.float64]:
 
 
 def fitted(features: list[Features], wanted: list[int]) -> tuple[tuple[float, ...], float]:
-    """Weights of the features, and the worth of “none”; `wanted` is a passage's row for each question, -1 for none."""
+    """Fit and return the weights of the features, and the utility of “none”, by Newton's method.
+
+    `wanted` is the row of the right passage of each question, -1 for none.
+    """
     told = np.array(features, np.float64)
     count, passages, kinds = told.shape
     middle = told.mean(axis=(0, 1))

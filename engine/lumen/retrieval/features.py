@@ -1,4 +1,4 @@
-"""What tells how well each passage fits a question: a few numbers for each passage, by several methods."""
+"""Features: a few numbers that measure how well each passage fits a question, by several methods."""
 
 from collections.abc import Callable, Sequence
 from typing import Protocol
@@ -10,17 +10,17 @@ from lumen.language.knowledge import Passage
 from lumen.retrieval.scorers import WordingMethod, combined, stems
 
 NEAREST = 3
-"""Wordings of a passage whose mean counts besides the nearest: one may be alike by chance, three are not."""
+"""The number of nearest wordings of a passage for the mean: one may be similar by chance, three are not."""
 
 Features = NDArray[np.float32]
-"""Shape (passages, features): the more, the better it fits."""
+"""Shape (passages, features): the higher, the better the fit."""
 
 
 class FeatureExtractor(Protocol):
-    """Whatever compares a question with the passages that it was made for."""
+    """Compares a question with the passages that it was made for."""
 
     def __call__(self, question: str) -> Features:
-        """The features of each passage, in their order."""
+        """Return the features of each passage, in the order of the passages."""
 
 
 Method = Callable[[Sequence[Passage], str], FeatureExtractor]
@@ -28,7 +28,7 @@ Method = Callable[[Sequence[Passage], str], FeatureExtractor]
 
 
 def by_wordings(method: WordingMethod) -> Method:
-    """Two features: how alike the nearest wording of a passage is, and the nearest three on average."""
+    """Return a method with two features: the score of the nearest wording of a passage, and the mean of the NEAREST."""
 
     def make(passages: Sequence[Passage], language: str) -> FeatureExtractor:
         wordings = [passage.questions[language] for passage in passages]
@@ -50,17 +50,17 @@ def by_wordings(method: WordingMethod) -> Method:
 
 
 def coverage(passages: Sequence[Passage], language: str) -> FeatureExtractor:
-    """The share of a question's words that a passage has in its questions or answer; rare words count more.
+    """Make an extractor of the share of a question's words that are in a passage; rare words count more.
 
-    A word that no passage has counts most: “how tall is Mount Everest” is not covered by what says how tall the robot
-    is, however alike it is to that.
+    A word that no passage has counts most: “how tall is Mount Everest” is not covered by the passage on how tall the
+    robot is, although the two are similar.
     """
     held = [
         {stem for text in (*passage.questions[language], passage.answer[language]) for stem in stems(text, language)}
         for passage in passages
     ]
     columns = {stem: i for i, stem in enumerate(sorted(set[str]().union(*held)))}
-    has = np.zeros((len(passages), len(columns) + 1), np.float32)  # the last column: a word that none has
+    has = np.zeros((len(passages), len(columns) + 1), np.float32)  # the last column: words of no passage
     for row, words in zip(has, held, strict=True):
         row[[columns[word] for word in words]] = 1.0
     rarity = np.log((len(passages) + 1) / (has.sum(axis=0) + 0.5)).astype(np.float32)
@@ -74,7 +74,7 @@ def coverage(passages: Sequence[Passage], language: str) -> FeatureExtractor:
 
 
 def joined(*methods: Method) -> Method:
-    """The features of several methods side by side."""
+    """Return a method that concatenates the features of several methods."""
 
     def make(passages: Sequence[Passage], language: str) -> FeatureExtractor:
         extractors = [method(passages, language) for method in methods]
@@ -84,4 +84,4 @@ def joined(*methods: Method) -> Method:
 
 
 words = joined(by_wordings(combined), coverage)
-"""What is used: letters forgive what was misheard, words tell what was meant, and coverage what is not known at all."""
+"""The default method: letters tolerate misheard words, stems match the meaning, and coverage finds unknown topics."""

@@ -5,20 +5,20 @@ from typing import NamedTuple
 MAX_WRONG = 0.02
 """The share of all questions that may be answered wrongly."""
 UNANSWERABLE = 0.3
-"""The share of visitors' questions that no passage answers: assumed, however many of either kind are written."""
+"""The assumed share of visitors' questions without an answer, however many of either kind the author wrote."""
 NEVER = 2.0
-"""More than any probability: what is to be answered never."""
+"""A threshold above any probability: nothing is answered."""
 
 
 class Ranked(NamedTuple):
-    """The passage that most probably answers a question, and how probably; empty where nothing is known."""
+    """The passage that most probably answers a question, and its probability; `""` and 0 if there are no passages."""
 
     passage: str
     probability: float
 
 
 class Weights(NamedTuple):
-    """How much each feature of a passage counts, how much speaks for none, and how probable an answer has to be."""
+    """The weight of each feature of a passage, the utility of “none”, and the least probability of an answer."""
 
     features: tuple[float, ...]
     none: float
@@ -26,9 +26,9 @@ class Weights(NamedTuple):
 
 
 class AnswerRates(NamedTuple):
-    """What becomes of questions: the share of those with an answer that get it, and of all that get a wrong one.
+    """The share of questions with an answer that get it, and the share of all questions that get a wrong one.
 
-    Of all as visitors are taken to ask them, so that UNANSWERABLE of them have none.
+    All questions are weighted as visitors are assumed to ask them: the share UNANSWERABLE has no answer.
     """
 
     recall: float
@@ -36,7 +36,7 @@ class AnswerRates(NamedTuple):
 
 
 class WrongAnswer(NamedTuple):
-    """A question that gets the answer of another passage than it should, which is empty where none has it."""
+    """A question for which another passage was found than `wanted`, which is empty if no passage has the answer."""
 
     question: str
     wanted: str
@@ -44,16 +44,17 @@ class WrongAnswer(NamedTuple):
 
 
 class QuestionTrial(NamedTuple):
-    """What becomes of the questions of a language by the weights that they set, with the `least` probability.
-
-    `others` is what becomes of each by what all others set: the better guess of what visitors will meet. `unfound` are
-    those whose passage is not even the most probable, `wrong` those that are answered wrongly.
-    """
+    """The results of a language's questions by the weights fitted to them."""
 
     language: str
     asked: int
+    """The number of questions."""
     least: float
+    """The least probability of an answer."""
     rates: AnswerRates
     others: AnswerRates
+    """The rates if each question is judged by the others: the better estimate of what visitors will see."""
     unfound: tuple[WrongAnswer, ...]
+    """Questions whose passage is not even the most probable."""
     wrong: tuple[WrongAnswer, ...]
+    """Questions that are answered wrongly."""

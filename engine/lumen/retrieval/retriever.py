@@ -1,4 +1,4 @@
-"""Finds the passage that answers a question, or none: pure, without a network, the same for the same files."""
+"""Finds the passage that answers a question, if any: without a network, and deterministic for the same files."""
 
 from collections.abc import Iterable
 from datetime import date
@@ -16,7 +16,7 @@ from lumen.retrieval.scorers import words
 
 
 class FoundAnswer(NamedTuple):
-    """A passage for a question, and how probably it answers it."""
+    """A passage for a question, and the probability that it answers it."""
 
     passage: Passage
     language: str
@@ -24,12 +24,12 @@ class FoundAnswer(NamedTuple):
 
     @property
     def text(self) -> str:
-        """What is to be said."""
+        """The answer in the language of the question."""
         return self.passage.answer[self.language]
 
 
 class Retriever:
-    """Knows the passages that one robot may say in one language on one day; `names` are in the order of features."""
+    """The passages that one robot may say in one language on one day; `names` has the order of the features' rows."""
 
     def __init__(
         self,
@@ -53,26 +53,26 @@ class Retriever:
         self._extract = method(self._passages, language) if self._passages else None
 
     def features(self, question: str) -> Features:
-        """What is told of each passage; nothing where none is known."""
+        """Return the features of each passage, shape (passages, features); shape (0, 1) if there are no passages."""
         return self._extract(question) if self._extract else np.zeros((0, 1), np.float32)
 
     def rank(self, question: str, weights: Weights) -> Ranked:
-        """The passage that most probably answers the question."""
+        """Return the passage that most probably answers the question, even if that is improbable."""
         of_each = self._probabilities(self.features(question), weights)
         row = int(of_each.argmax()) if self.names else -1
         return Ranked(self.names[row], float(of_each[row])) if row >= 0 else Ranked("", 0.0)
 
     def nearest(self, question: str, count: int, weights: Weights) -> list[str]:
-        """The answers of the passages that most probably answer the question, of those that have to do with it."""
+        """Return up to `count` answers, the most probable first, of passages with any feature that is not 0."""
         features = self.features(question)
         of_each = self._probabilities(features, weights)
         rows = [row for row in np.argsort(-of_each, kind="stable") if features[row].any()]
         return [self._passages[row].answer[self.language] for row in rows[:count]]
 
     def answer(self, question: str, weights: Weights) -> FoundAnswer | None:
-        """The passage that answers the question, None where none surely does.
+        """Return the passage that answers the question; None if the most probable one is below `weights.least`.
 
-        A question that stands in a passage, whatever its signs, is that passage's.
+        A question that a passage contains, whatever its punctuation, gets that passage with probability 1.
         """
         if own := self._whose.get(" ".join(words(question))):
             return FoundAnswer(own, self.language, 1.0)

@@ -12,23 +12,23 @@ from lumen.talk.folding import unbroken
 
 STEMMERS = {"en": "english", "id": "indonesian", "de": "german", "fr": "french", "es": "spanish", "it": "italian",
             "nl": "dutch", "pt": "portuguese"}  # fmt: skip
-"""Snowball's name of each language whose words are stemmed; those of others are taken as they are."""
+"""Snowball's name of each language with stemming; words of other languages stay as they are."""
 
 SHORTEST, LONGEST = 2, 4
-"""How many letters a run has."""
+"""The range of the lengths of letter n-grams."""
 
 MAX_QUESTION = 300
-"""Characters of a question that are looked at."""
+"""The number of characters of a question that are compared."""
 
 
 def stems(text: str, language: str) -> list[str]:
-    """The stems of its words, in their order."""
+    """Return the stems of the words of a text, in order."""
     stem = _stemmer(language)
     return [stem(word) for word in words(text)]
 
 
 def letter_runs(text: str, language: str) -> list[str]:
-    """Runs of letters within each word, with its ends marked; they are alike where words are misspelt or inflected."""
+    """Return the letter n-grams of each word, with its ends marked; misspelt and inflected words share most of them."""
     found = []
     for word in words(text):
         marked = f" {word} "
@@ -38,7 +38,7 @@ def letter_runs(text: str, language: str) -> list[str]:
 
 
 def words(text: str) -> list[str]:
-    """Its words, folded as phrases are."""
+    """Return the words of a text, folded as phrases are; only its first MAX_QUESTION characters count."""
     return unbroken(text[:MAX_QUESTION])
 
 
@@ -55,22 +55,22 @@ Scores = NDArray[np.float32]
 """Shape (known wordings,)."""
 
 K1, B = 1.2, 0.5
-"""How soon a word that comes again counts no more, and how much long questions are held back."""
+"""The parameters of BM25: how soon repeated words stop counting, and how much length is penalised."""
 
 
 class Scorer(Protocol):
-    """Whatever compares a question with known wordings."""
+    """Compares a question with known wordings."""
 
     def __call__(self, question: str) -> Scores:
-        """How alike it is to each known wording, in their order."""
+        """Return its similarity to each known wording, in the order of the wordings."""
 
 
 WordingMethod = Callable[[Sequence[str], str], Scorer]
-"""Makes a scorer for known wordings of a language."""
+"""A function that makes a scorer for known wordings of a language."""
 
 
 class _Table:
-    """Known wordings by what they consist of: `counts` has a row for each, and a column for each part."""
+    """Known wordings split into parts: `counts` has a row for each wording, and a column for each part."""
 
     def __init__(self, known: Sequence[str], split: Callable[[str], list[str]]) -> None:
         self.split = split
@@ -86,7 +86,7 @@ class _Table:
 
 
 def ngrams(known: Sequence[str], language: str) -> Scorer:
-    """Cosines of TF-IDF vectors of runs of letters."""
+    """Return a scorer by the cosine of TF-IDF vectors of letter n-grams."""
     table = _Table(known, lambda text: letter_runs(text, language))
     vectors = np.sqrt(table.counts) * table.rarity
     vectors /= np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
@@ -109,7 +109,7 @@ def ngrams(known: Sequence[str], language: str) -> Scorer:
 
 
 def bm25(known: Sequence[str], language: str) -> Scorer:
-    """Okapi BM25 of stems, as a share of what the question could reach; an unknown word counts as the rarest."""
+    """Return a scorer by Okapi BM25 of stems, as a share of the highest possible; unknown words count as the rarest."""
     table = _Table(known, lambda text: stems(text, language))
     lengths = table.counts.sum(axis=1, keepdims=True)
     held_back = K1 * (1 - B + B * lengths / max(float(lengths.mean()) if len(known) else 1.0, 1e-9))
@@ -126,7 +126,7 @@ def bm25(known: Sequence[str], language: str) -> Scorer:
 
 
 def combined(known: Sequence[str], language: str) -> Scorer:
-    """The mean of both: letters forgive what was misheard, words tell what was meant."""
+    """Return a scorer by the mean of both: letters tolerate misheard words, stems match the meaning."""
     one, other = ngrams(known, language), bm25(known, language)
 
     def score(question: str) -> Scores:

@@ -11,18 +11,18 @@ from lumen.retrieval.ranking import MAX_WRONG, NEVER, AnswerRates, QuestionTrial
 from lumen.retrieval.retriever import Retriever
 
 FOLDS = 10
-"""Parts into which questions are dealt: each part is judged by what the others tell."""
+"""The number of folds of cross-validation: each is judged by weights fitted to the others."""
 
 
 class Sample(NamedTuple):
-    """What is told of each passage for a question; `wanted` is the row of the one that answers it, -1 for none."""
+    """The features of each passage for a question; `wanted` is the row of the one that answers it, -1 for none."""
 
     wanted: int
     features: Features
 
 
 class Judged(NamedTuple):
-    """What would be answered to a question: how probably, whether that is right, and whether there is an answer."""
+    """The most probable passage for a question: its probability, whether it is right, and whether an answer exists."""
 
     probability: float
     is_right: bool
@@ -30,7 +30,7 @@ class Judged(NamedTuple):
 
 
 def judged(samples: Sequence[Sample], weights: Weights) -> list[Judged]:
-    """What these weights would answer to each."""
+    """Return the judgement of each sample by these weights."""
     found = []
     for sample in samples:
         of_each = probabilities(sample.features, weights.features, weights.none)
@@ -40,17 +40,20 @@ def judged(samples: Sequence[Sample], weights: Weights) -> list[Judged]:
 
 
 def outcome(found: Sequence[Judged], least: float) -> AnswerRates:
-    """What becomes of these questions where an answer has to be that probable."""
+    """Return the rates of right and wrong answers if an answer needs the probability `least`."""
     return _rates(found, [each.probability >= least for each in found])
 
 
 def calibrate(samples: Sequence[Sample], max_wrong: float = MAX_WRONG) -> Weights:
-    """Weights of these questions, which answer most of them rightly and at most so many wrongly, each by the others."""
+    """Fit weights to these questions, with the least probability that gives the most right answers of held-out folds.
+
+    At most `max_wrong` of the questions, a share, may be answered wrongly.
+    """
     return Weights(*_fitted(samples), least_probability(held_out(samples), max_wrong))
 
 
 def held_out(samples: Sequence[Sample]) -> list[Judged]:
-    """What would be answered to each, by the weights that questions of the other parts set."""
+    """Return the judgement of each sample by weights fitted to the other folds (cross-validation)."""
     found: dict[int, Judged] = {}
     folds = min(FOLDS, len(samples))
     for fold in range(folds):
@@ -61,14 +64,17 @@ def held_out(samples: Sequence[Sample]) -> list[Judged]:
 
 
 def left_out(found: Sequence[Judged], max_wrong: float = MAX_WRONG) -> AnswerRates:
-    """What becomes of each of these questions by the least probability that all others set."""
+    """Return the rates if each question is judged by the least probability that all other questions give."""
     others = ([*found[:i], *found[i + 1 :]] for i in range(len(found)))
     least = [least_probability(each, max_wrong) for each in others]
     return _rates(found, [one.probability >= enough for one, enough in zip(found, least, strict=True)])
 
 
 def least_probability(found: Sequence[Judged], max_wrong: float = MAX_WRONG) -> float:
-    """The one that answers most of these rightly, at most so many wrongly; the highest of equals, to a thousandth."""
+    """Return the least probability with the most right answers and at most `max_wrong` of all, a share, wrong.
+
+    The highest of equals, rounded down to a thousandth; NEVER if even the first answer would be one too many.
+    """
     right = most = 0
     wrong = 0.0
     least = NEVER
@@ -98,7 +104,7 @@ def _rates(found: Sequence[Judged], answered: Sequence[bool]) -> AnswerRates:
 
 
 def samples_of(retriever: Retriever, sets: Iterable[QuestionSet]) -> dict[str, Sample]:
-    """The questions of the retriever's language, each with what is told of the passages; none where it knows none."""
+    """Return the questions in the retriever's language, each with its sample; empty if there are no passages."""
     if not retriever.names:
         return {}
     rows = {name: row for row, name in enumerate(retriever.names)}
@@ -110,13 +116,13 @@ def samples_of(retriever: Retriever, sets: Iterable[QuestionSet]) -> dict[str, S
 
 
 def weights_of(retriever: Retriever, sets: Iterable[QuestionSet]) -> Weights | None:
-    """Those that the questions set, None where there is none in this language."""
+    """Return the weights fitted to the questions; None if there are no questions in the retriever's language."""
     samples = samples_of(retriever, sets)
     return calibrate([*samples.values()]) if samples else None
 
 
 def tried(retriever: Retriever, sets: Iterable[QuestionSet]) -> QuestionTrial | None:
-    """What becomes of the questions in the retriever's language, None where there are none."""
+    """Return the results of the questions in the retriever's language; None if there are no such questions."""
     by_text = samples_of(retriever, sets)
     if not by_text:
         return None
