@@ -37,7 +37,6 @@ ON_PURPOSE: Mapping[tuple[str, str], str] = {
         "bus/checked_bus.py",
         "_VALUES",
     ): "abilities that Lumen asks a bus for; one that it does not know it never asks for",
-    ("features/alerts/rules.py", "WAYS"): "the union `AlertChannel` of the same folder, which mypy checks",
     ("language/diagnostics.py", "Severity"): "the levels that the formats of editors, GitHub and SARIF have",
     ("language/machines.py", "StateKind"): "the kinds of states that the algorithm of SCXML has",
     ("language/routes.py", "Carried"): "promises that every bus keeps; a new one would break the buses of packages",

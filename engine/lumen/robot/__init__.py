@@ -9,6 +9,7 @@
 How a command is performed:
 
     command_table.py      the properties of each command, one row for each
+    command_checks.py     reads their parameters, and refuses values that a body cannot perform
     command_bounds.py     limits commands to the angles and speeds of the body
     joint_ways.py         to the posture that a motion begins in, and back after a cancel
     executor.py           a command waits until its parts are free, then runs until it is done
