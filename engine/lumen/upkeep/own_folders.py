@@ -2,7 +2,6 @@
 
 import os
 import stat
-import tempfile
 from contextlib import suppress
 from pathlib import Path
 
@@ -46,6 +45,8 @@ def state_folder() -> Path:
     try:
         return Path(given) / "lumen" if given else Path.home() / ".local" / "state" / "lumen"
     except RuntimeError:  # a user without a home
+        import tempfile  # late: it imports shutil and random, which lint does without
+
         return Path(tempfile.gettempdir()) / f"lumen-{os.getuid() if hasattr(os, 'getuid') else ''}"
 
 
@@ -109,4 +110,6 @@ def _own() -> Path:
     try:
         return Path(given) / "lumen" if given else Path.home() / ".cache" / "lumen"
     except RuntimeError:  # a user without a home
+        import tempfile  # late: it imports shutil and random, which lint does without
+
         return Path(os.devnull) / "lumen"
