@@ -6,8 +6,6 @@ other commands about a run find the same copy.
 
 import hashlib
 import os
-import shutil
-import tempfile
 from collections.abc import Iterator
 from functools import cache
 from itertools import islice
@@ -120,6 +118,9 @@ def _copied() -> Path:
 
     Permissions are not copied, so that a copy of a read-only installation can be written.
     """
+    import shutil  # late, as tempfile is: lint of a project does without
+    import tempfile
+
     if (copy := copy_of_shipped()).is_dir():
         return copy
     draft = None

@@ -110,6 +110,4 @@ def _own() -> Path:
     try:
         return Path(given) / "lumen" if given else Path.home() / ".cache" / "lumen"
     except RuntimeError:  # a user without a home
-        import tempfile  # late: it imports shutil and random, which lint does without
-
         return Path(os.devnull) / "lumen"
