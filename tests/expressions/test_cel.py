@@ -98,7 +98,7 @@ def readable(source: str) -> Outcome:
 
 
 def test_the_table_has_these_rows() -> None:
-    table = DOCS.read_text(encoding="utf-8").partition("## Where it differs from CEL")[2]
+    table = DOCS.read_text(encoding="utf-8").partition("## Differences from CEL")[2]
     assert re.findall(r"^\| (.*?) \|", table, re.MULTILINE)[2:] == list(DIFFERENT)
 
 
