@@ -50,7 +50,7 @@ DIFFERENT: dict[str, list[tuple[str, object, object]]] = {
         ("[1] < [2]", ERROR, ERROR),
     ],
     "keys of a map are quoted texts, each once": [("{1: 2}[1]", ERROR, 2), ("{'a' + 'b': 1}.ab", ERROR, 1)],
-    "`matches` takes a literal; its `\\w`, `\\d`, `\\b` know every script": [
+    "`matches` takes a literal; its `\\w`, `\\d`, `\\b` include every script": [
         ("'a'.matches('' + 'a')", ERROR, True),
         (r"'é'.matches(r'^\w$')", True, False),
         (r"'٣'.matches(r'^\d$')", True, False),
