@@ -36,7 +36,7 @@ function Drawing({ chart, robot }) {
     been=${been.has(one.name)} />`;
   return html`<div class="chart-scroll" tabindex="0" role="group" aria-label=${t("chart")}>
     <svg class="state-chart" viewBox=${view} role="img" aria-label="${t("chart.active")}: ${named.join(", ")}"
-      style="width: ${Math.round(chart.width + 2 * MARGIN)}px">
+      width=${Math.round(chart.width + 2 * MARGIN)}>
       <defs><marker id="chart-tip" viewBox="0 0 10 10" refX="9" refY="5" markerWidth="7" markerHeight="7" orient="auto">
         <path d="M0 0.8 L10 5 L0 9.2 z" /></marker></defs>
       ${chart.boxes.filter((one) => !one.leaf).map(box)}
