@@ -20,6 +20,7 @@ MAKERS = {
     "upkeep/own_folders.py": "the one function; and the user's own cache, which is not in a project",
     "features/fleet/installing.py": "a folder of the project, which is to be committed",
     "run/new_passage.py": "knowledge/ of the project, which is to be committed",
+    "features/console/kept_stories.py": "behaviors/stories/ of the project, which is to be committed",
     "run/new_saying.py": "behaviors/sayings/ of the project, which is to be committed",
     "features/simulation/trials/outcome_cache.py": "a folder within a private one",
     "run/workers/tasks.py": "a temporary folder",

@@ -54,6 +54,7 @@ def test_a_motion_begins_a_skill_and_its_story_sees_that_it_was_done(tmp_path: P
     assert begun.value == {"skill": "spray", "arguments": {"duration": "500ms", "nozzle": "right"}}
 
 
+@pytest.mark.rest
 def test_a_run_with_it_is_replayed_without_the_code(tmp_path: Path) -> None:
     root = waving(tmp_path / "hall", "spray: 500ms")
     assert main(["run", str(root), "--story", "visitor", "--robot", "recording", "--speed", "max"]) == 0

@@ -17,7 +17,7 @@ from lumen.features.console.people import Role
 from lumen.features.console.requests import DeniedError, Reception, as_json
 from lumen.project.home import home_of
 from lumen.run.new_passage import check_language, one_line
-from lumen.upkeep.replacing import replace_file
+from lumen.upkeep.own_folders import private_folder, write_private
 
 PREPARED_FILE = "prepared_sentences.json"
 MAX_SENTENCES = 100
@@ -71,8 +71,8 @@ class PreparedSentences:
 
     def _write(self, sentences: list[PreparedSentence]) -> list[PreparedSentence]:
         try:
-            self._file.parent.mkdir(parents=True, exist_ok=True)
-            replace_file(self._file, orjson.dumps([one._asdict() for one in sentences], option=orjson.OPT_INDENT_2))
+            private_folder(self._file.parent)
+            write_private(self._file, orjson.dumps([one._asdict() for one in sentences], option=orjson.OPT_INDENT_2))
         except OSError as error:
             raise UsageError(f"{self._file} can't be written: {error.strerror}") from None
         return sentences
