@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from lumen.errors import RobotError, UsageError
+from lumen.features.reachy import link
 from lumen.features.reachy.daemon_api import DaemonAddress
 from lumen.features.reachy.pose import BODY, JOINTS
 from lumen.features.reachy.robot import ReachyRobot
@@ -16,6 +17,13 @@ from lumen.ports import Aim, Live, Perform, Record, RobotCommand, Sense
 from tests.features.reachy.driving import Driven
 from tests.features.reachy.fake import ASLEEP, INIT, FakeDaemon
 from tests.tables import for_each
+from tests.waiting import HANG
+
+
+@pytest.fixture(autouse=True)
+def patient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A daemon in a thread of a crowded machine may send nothing for longer than the real one does."""
+    monkeypatch.setattr(link, "SILENCE", HANG)
 
 
 def data(robot: Driven, id: str, command: RobotCommand) -> str:
