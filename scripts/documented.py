@@ -123,18 +123,17 @@ def missing(expected: list[str], printed: list[str]) -> str | None:
 def same(expected: str, printed: str) -> bool:
     """Return True if two lines differ only in spaces, in the text for `…` and a little in numbers."""
     wanted, line = (PLACE.sub(_spelled, " ".join(text.split())) for text in (expected, printed))
-    pattern = ".*".join(NUMBER.sub("(\0)", re.escape(part).replace("\\ ", " ")) for part in _masked(wanted))
-    found = re.fullmatch(pattern.replace("\0", NUMBER.pattern), line)
-    return bool(found) and all(map(_near, NUMBER.findall(wanted.replace("…", " ")), found.groups()))
+    parts = wanted.split("…")
+    number = f"({NUMBER.pattern})"
+    pattern = ".*".join(number.join(map(re.escape, NUMBER.split(part))) for part in parts)
+    found = re.fullmatch(pattern, line)
+    numbers = [number for part in parts for number in NUMBER.findall(part)]
+    return bool(found) and all(map(_near, numbers, found.groups()))
 
 
 def _spelled(place: re.Match[str]) -> str:
     """Return a line and a column in letters, so that they don't count as numbers, which may differ."""
     return place[1] + "".join(chr(ord("a") + int(sign)) if sign.isdigit() else sign for sign in place[2])
-
-
-def _masked(text: str) -> list[str]:
-    return text.split("…")
 
 
 def _near(expected: str, printed: str) -> bool:

@@ -56,7 +56,7 @@ class Hall:
         self.tick()
 
     def tick(self) -> None:
-        if event := self.watch.tick(self.now, self.snapshot):
+        if event := self.watch.tick(lambda: self.now, self.snapshot):
             self.snapshot = step(self.machine, self.snapshot, event).snapshot
         self.snapshot = overdue(self.machine, self.snapshot, self.now)
 
@@ -74,7 +74,24 @@ class Hall:
 def test_a_clock_that_is_right_says_nothing() -> None:
     hall = Hall("2026-06-01T10:00")
     hall.now, hall.wall = 3600.0, when("2026-06-01T11:00") + 0.9
-    assert hall.watch.tick(hall.now, hall.snapshot) is None
+    assert hall.watch.tick(lambda: hall.now, hall.snapshot) is None
+
+
+def test_a_process_that_is_suspended_between_two_readings_is_no_jump() -> None:
+    hall = Hall("2026-03-30T17:00")
+    asked: list[float] = []
+
+    def now() -> float:
+        asked.append(hall.now)
+        return hall.now
+
+    def wall() -> float:
+        if len(asked) == 1:
+            hall.now, hall.wall = hall.now + 3.0, hall.wall + 3.0
+        return hall.wall
+
+    assert WallClockWatch(lambda: hall.zone, real=True, clock=wall).tick(now, hall.snapshot) is None
+    assert len(asked) > 2
 
 
 def test_what_a_clock_is_set_forward_over_comes_at_once() -> None:

@@ -2,7 +2,6 @@
 
 import logging
 import os
-import time
 from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
@@ -22,7 +21,7 @@ from lumen.run.setup import Setup
 from lumen.run.story import staged
 from lumen.run.story_time import story_epoch
 from lumen.run.trace_publisher import TracePublisher
-from lumen.run.wall_clock_watch import WallClockWatch
+from lumen.run.wall_clock_watch import WallClockWatch, date_of_zero
 from lumen.statechart.compiled_machine import prepare
 
 _log = logging.getLogger(__name__)
@@ -121,10 +120,10 @@ class LiveBehavior:
         if story is None:
             prepare(self.project.machine)
         timezone = self._timezone()
-        began = story_epoch(story, timezone) if story else time.time()
+        now = self.loop.clock.now
         self.loop.start(
             language=language or (story.language if story else ""),
-            epoch=began - self.loop.clock.now(),
+            epoch=story_epoch(story, timezone) - now() if story else date_of_zero(now),
             timezone=timezone,
             context=story.context if story else None,
         )

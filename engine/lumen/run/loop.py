@@ -347,7 +347,7 @@ class BehaviorLoop:
             self._perform(self._cues.answered(event, self.project, self.runtime.snapshot.language), now)
         happened, self._events = self._events, []
         heard = [event for event in answers if _ours(event) and not self._known(event, now)]
-        if self.wall_clock and (clock_set := self.wall_clock.tick(self.clock.now(), self.runtime.snapshot)):
+        if self.wall_clock and (clock_set := self.wall_clock.tick(self.clock.now, self.runtime.snapshot)):
             happened = [clock_set, *happened]
         happened = [*happened, *self.runtime.approvals.tick(now)]
         own = [caused(event) for event in (*heard, *(event._replace(at=now) for event in happened))]

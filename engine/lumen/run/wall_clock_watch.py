@@ -9,6 +9,21 @@ from lumen.statechart import Snapshot
 
 TOLERANCE = 1.0
 """Difference [s] that is ignored, because ticks may be late, and a simulation slower than real time."""
+READINGS = 5
+"""How often both clocks are read if a crowded machine suspends the process between two readings."""
+
+
+def date_of_zero(now: Callable[[], float], wall: Callable[[], float] = time.time) -> float:
+    """Return the date [s since 1970] of time 0 of the clock `now` [s], by the machine's clock `wall`.
+
+    A process that is suspended between its readings of the two clocks would see a jump that never happened. So `now` is
+    read before and after, and all is read again if too much time passed, at most `READINGS` times.
+    """
+    for _ in range(READINGS):
+        before, date, after = now(), wall(), now()
+        if after - before <= TOLERANCE / 2:
+            break
+    return date - after
 
 
 class WallClockWatch:
@@ -21,11 +36,11 @@ class WallClockWatch:
     def __init__(self, timezone: Callable[[], str], *, real: bool, clock: Callable[[], float] = time.time) -> None:
         self._timezone, self._real, self._clock = timezone, real, clock
 
-    def tick(self, now: float, snapshot: Snapshot) -> Event | None:
-        """Return the event for the behaviour if its time of day changed at `now` [s], else None."""
+    def tick(self, now: Callable[[], float], snapshot: Snapshot) -> Event | None:
+        """Return the event for the behaviour if its time of day changed, else None; `now` returns its time [s]."""
         epoch, zone = snapshot.epoch, self._timezone()
-        if self._real and abs(self._clock() - now - epoch) > TOLERANCE:
-            epoch = self._clock() - now
+        if self._real and abs((found := date_of_zero(now, self._clock)) - epoch) > TOLERANCE:
+            epoch = found
         if (epoch, zone) == (snapshot.epoch, snapshot.timezone):
             return None
-        return Event(CLOCK_SET, {"epoch": epoch, "timezone": zone}, now, CLOCK_SET, Cause("timer", CLOCK_SET))
+        return Event(CLOCK_SET, {"epoch": epoch, "timezone": zone}, now(), CLOCK_SET, Cause("timer", CLOCK_SET))
