@@ -1,4 +1,4 @@
-"""How the head follows a face: prints the table of docs/head.md, for a kinematic head and under physics.
+"""How the head follows a face: prints the table of docs/research.md, for a kinematic head and under physics.
 
     python benchmarks/head.py [--plot FILE.png] [--visitors 60]
 

@@ -1,4 +1,4 @@
-"""What docs/fuzzy.md and docs/erratum.md say is what the code says."""
+"""What docs/fuzzy.md and docs/research.md say is what the code says."""
 
 import re
 from pathlib import Path
@@ -12,7 +12,7 @@ from lumen.language.controllers import ACTIVATIONS, DEFUZZIFIERS, HEDGES, S_NORM
 from tests.fuzzy.test_signals import FILES
 
 FUZZY = Path("docs/fuzzy.md").read_text()
-ERRATUM = Path("docs/erratum.md").read_text()
+ERRATUM = Path("docs/research.md").read_text()
 
 
 def test_every_word_of_the_language_is_there() -> None:
