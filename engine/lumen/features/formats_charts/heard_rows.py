@@ -14,8 +14,8 @@ HEARD_TEXT = "event.data.result"
 
 
 def in_asked_order(transitions: Sequence[Transition]) -> Sequence[Transition]:
-    """Return the transitions in the order of their evaluation: rows of `hears` after `on`, and before one for any
-    event.
+    """Return the transitions in the order of their evaluation: rows of `hears` after `on`, and before a transition on
+    any event (`*`).
     """
     if not any(t.hears for t in transitions):
         return transitions
@@ -23,9 +23,9 @@ def in_asked_order(transitions: Sequence[Transition]) -> Sequence[Transition]:
 
 
 def key_of(row: Hears) -> str:
-    """Return the key of a row, as in a file; empty for one with phrases of an entry of a `for`.
+    """Return the key of a row, as in a behaviour file; empty if its phrases come from an entry of a `for`.
 
-    A chart has no `for`, so nothing could be called by its variable.
+    A chart has no `for`, so a key with its variable would have no meaning.
     """
     return "" if any(name.startswith(ENTRY) for name in row.names) else row.title.removeprefix("hears ")
 

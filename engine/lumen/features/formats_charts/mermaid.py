@@ -12,9 +12,9 @@ _SPECIAL = re.compile(r"[^\w .,!?()=+*/&|\'\[\]…-]|--+|\b_+")
 def mermaid(machine: MachineDefinition) -> str:
     """Return the diagram's text, ending with a newline.
 
-    Every state gets an id `s1, s2, …` in document order and its key as its label, since Mermaid takes few characters
-    in an id. Events without a target are listed in the label of their state. An invoked behaviour is drawn inside
-    its state, as a region of its own, the first time; further invocations are boxes with its name.
+    Every state gets an id `s1, s2, …` in document order and its key as its label, since Mermaid accepts few characters
+    in an id. Events without a target are listed in the label of their state. An invoked behaviour is drawn inside its
+    state, as a region of its own, the first time; further invocations are boxes with its name.
     """
     return "\n".join(["stateDiagram-v2", *_MermaidDrawing(machine).lines()]) + "\n"
 

@@ -1,8 +1,8 @@
 """Reads Fuzzy Control Language (IEC 61131-7), also jFuzzyLogic's and FuzzyLite's, as the data of a controller file.
 
 `FUNCTION_BLOCK` contains `VAR_INPUT`, `VAR_OUTPUT`, a `FUZZIFY` for each input, a `DEFUZZIFY` for each output, and
-`RULEBLOCK`s. A declaration may name several variables and their range. A term is a row of points, a single value, or
-(not in the norm) a shape with its parameters.
+`RULEBLOCK`s. A declaration may name several variables and their range. A term is a list of points, a single value, or
+(not in the standard) a shape with its parameters.
 """
 
 import re
@@ -148,7 +148,7 @@ class _FclReader:
         return self.place(statement.offset, len(lines_of(statement.text)[0]))
 
     def first(self, text: str) -> str:
-        """Return the first function block; report further ones."""
+        """Return the text before the second function block; report that block."""
         begins = list(re.finditer(r"\bFUNCTION_BLOCK\b", text, re.IGNORECASE))
         if len(begins) < 2:
             return text
@@ -157,7 +157,7 @@ class _FclReader:
         return text[: begins[1].start()]
 
     def tell_outside(self, text: str, sections: list[FclSection]) -> None:
-        """List text outside of the sections that are read, at its first word."""
+        """Report text outside the sections, each part at its first word."""
         for begin, end in zip([0, *(s.end for s in sections)], [*(s.offset for s in sections), len(text)], strict=True):
             outside = text[begin:end]
             at = 0
@@ -197,7 +197,9 @@ class _FclReader:
         return self.draft.result()
 
     def declare(self, section: FclSection) -> None:
-        """Read `a, b : REAL;` and the range of the last ones, `RANGE := (0 .. 9);` or `REAL (0 .. 9)`."""
+        """Read declarations such as `a, b : REAL;`, and their range: `REAL (0 .. 9)`, or `RANGE := (0 .. 9);` after
+        them.
+        """
         names: list[str] = []
         for statement in section.statements:
             setting = _SETTING.fullmatch(statement.text)
@@ -224,7 +226,7 @@ class _FclReader:
                 self.findings.lost(self.at(statement), f"`{match['rest'][:40]}` in a declaration is left out")
 
     def asked(self, sections: list[FclSection]) -> None:
-        """Add inputs without terms that formulas use: they accept any number."""
+        """Add the inputs without terms that formulas use, with their declared range, else with an infinite one."""
         formulas = " ".join(t.text for s in sections if s.kind == "DEFUZZIFY" for t in s.statements)
         words = set(
             re.findall(r"[A-Za-z_]\w*", " ".join(re.findall(r"(?i):=\s*FUNCTION\b(.*?)(?= TERM |$)", formulas)))
@@ -335,8 +337,9 @@ class _FclReader:
                     self.findings.lost(self.at(statement), f"an output can't have `{key} : {said}`")
 
     def accumulated(self, section: FclSection, spec: dict[str, Any]) -> None:
-        """Set how conclusions about an output are combined; the method for single values also applies to each term's
-        degrees.
+        """Set how the conclusions about an output are combined: by its own ACCU, else by that of the rule blocks.
+
+        Without either, they are summed for a weighted defuzzifier; otherwise their maximum is used, which is reported.
         """
         weighted = spec.get("defuzzifier") in WEIGHTED_DEFUZZIFIERS
         said = spec.pop("aggregation", "") or self.accu.get("", "")
@@ -348,7 +351,9 @@ class _FclReader:
         spec.update(operators({"aggregation": said or None}, {"aggregation": usual}))
 
     def term(self, variable: str, spec: dict[str, Any], name: str, said: str, statement: FclStatement) -> list[float]:
-        """Add a term; return the points where its shape begins and ends, from which the variable's range follows."""
+        """Add a term; return the x of its points, or of both ends of its shape, from which the variable's range
+        follows.
+        """
         points = [float(number) for point in _POINT.findall(said) for number in point]
         if points and not _POINT.sub("", said).strip():
             self.draft.term(variable, spec, name, "discrete", points, self.at(statement))
@@ -382,7 +387,9 @@ class _FclReader:
         return []
 
     def single(self, variable: str, spec: dict[str, Any], name: str, x: float, statement: FclStatement) -> list[float]:
-        """Add a term with a single value for outputs, or a set without width; return its point."""
+        """Add a term with a single value: a constant if the defuzzifier is weighted, else a set without width; return
+        `[x]`.
+        """
         if spec.get("defuzzifier", "centroid") == "centroid" and spec is self.draft.sides["outputs"].get(
             self.draft.names[variable]
         ):

@@ -1,4 +1,4 @@
-"""The words of Fuzzy Control Language in the norm, jFuzzyLogic and FuzzyLite, with their meanings in Lumen.
+"""The words of Fuzzy Control Language in the standard, jFuzzyLogic and FuzzyLite, with their meanings in Lumen.
 
 `AND` or `OR` alone also determines the other (IEC 61131-7, De Morgan; jFuzzyLogic pairs HAMACHER and EINSTEIN).
 """
@@ -74,10 +74,10 @@ def _sigmoid(slope: float, inflection: float) -> str:
 
 
 def function(text: str, names: Mapping[str, str]) -> str | Trouble:
-    """Return jFuzzyLogic's `FUNCTION` as Lumen's formula; `names` are the inputs'.
+    """Return jFuzzyLogic's `FUNCTION` as Lumen's formula; `names` maps the file's inputs to Lumen's.
 
     Formulas whose order of operations is unusual in FCL (`a % b * c`, `2 ^ 3 ^ 2`, `-2 ^ 2`) are refused instead of
-    guessed, and so are those with `x`, which has no meaning there.
+    guessed, and so are those with `x`, which has no meaning in FCL.
     """
     doubtful = text.count("^") > 1 or ("%" in text and re.search(r"[*/^]|%.*%", text))
     if doubtful or ("^" in text and re.search(r"[-+][\d.]", text)):

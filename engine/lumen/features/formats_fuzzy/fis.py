@@ -89,7 +89,7 @@ KNOWN: FormatTable = {
 """The parts of a MATLAB or Octave system that are carried over, by section; `MF…` means `MF1`, `MF2`, …"""
 
 _HEDGES = {0.5: ("somewhat",), 2.0: ("very",), 4.0: ("very", "very")}
-"""Octave's hedges as powers of a membership: the digits after the point of a term's number, times ten."""
+"""Lumen's hedges by the power of a membership: Octave writes a tenth of the power after the point, `1.2` for `very`."""
 
 
 class FisLine(NamedTuple):
@@ -109,12 +109,12 @@ class FisSection(NamedTuple):
     place: Place
 
     def line(self, key: str) -> FisLine | None:
-        """Return the line of that key, None without one."""
+        """Return the first line with that key; None if there is none."""
         return next((line for line in self.lines if line.key == key), None)
 
 
 class FisVariable(NamedTuple):
-    """An input or output with Lumen's name, and its terms by their numbers: Lumen's names, empty for those left out."""
+    """An input or output by Lumen's name; `terms` are Lumen's names in the file's order, empty for those left out."""
 
     name: str
     spec: dict[str, Any]
@@ -133,7 +133,7 @@ def read_fis(file: str, content: bytes, title: str) -> tuple[dict[str, Any], lis
 
 
 def _sections(file: str, text: str, findings: ConversionFindings) -> Iterator[FisSection]:
-    """Yield the sections in their order; a line outside of them is listed."""
+    """Yield the sections in their order; report lines outside them."""
     section: FisSection | None = None
     for row, source in enumerate(lines_of(text), 1):
         said = source.strip()
@@ -343,7 +343,8 @@ class _FisReader:
         return found
 
     def derived(self, variable: FisVariable, term: str, power: float, line: FisLine, *, negated: bool) -> str:
-        """Add a term for a set's complement or a power of its membership, which Lumen's rules lack; return its name.
+        """Add a term for a set's complement or a power of its membership, which Lumen's rules lack; return its name, or
+        an empty text if the term is not a set.
 
         In a conclusion, a hedge in Lumen's rules changes the degree of the rule; in Octave it changes the set.
         """

@@ -18,7 +18,7 @@ from lumen.project.formats.known_elements import local, tell_losses
 from lumen.project.formats.xml_elements import XmlElement, parse_xml
 
 MAX_CHOREGRAPHE_ELEMENTS = 1_000_000
-"""The most boxes and curves of a project."""
+"""The most XML elements of a project."""
 
 DEFAULT_FPS = 25.0
 """The frames per second of a timeline without a rate."""
@@ -91,9 +91,10 @@ class Flags(NamedTuple):
 
 
 def read_choregraphe(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """Return the curves of the timeline of that name, or of the only one if no name is given. Raises ForeignFileError.
+    """Return the curves of the timeline `file.timeline`, or of the only one if that name is empty. Raises
+    ForeignFileError.
 
-    `hands` of the file are the robot's hands besides NAO's: their keys are openings.
+    `file.hands` are the robot's hands besides NAO's: their keys are openings.
     """
     root = parse_xml(file.name, file.content, most=MAX_CHOREGRAPHE_ELEMENTS)
     if local(root) not in ROOTS:
@@ -136,7 +137,7 @@ def is_choregraphe_list(content: bytes) -> bool:
 
 
 def choregraphe_list(content: bytes) -> str:
-    """Return the error that explains a `.pml` and the files to import instead."""
+    """Return why a `.pml` can't be imported, and the files to import instead."""
     named = [e for e in parse_xml("", content).walk() if local(e) == "BehaviorDescription"]
     files = [f"{e.get('src')}/{e.get('xar', 'behavior.xar')}".strip("/") for e in named]
     instead = (
@@ -314,7 +315,7 @@ def _factor(curve: XmlElement, findings: ConversionFindings, *, hand: bool) -> f
 
 
 def _handle(tangent: XmlElement | None, fps: float, factor: float, findings: ConversionFindings) -> BezierHandle:
-    """Return (dt [s], da [rad]) of a tangent, None if it is not a Bezier's."""
+    """Return (dt [s], da [rad]) of a tangent; (0, 0) if it is not a Bezier's."""
     if tangent is None or tangent.get("interpType") != "bezier":
         return 0.0, 0.0
     frames, value = (number(tangent.get(name, "0")) for name in ("abscissaParam", "ordinateParam"))

@@ -29,8 +29,7 @@ MAX_STEPS = 20_000
 """The most statements that are followed: functions that call each other might never end."""
 
 MAX_PARTS = 1_000_000
-"""The most parts of these statements beyond the file's own: a long list that a loop sets again costs as much each
-time.
+"""The most syntax nodes of these statements beyond the file's own: a long list in a loop costs as much in each round.
 """
 
 
@@ -43,7 +42,7 @@ class TooManyStepsError(Exception):
 
 
 class ScriptReading:
-    """The variables so far, and the curves of the calls."""
+    """Follows a script; keeps its variables so far, and the curves of its calls."""
 
     def __init__(
         self, file: str, findings: ConversionFindings, tree: ast.Module, own: OwnFunctions, rounds: int
@@ -68,7 +67,7 @@ class ScriptReading:
         self.called = False
 
     def run(self, body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Any:
-        """Follow statements in their order; return their result, None if it is not written out."""
+        """Follow statements in their order; return the value of their `return`, None if it can't be computed."""
         for statement, branch in statements(body, around, self._items):
             if isinstance(statement, FunctionNode):
                 continue

@@ -10,7 +10,7 @@ from lumen.features.formats_motion.naoqi_calls import ALMOTION_CALLS
 
 
 class Branch(Enum):
-    """The kind of place of a statement: `ALWAYS` runs exactly once, as far as a reader can tell."""
+    """The kind of block that a statement is in: `ALWAYS` runs exactly once, as far as the text shows."""
 
     ALWAYS = "always"
     IF = "if"

@@ -42,7 +42,9 @@ POSE = "play"
 
 
 def read_soccer(file: str, text: str, findings: ConversionFindings) -> JointCurves:
-    """Return the curves of a motion, joined by lines. Raises ForeignFileError if it has no joint, or one twice."""
+    """Return the curves of a motion, linear between its poses. Raises ForeignFileError if it has no joint, or one
+    twice.
+    """
     (first, *rest), *lines = cells_of(file, text, "%")
     behind = first[0].partition(SOCCER_VERSION)[2].lstrip(", ")
     row = [(behind, first[1]), *rest] if behind else lines.pop(0) if lines else []
@@ -94,7 +96,7 @@ _PLAIN_NAME = re.compile(r"pose\s*_?\d*", re.IGNORECASE)
 
 
 def read_webots(file: MotionFile, findings: ConversionFindings) -> JointCurves:
-    """Return the curves of a motion, joined by lines. Raises ForeignFileError if it is not a motion."""
+    """Return the curves of a motion, linear between its poses. Raises ForeignFileError if it is not a motion."""
     text = decoded(file.name, file.content)
     lines = list(cells_of(file.name, text, ","))
     if lines and [word for word, _ in lines[0][:2]] == [FIRST_CELL, SOCCER_VERSION]:

@@ -30,7 +30,9 @@ def equality(translation: Translation, node: Binary) -> ExpressionNode:
 
 
 def _undefined(translation: Translation, node: Binary, strict: bool) -> ExpressionNode | None:
-    """Translate `typeof x === 'undefined'`, `x === undefined` and `x == null`: the test that a value is missing."""
+    """Translate `typeof x === 'undefined'`, `x === undefined` and `x == null`, tests that a value is missing; else
+    None.
+    """
     for one, other in ((node.left, node.right), (node.right, node.left)):
         kind_asked = isinstance(one, Unary) and one.sign == "typeof"
         if isinstance(one, Unary) and kind_asked and other != Literal("undefined"):
@@ -55,7 +57,7 @@ def _absent(translation: Translation, tree: ExpressionNode, or_null: bool) -> Ex
 
 
 def _index(translation: Translation, node: Binary) -> ExpressionNode | None:
-    """Translate `text.indexOf(part) == -1`: the text does not contain the part."""
+    """Translate `text.indexOf(part) == -1`: the text does not contain the part. None for any other comparison."""
     match node:
         case Binary(left=FunctionCall(function=".indexOf", arguments=(text, part)), right=Literal(value=-1)):
             return Unary("!", FunctionCall("contains", (translation.value(text), translation.value(part))))

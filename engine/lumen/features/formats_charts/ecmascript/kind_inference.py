@@ -88,7 +88,7 @@ def kind(node: ExpressionNode, context: Mapping[str, str]) -> str:
 
 
 def is_float(node: ExpressionNode) -> bool:
-    """Return whether a number is certainly not an integer for `/`."""
+    """Return whether a number is certainly a float, so that `/` keeps the fraction."""
     match node:
         case Literal(value=value):
             return isinstance(value, float)

@@ -17,7 +17,7 @@ from lumen.features.formats_charts.ecmascript.script_parser import ScriptError
 from lumen.features.formats_charts.ecmascript.translation import Translation
 
 SIGN_FUNCTIONS = {"contained": "in", "same": "=="}
-"""Calls that are translated to a sign, for which ECMAScript has several, depending on the kind of value."""
+"""Functions that the writer calls for an operator whose form in ECMAScript depends on an unknown kind of value."""
 
 LUMEN_FUNCTIONS = frozenset(
     (

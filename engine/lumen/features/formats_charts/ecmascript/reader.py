@@ -181,7 +181,7 @@ class ScriptTranslator:
         return read if node.sign == "+" else Unary("-", read)
 
     def _either(self, node: Logic) -> ExpressionNode:
-        """Translate `a || b`, which is one of the two values, not a boolean."""
+        """Translate `a || b` or `a && b`, whose value is one of the operands, not always a boolean."""
         values = [self.value(operand) for operand in node.operands]
         if all(self.kind(value) == BOOLEAN for value in values):
             return self._logic(node.sign, node.operands)

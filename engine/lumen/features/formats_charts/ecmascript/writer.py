@@ -32,7 +32,7 @@ _SUFFIX = re.compile(r"((?:\\[^\w\s]|[\w\s])+)\$", re.ASCII)
 
 
 class WrittenScript(NamedTuple):
-    """An ECMAScript expression, and the names in it that other tools do not know."""
+    """An ECMAScript expression, and the names in it that only Lumen has."""
 
     text: str
     foreign: tuple[str, ...] = ()
@@ -151,7 +151,7 @@ class _ScriptWriter:
         return self._own(node.function, *arguments)
 
     def _typeof(self, sign: str, target: ExpressionNode) -> ExpressionNode:
-        """Translate the test that something is present; if an event's name is, there is an event."""
+        """Translate the test that a value is present; that of the event's name tests whether there is an event."""
         asked = Identifier("_event") if path_of(target) == ("event", "name") else self.node(target)
         return Binary(sign, Unary("typeof", asked), Literal("undefined"))
 

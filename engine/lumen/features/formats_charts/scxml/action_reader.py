@@ -189,7 +189,7 @@ class ScxmlActionReader:
         return length
 
     def _constant(self, element: XmlElement, name: str, computed: str, *, optional: bool = False) -> str:
-        """Return the text of an attribute, or of its expression. Raises an error if that must be computed."""
+        """Return the text of an attribute, or of its expression. Raises LeftOutError if that must be computed."""
         if computed in element.attributes:
             source = element.get(computed)
             read = constant(parse_script(source), _NOT_CONSTANT)
@@ -221,7 +221,7 @@ class ScxmlActionReader:
 
 
 def own(element: XmlElement) -> Any:
-    """Return what only Lumen has, as JSON in an element of its namespace."""
+    """Return the JSON in an element of Lumen's own namespace. Raises LeftOutError if it is invalid."""
     try:
         return foreign_json(element.text)
     except (ValueError, RecursionError):

@@ -120,7 +120,7 @@ class ScxmlActionWriter:
         return unparse(Literal(plain_value(value)))
 
     def literal(self, value: Any) -> str:
-        """Return JSON as ECMAScript."""
+        """Return a JSON value as ECMAScript."""
         match value:
             case list() | tuple():
                 return f"[{', '.join(map(self.literal, value))}]"
@@ -131,5 +131,5 @@ class ScxmlActionWriter:
 
 
 def is_constant(source: str) -> bool:
-    """Return whether one of Lumen's expressions can't fail."""
+    """Return whether one of Lumen's expressions is a literal, which can't fail."""
     return isinstance(parse_expression(source), Literal)

@@ -1,4 +1,4 @@
-"""Transitions in document order as our `on`: a map, in which each descriptor stands once."""
+"""Converts transitions in document order to Lumen's `on`, a map in which each descriptor occurs once."""
 
 import re
 from collections.abc import Callable
@@ -22,8 +22,9 @@ from lumen.project.formats.behavior_data import TransitionData, single
 def arrange(rows: list[tuple[str, TransitionData]], leave_out: Callable[[TransitionData], None]) -> dict[str, Any]:
     """Return `on` for these candidates, tried in this order; a single candidate is written without a list.
 
-    If the same descriptor comes before and after one that an event may match as well, all of these become
-    candidates of the most general one, with guards for the event's name. One whose guard becomes too long is left out.
+    If the same descriptor comes before and after one that an event may match as well, all of these become candidates of
+    the most general one, with guards for the event's name. One whose guard becomes too long is passed to `leave_out`
+    instead.
     """
     heads = _heads({descriptor for descriptor, _ in rows})
     order, mixed = _DescriptorOrder(), set[str]()
@@ -48,14 +49,14 @@ def _heads(descriptors: set[str]) -> dict[str, str]:
 
 
 class _DescriptorOrder:
-    """The place of each descriptor, and of the last one below each."""
+    """The position of each descriptor, and that of the last more specific one."""
 
     def __init__(self) -> None:
         self.place: dict[str, int] = {}
         self.below: dict[str, int] = {}
 
     def add(self, descriptor: str) -> None:
-        """Put it last if it has no place."""
+        """Append a descriptor, unless it has a position already."""
         if descriptor not in self.place:
             place = self.place[descriptor] = len(self.place)
             for general in _prefixes(descriptor):

@@ -23,7 +23,7 @@ MAX_KIND_PASSES = 10
 
 
 class ScxmlDataModel:
-    """`first` are the values of the context's keys, `late` those that must be computed, in order.
+    """The context of a document: `first` has the values of its keys, `late` those that must be computed, in order.
 
     `names` are the names in expressions. A key that receives values of several kinds is in `wide`, and `types` in the
     file allows it any value.

@@ -26,7 +26,7 @@ def template_of(element: XmlElement, names: ScriptNames) -> str:
 
 
 def plain_template(element: XmlElement, text: str) -> str:
-    """Return the label of a `<log>`, and a text unchanged."""
+    """Return the label of a `<log>` and a text, as a template without expressions."""
     label = element.get("label")
     between = ": " if label and element.get("expr") else ""
     return _piece(Literal(label + between + text))

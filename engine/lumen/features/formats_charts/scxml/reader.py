@@ -137,20 +137,22 @@ class _ScxmlReader:
         return data if "target" in data else data | self._remembered(node)
 
     def _remembered(self, node: ForeignState) -> dict[str, Any]:
-        """Return the target of a history without one (which SCXML does not allow): as its parent begins."""
+        """Return the target of a history without one (which SCXML does not allow): the states in which its parent
+        begins.
+        """
         home = node.parent
         found = regular(home)[: None if home.source.tag == "parallel" else 1] if home else []
         return {"target": self.transitions.named(node, found)} if found else {}
 
     def _plain_way(self, transition: XmlElement) -> None:
-        """Report the parts that a transition into a state can't have."""
+        """Report the attributes that the transition of an `<initial>` or a `<history>` can't have."""
         for name in ("event", "cond", "type"):
             if name in transition.attributes:
                 message = f"`{name}` is left out: a transition into a state has no event or condition"
                 self.findings.lost(transition.attribute_place(name), message, "delete it")
 
     def _default(self, node: ForeignState, transition: XmlElement, key: str) -> dict[str, Any]:
-        """Return `initial` or a history's `target`, with the actions on the way."""
+        """Return `initial` or a history's `target`, with the transition's actions; empty if its target is invalid."""
         home = node if key == "initial" else node.parent
         found = self.transitions.targets(transition)
         if found is None or not found:
@@ -176,7 +178,7 @@ class _ScxmlReader:
     def _pass_through(
         self, home: ForeignState, transition: XmlElement, targets: list[ForeignState], actions: list[ActionData]
     ) -> str:
-        """Add a state that is left at once, with the actions between `home` and its states; return its key."""
+        """Add a state to `home` that runs these actions and leads to its targets at once; return its key."""
         passed = self.passed.setdefault(home, {})
         key = passing_key(home, passed)
         hint = "the behaviour passes through it immediately"
@@ -259,7 +261,9 @@ class _ScxmlReader:
         return rows
 
     def _named_apart(self, node: ForeignState, element: XmlElement, row: dict[str, Any]) -> dict[str, Any]:
-        """Return the row with an id that is unique at any time. Raises LeftOutError if the id is from the file."""
+        """Return the row with an id that no invocation has at the same time. Raises LeftOutError if the file repeats an
+        id.
+        """
         id = row.get("id", row["behavior"])
 
         def is_taken(name: str) -> bool:
@@ -281,7 +285,9 @@ class _ScxmlReader:
                 self.findings.changed(block.place, f"several `<{block.tag}>` become one list", hint)
 
     def _afters(self, node: ForeignState) -> dict[str, Any]:
-        """Return the events of the `<send>` and `<cancel>` that an `after` of Lumen's was written as."""
+        """Return the blocks of `<send>` and `<cancel>` as which Lumen wrote an `after`, and the delays by their
+        events.
+        """
         found: dict[str, Any] = {"onentry": [], "onexit": [], "events": {}}
         name = node.name or self.outline.title
         exits: dict[str, list[XmlElement]] = {}
@@ -311,7 +317,7 @@ class _ScxmlReader:
 
 
 class _ActiveTogether:
-    """A set of states that finds whether another one can be active together with one of them.
+    """A set of states; `meets` returns whether another one can be active together with one of them.
 
     Two states can if one is in the other, or if they are in different regions of a parallel state.
     """
@@ -319,7 +325,7 @@ class _ActiveTogether:
     def __init__(self) -> None:
         self._states: set[ForeignState] = set()
         self._around: dict[ForeignState, set[ForeignState]] = {}
-        """The states around these, each with its children in which they are."""
+        """The states that contain these, each with those of its children that contain them."""
 
     def add(self, state: ForeignState) -> None:
         self._states.add(state)

@@ -91,5 +91,5 @@ class ScxmlStateTree:
 
 
 def _ends_document(element: XmlElement) -> bool:
-    """Return whether Lumen wrote it so that the document ends with the root that it wrapped."""
+    """Return whether Lumen wrote the element only to end the document together with the wrapped root."""
     return element.get(f"{{{LUMEN_NAMESPACE}}}end") == "true"

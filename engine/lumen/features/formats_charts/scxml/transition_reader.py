@@ -107,7 +107,7 @@ class ScxmlTransitionReader:
 
     @cached_property
     def _dones(self) -> set[str]:
-        """Return the prefixes of the states' names whose end is an event: up to each of their dots."""
+        """Return the names of all states with children, whose end is an event, and their prefixes up to each dot."""
         names = (node.name.split(".") for node in self.outline.root.walk() if node.children)
         return {".".join(words[:n]) for words in names for n in range(1, len(words))}
 
@@ -137,7 +137,7 @@ class ScxmlTransitionReader:
         return row
 
     def targets(self, element: XmlElement) -> list[ForeignState] | None:
-        """Return the states of `target`, None (and report it) if one does not exist."""
+        """Return the states of `target`; None (and report it) if one is missing or they can't be active together."""
         found = []
         for id in element.get("target").split():
             node = self.outline.by_id.get(id)

@@ -219,7 +219,7 @@ class _ScxmlWriter:
         return {"cond": self.orders.expression(condition)}
 
     def _wrapped(self, state: XmlTag) -> Iterator[XmlTag]:
-        """Yield the root as a state in the document, at whose end the document ends."""
+        """Yield the root as a state of the document, and a final state if the document can end with it."""
         root, id, mark = self.machine.root, self.ids[""], {"lumen:end": "true"}
         yield state
         if root.kind is StateKind.PARALLEL or any(

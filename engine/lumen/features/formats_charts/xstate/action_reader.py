@@ -87,7 +87,7 @@ class XStateActionReader:
         return _logged(shown_name(kind, data))
 
     def _params(self, place: str, data: Mapping[str, Any], where: NodePath) -> None:
-        """Report the parts of an XState action's other form that are not converted."""
+        """Report the parts of `params`, XState's other form of an action, that are not converted."""
         params, where = data.get("params"), (*where, "params")
         if params is not None and not isinstance(params, dict):
             self.lost(where, f"`params` of an {place} is not an object", "delete it")
@@ -102,7 +102,7 @@ class XStateActionReader:
             self.lost((*where, key), message, hint)
 
     def _own(self, verb: str, params: Any) -> ActionData | None:
-        """Return an action that Lumen wrote; None if it was changed into something else."""
+        """Return an action that Lumen wrote; None if it was changed and is not valid any more."""
         if verb == "if" and isinstance(params, dict):
             action = params
         else:
@@ -176,7 +176,7 @@ class XStateActionReader:
         return PARENT if to == f"#_{PARENT}" else self.names.actor(to.removeprefix("#_"))
 
     def do(self, steps: Any) -> list[ActionData] | None:
-        """Return the `do` that Lumen wrote as an invocation."""
+        """Return the `do` that Lumen wrote as an invocation; None if it is not valid any more."""
         return steps if isinstance(steps, list) and self.fits({"do": steps}) else None
 
     def fits(self, state: Mapping[str, Any]) -> bool:
@@ -190,7 +190,9 @@ class XStateActionReader:
         return not has_errors([*found, *(d for d in report.diagnostics if d.code != "unknown-state")])
 
     def guard(self, data: Any, where: NodePath) -> str | None:
-        """Return a guard as Lumen's expression, None (and report it) if it is not one."""
+        """Return a guard as Lumen's expression: a context key for a name without code. None (and report it) if it is
+        invalid.
+        """
         kind = data.get("type") if isinstance(data, dict) else data
         params = data.get("params") if isinstance(data, dict) else None
         if not isinstance(kind, str) or not kind:
@@ -231,7 +233,7 @@ class XStateActionReader:
         return key
 
     def delay(self, text: str, where: NodePath) -> str | None:
-        """Return a key of `after` in milliseconds."""
+        """Return Lumen's duration for a delay in milliseconds; None (and report it) for any other text."""
         try:
             length = float(text)
         except ValueError:

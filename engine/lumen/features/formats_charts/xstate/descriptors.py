@@ -52,8 +52,8 @@ class EventDescriptors:
     def arranged(self, state: State) -> dict[str, list[Transition]]:
         """Return the candidates by XState's descriptors, the longest first; `!done.do.a` for the state's own events.
 
-        A more general candidate that comes before a particular one here is repeated among its own, where XState
-        would try it later.
+        A more general candidate that Lumen tries before a specific one is repeated under the specific descriptor,
+        because XState would try it later.
         """
         rows = [t for t in in_asked_order(state.transitions) if t.event and not t.timed]
         table: dict[str, list[Transition]] = {}
@@ -82,7 +82,7 @@ def bare(descriptor: str) -> str:
 
 
 def longest_first(descriptors: Sequence[str]) -> list[str]:
-    """Return descriptors in XState's order if it matters at all; those of the same length keep theirs."""
+    """Return descriptors in XState's order if the order matters; those of the same length keep theirs."""
     return sorted(descriptors, key=lambda d: (d == "*", -len(d))) if _rivals(descriptors) else list(descriptors)
 
 

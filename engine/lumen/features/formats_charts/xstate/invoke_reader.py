@@ -15,8 +15,8 @@ _ENDS = {"onDone": "done.invoke", "onError": "error.invoke"}
 
 
 class ActorEnds(NamedTuple):
-    """`do`, `invoke` and the transitions at their ends; and the waits in `on` that replace those that can't be
-    converted.
+    """`data` has `do`, `invoke` and the transitions at their ends; `waits` has those for `on`, at the end of actors
+    that can't be converted.
     """
 
     data: dict[str, Any]
@@ -56,7 +56,7 @@ class XStateInvokeReader:
         row: Mapping[str, Any],
         waits: dict[str, list[TransitionData]],
     ) -> None:
-        """Keep the transitions at the end of an actor without code, as waits for its events."""
+        """Report an actor without code; keep the transitions at its end, as waits for its events."""
         given = row.get("id")
         id = self.parts.names.actor(given if isinstance(given, str) and given else f"{number}.{state.foreign_id}")
         for key, family in _ENDS.items():

@@ -22,7 +22,7 @@ class JsonSource:
     data: Any
     document: Document
     repeated: tuple[tuple[Place, str], ...]
-    """Return the repeated keys of an object, of which the last one counts."""
+    """The places and names of keys that an object repeats; the last one counts."""
 
     def place(self, path: NodePath) -> Place:
         """Return the place of a key (or item), or of the nearest enclosing one."""

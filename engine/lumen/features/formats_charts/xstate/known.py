@@ -97,7 +97,7 @@ _OBJECTS_OF_AUTHORS = frozenset(("context", "meta", "params", "input", "data", "
 
 
 def losses(place: str, names: Iterable[str]) -> Iterator[tuple[str, str, str]]:
-    """Yield each key of such an object that is not converted, with the message and a hint."""
+    """Yield each of these keys of a `place` (an object of KNOWN) that is not converted, with the message and a hint."""
     known, whose = KNOWN[place], f"of {'an' if place[0] in 'aeix' else 'a'} {place}"
     for name, hint in known.losses(names):
         if name in known.lost:

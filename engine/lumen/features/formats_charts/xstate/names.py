@@ -40,7 +40,7 @@ class XStateNames:
         return (found.name or self.outline.title) if found else invoke_id(id)
 
     def _free(self, kind: str, names: Mapping[str, NodePath]) -> dict[str, str]:
-        """Return a name that a behaviour can have for each name; changed ones are reported."""
+        """Map each name to one that a behaviour can use; report those that change."""
         cleaned: Callable[[str], str] = invoke_id if kind == "actor" else lambda name: _BLANKS.sub("_", name.strip())
         found = {name: name for name in names if cleaned(name) == name}
         taken = set(found)

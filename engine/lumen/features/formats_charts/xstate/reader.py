@@ -182,7 +182,7 @@ class _XStateReader:
         return data if "target" in data else data | self._default(state)
 
     def _default(self, state: XStateNode) -> dict[str, Any]:
-        """Return the target of a history without one: as its parent begins."""
+        """Return the target of a history without one: the states in which its parent begins."""
         home = state.parent
         assert isinstance(home, XStateNode)  # the machine itself is never read as a history
         if home.kind == "compound":
@@ -195,7 +195,7 @@ class _XStateReader:
         return {"target": self.transitions.named(state, list(home.regular))}
 
     def _initial(self, state: XStateNode) -> str:
-        """Return the key of the child entered first; with actions on the way, that of a state that does them."""
+        """Return the key of the child entered first; if actions run before, that of a state that runs them."""
         where = (*state.where, "initial")
         first = state.regular[0]
         data = state.source.get("initial", first.original)

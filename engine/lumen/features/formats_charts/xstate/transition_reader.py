@@ -102,7 +102,7 @@ class XStateTransitionReader:
         return f"In('{found.name or self.outline.title}')"
 
     def targets(self, state: XStateNode, data: Any, where: NodePath) -> list[XStateNode] | None:
-        """Return the target states, None (and report it) if one does not exist."""
+        """Return the target states; None (and report it) if one does not exist or they can't be active together."""
         found = []
         for text in data if isinstance(data, list) else [data]:
             target = self.outline.resolve(state, text) if isinstance(text, str) else None
@@ -141,7 +141,7 @@ class XStateTransitionReader:
         return row
 
     def _parallel(self, state: XStateNode, where: NodePath, targets: list[XStateNode], reenter: bool) -> None:
-        """Report where W3C's rule leaves and enters more: a parallel state is no domain of a transition there."""
+        """Report a transition that leaves and enters more by W3C's rule: a parallel state is never its domain."""
         domain: XStateNode | None = (
             state if not reenter and all(t is state or t.lies_below(state) for t in targets) else None
         )

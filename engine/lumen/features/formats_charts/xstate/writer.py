@@ -30,7 +30,7 @@ def write_xstate(machine: MachineDefinition, place: PlaceOfPath) -> tuple[str, l
 
     An action of Lumen is `{"type": "lumen.say", "params": …}`, a guard `{"type": "lumen.expression", "params":
     {"source": …}}`, a row of `hears` the guard `lumen.hears`, and `do` an invocation of `lumen.do`: their code belongs
-    into `setup`. Whatever XState lacks is in `meta`.
+    in `setup`. Whatever XState lacks is in `meta`.
     """
     report = ExportReport(place, _HINT)
     data = _XStateWriter(machine, report).data()
@@ -159,7 +159,7 @@ class _XStateWriter:
         return data
 
     def _invoke(self, invoke: Invoke, rows: dict[str, list[Any]]) -> dict[str, Any]:
-        """Return an actor named like the behaviour; values of its input that must be computed are in `meta`."""
+        """Return an actor named like the behaviour; its input is also in `meta`, as Lumen's expressions."""
         hint = f"give `setup` the actor `{invoke.behavior}` from `lumen export xstate {invoke.behavior}`"
         self.report.changed(f"`invoke` of `{invoke.behavior}` becomes an actor", invoke.where, hint)
         data: dict[str, Any] = {"id": invoke.id, "src": invoke.behavior}

@@ -38,10 +38,11 @@ PlaceOfWord = Callable[[RuleWord], Place]
 
 
 class ControllerDraft:
-    """Collects a controller's data; `names` maps the file's names to Lumen's, `terms` those of a variable.
+    """Collects a controller's data; `names` maps the file's names to Lumen's, and `terms` those of each variable's
+    terms.
 
-    Variables of the same name are kept apart: a proposition means the first that has its term, a condition an input
-    first.
+    Variables of the same name are kept apart: a proposition refers to the first that has its term; in a condition,
+    inputs come before outputs.
     """
 
     def __init__(self, file: str, findings: ConversionFindings) -> None:
@@ -56,7 +57,7 @@ class ControllerDraft:
         self._named: dict[int, str] = {}
 
     def variable(self, side: str, name: str, place: Place) -> dict[str, Any]:
-        """Add an input or output; its settings belong into the returned dict."""
+        """Add an input or output; return the dict to which its settings are added."""
         known = {*self.sides["inputs"], *self.sides["outputs"]}
         ours = self.fresh(name, known, place)
         self.names.setdefault(name, ours)
@@ -153,7 +154,7 @@ class ControllerDraft:
         return next((ours for ours in found if term in self.terms[ours]), found[0] if found else "")
 
     def _unknown(self, mention: Mention) -> RuleWord | None:
-        """Return the word of a proposition that names nothing known."""
+        """Return the word of a proposition that is an unknown variable or term; None if both are known."""
         variable, term = mention.variable, mention.term
         name = self._meant(variable.text, term.text if term else "", concluded=mention.concluded)
         if not name:
@@ -161,7 +162,10 @@ class ControllerDraft:
         return term if term and term.text not in self.terms[name] else None
 
     def result(self) -> dict[str, Any]:
-        """Return the data of the file: a single block of rules is at its top level, several have names."""
+        """Return the data of the file: a single block of rules is at its top level, several have names.
+
+        Raises ForeignFileError if no output or no rule is left.
+        """
         outputs = self.sides["outputs"]
         if not any(spec.get("terms") for spec in outputs.values()):
             raise self._empty("no output is left", "add an output with terms")
@@ -187,7 +191,7 @@ class ControllerDraft:
         return data
 
     def _empty(self, what: str, hint: str) -> ForeignFileError:
-        """Return why no controller can be made, at the first part that had to be left out."""
+        """Return the error that no controller can be made, placed at the first part that was left out."""
         first = next((d for d in self.findings.diagnostics if d.code == LOST), None)
         if first is None:
             return broken(Place(self.file), "not-a-controller", f"nothing is written: {what}", hint)

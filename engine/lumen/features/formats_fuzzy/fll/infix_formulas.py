@@ -1,4 +1,4 @@
-"""Translates formulas between FuzzyLite's infix notation and Lumen's, which differ in their signs.
+"""Translates formulas between FuzzyLite's infix notation and Lumen's, whose operators differ.
 
 In FuzzyLite `^` and `**` are powers, `~` and `.-` a minus, `and` and `or` logic, `lt(a, b)` and others comparisons.
 """
@@ -20,7 +20,7 @@ _TOKEN = re.compile(
 )
 _COMPARISONS = {"lt": "<", "le": "<=", "eq": "==", "neq": "!=", "ge": ">=", "gt": ">"}
 MAX_FORMULA_LEVELS = 40
-"""The most nested formulas, in brackets, arguments or behind a sign."""
+"""The deepest nesting of a formula, by brackets, arguments and signs."""
 
 
 class Trouble(NamedTuple):
@@ -31,7 +31,7 @@ class Trouble(NamedTuple):
 
 
 def read_formula(text: str, names: Mapping[str, str]) -> str | Trouble:
-    """Return FuzzyLite's formula in Lumen's form; `names` maps its variables to their names here."""
+    """Return FuzzyLite's formula in Lumen's form, or why it can't be read; `names` maps its variables to Lumen's."""
     try:
         return unparse(_FormulaParser(text, names).whole())
     except ExpressionError as error:
@@ -102,7 +102,7 @@ class _FormulaParser(PrattParser):
         return Logic("&&" if sign.text == "and" else "||", (left, self.expression(power)))
 
     def raised(self, left: ExpressionNode, sign: Token, power: int) -> ExpressionNode:
-        """Return `left ^ right`; several are grouped from the right."""
+        """Return `left ^ right`, which is right-associative."""
         return FunctionCall("pow", (left, self.expression(power - 1)))
 
     operands: ClassVar = {"number": number, "name": name}
@@ -122,7 +122,7 @@ class _FormulaParser(PrattParser):
 
 
 def write_formula(text: str, names: Mapping[str, str]) -> tuple[str, bool]:
-    """Return Lumen's formula in FuzzyLite's form, and whether a choice in it had to be written as a sum."""
+    """Return Lumen's formula in FuzzyLite's form, and whether a conditional in it had to be written as a sum."""
     tree = parse_expression(text)
     writer = _FormulaWriter(names)
     return writer.text(tree), writer.chose

@@ -16,7 +16,7 @@ def rule_text(
     names: Mapping[str, str] = _NOBODY,
     terms: Mapping[str, Mapping[str, str]] | None = None,
 ) -> str:
-    """Return `if … then … with …`; `names` and `terms` map variables and their terms to their names there."""
+    """Return `if … then … with …`; `names` and `terms` map variables and their terms to the names to write."""
 
     def said(node: Proposition) -> str:
         term = (terms or {}).get(node.variable, _NOBODY).get(node.term, node.term)

@@ -136,7 +136,7 @@ def _activation(activation: Activation) -> str:
 
 
 def _fresh(names: Mapping[str, object]) -> dict[str, str]:
-    """Return for each name a different one that FuzzyLite can read."""
+    """Return a map from each name to a unique one that FuzzyLite can read."""
     found: dict[str, str] = {}
     for name in names:
         stem = _UNFIT.sub("_", name) or "_"
