@@ -1,4 +1,4 @@
-"""Calls of Reachy Mini's daemon over HTTP: one after the other on a thread of their own, or at once."""
+"""Calls Reachy Mini's daemon over HTTP: one call after the other on a separate thread, or on the caller's."""
 
 import http.client
 import json
@@ -41,7 +41,7 @@ class DaemonAddress:
 
 
 class DaemonCall:
-    """A call under way."""
+    """A call of the daemon that may still be in progress."""
 
     def __init__(self, work: Callable[[], Any]) -> None:
         self._work, self._over = work, Event()
@@ -58,7 +58,7 @@ class DaemonCall:
             self._answer = self._work()
         except RobotError as error:
             self._error = error
-        except Exception as error:  # whoever waits for the call must not wait for ever
+        except Exception as error:  # a thread that waits for the call must not wait for ever
             _log.exception("a call of the robot's daemon failed")
             self._error = RobotFailedError(f"the call failed: {error!r}")
         finally:
@@ -80,15 +80,15 @@ class DaemonApi:
         self._thread = WatchedThread("lumen-reachy-calls", self._serve)
 
     def post(self, path: str, body: Any = None) -> DaemonCall:
-        """Begin a POST; it follows those that were begun before."""
+        """Queue a POST behind all earlier calls; return it."""
         return self.later(lambda: self.request("POST", path, body))
 
     def get(self, path: str) -> DaemonCall:
-        """Begin a GET."""
+        """Queue a GET; return the call."""
         return self.later(lambda: self.request("GET", path))
 
     def later(self, work: Callable[[], Any]) -> DaemonCall:
-        """Begin any work that waits for the daemon."""
+        """Queue any work that waits for the daemon; return it as a call."""
         call = DaemonCall(work)
         if not self._thread.started:
             self._thread.start()
@@ -96,7 +96,8 @@ class DaemonApi:
         return call
 
     def request(self, method: str, path: str, body: Any = None, patience: float = PATIENCE) -> Any:
-        """Return the JSON data that the daemon answers.
+        """Make a request on this thread and return the JSON data of the answer, for which it waits at most `patience`
+        [s].
 
         Raises RobotLostError if it can't be reached, RobotFailedError if it refuses.
         """

@@ -1,4 +1,6 @@
-"""`lumen doctor --robot reachy`: whether the robot's daemon can be used, and what else uses the robot."""
+"""`lumen doctor --robot reachy`: checks that the robot's daemon can be used, and that no other program uses the
+robot.
+"""
 
 from collections.abc import Iterator, Mapping
 
@@ -13,7 +15,7 @@ DoctorFinding = tuple[str, str, str]
 
 
 def examine(options: Mapping[str, str]) -> Iterator[DoctorFinding]:
-    """Iterate over what is found at the address of the option `url`. Raises UsageError if it is no address."""
+    """Yield the findings about the daemon at the option `url`. Raises UsageError if that is not an address."""
     try:
         demand("reachy", "a Reachy Mini", "websockets")
     except MissingExtraError as error:

@@ -1,4 +1,6 @@
-"""The body of Reachy Mini follows its head, and the head stays within what its rods reach."""
+"""Limits that apply to Reachy Mini's joints together: its body follows its head, and the head stays where its rods
+reach.
+"""
 
 from collections.abc import Mapping
 from math import radians
@@ -12,7 +14,9 @@ FREE = radians(55)
 
 
 def possible(joints: Mapping[str, float], body: Body) -> dict[str, float]:
-    """Return the nearest positions that the robot can take [rad, m]: limits, the body behind the head, and the rods."""
+    """Return positions near `joints` that the robot can take [rad, m]: within limits, body below head, in reach of the
+    rods.
+    """
     found = {name: min(max(joints[name], body.joints[name].minimum), body.joints[name].maximum) for name in JOINTS}
     trunk, yaw = body.joints[BODY], found["head_yaw"]
     followed = min(max(found[BODY], yaw - FREE), yaw + FREE)
@@ -21,9 +25,10 @@ def possible(joints: Mapping[str, float], body: Body) -> dict[str, float]:
 
 
 def limited(goal: Mapping[str, float], last: Mapping[str, float], body: Body, dt: float) -> dict[str, float]:
-    """Return how far the joints come from `last` towards `goal` in `dt` [s] at their greatest speeds.
+    """Return the positions [rad, m] that joints reach from `last` towards `goal` in `dt` [s] at their greatest speeds.
 
-    The head waits for the slower body where its cables would end, and stays within what the rods reach.
+    The head turns at most MOST_AGAINST_BODY from the slower body, because of its cables, and stays in reach of the
+    rods.
     """
     found = {}
     for name in JOINTS:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SILENCE = 1.0
 """The time for which the daemon may send no joints [s]: it sends 40 to 50 a second, and none after a restart."""
 SECOND_LOOK = 0.25
-"""The time that Lumen waits for a message even if that time is over [s]: this process may have been busy."""
+"""The time that Lumen waits for a message even if SILENCE is over [s], because this process may have been busy."""
 OPEN_PATIENCE = 5.0
 FIRST_RETRY_DELAY, MAX_RETRY_DELAY = 0.5, 5.0
 """The times until the first try to connect again, and at most until the next [s]: each waits twice as long."""
@@ -76,13 +76,13 @@ class ReachyLink:
         self._sender.start()
 
     def send(self, target: Mapping[str, Any]) -> None:
-        """Send a target soon; one that has not gone out yet is replaced."""
+        """Send a target soon, in place of one that has not been sent yet."""
         with self._wanted:
             self._target = target
             self._wanted.notify()
 
     def keep_still(self) -> None:
-        """Forget the target that has not gone out yet."""
+        """Drop a target that has not been sent yet."""
         with self._wanted:
             self._target = None
 
@@ -127,7 +127,7 @@ class ReachyLink:
         self.up = True
 
     def _keep(self) -> None:
-        """Receive what comes, and connect again after each break."""
+        """Receive messages, and connect again whenever the connection breaks."""
         while not self._ending.is_set():
             try:
                 while not self._ending.is_set():
@@ -160,7 +160,7 @@ class ReachyLink:
         _log.warning("the robot is back, after %.0f s", away)
 
     def _receive(self, until: float) -> None:
-        """Take the next message. Raises RobotLostError if no joints came until then, or if the connection broke."""
+        """Process the next message. Raises RobotLostError if none came by `until`, or if the connection broke."""
         from websockets.exceptions import ConnectionClosed
 
         assert self._socket

@@ -1,4 +1,4 @@
-"""Where Reachy Mini's joints should be at each moment: what commands want, what aims want, and its life beside."""
+"""The target of Reachy Mini's joints at each moment, from commands, aims and lifelike movements."""
 
 from collections.abc import Collection, Mapping
 
@@ -24,7 +24,7 @@ class Mover:
         self._aims: dict[str, tuple[float, float]] = {}
 
     def stand(self, joints: Mapping[str, float]) -> None:
-        """Continue from the pose to which something else moved the robot."""
+        """Drop all aims, and continue from the pose to which something else moved the robot."""
         self.goal, self.sent = dict(joints), dict(joints)
         self._aims.clear()
 
@@ -40,7 +40,7 @@ class Mover:
     def target(self, offsets: Mapping[str, float], dt: float) -> dict[str, float] | None:
         """Return the next target, `dt` [s] after the last; None if the robot has it already.
 
-        `offsets` [rad, m] are those of its life. No joint leaves its limits or is faster than it may be.
+        `offsets` [rad, m] are those of lifelike movements. No joint exceeds its limits or its greatest speed.
         """
         for name, (angle, speed) in list(self._aims.items()):
             most = speed * self.body.joints[name].speed * dt

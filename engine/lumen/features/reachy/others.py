@@ -1,6 +1,6 @@
-"""Repeated questions to the daemon of Reachy Mini: which other program moves the robot, and the direction of speech.
+"""Detects other programs that move Reachy Mini, and the direction of speech, by polling its daemon.
 
-Programs that stream targets, as Lumen does, are found by measured poses.
+Programs that stream targets, as Lumen does, are detected by measured poses.
 """
 
 import logging
@@ -17,11 +17,11 @@ from lumen.upkeep.threads import WatchedThread
 LOOK_PERIOD = 0.4
 """The period in which Lumen asks the daemon for its moves [s]."""
 STRAY_ANGLE, STRAY_PLACE = radians(14), 0.014
-"""The distance of the head from all that Lumen sent lately if something else moves it [rad], [m]."""
+"""A head farther than this from all targets that Lumen sent lately is moved by something else [rad], [m]."""
 LATELY = 0.5
-"""The time until a sent target has to be measured [s]."""
+"""The time in which the head may be at a sent target [s]."""
 STRAYS, STRAY_TIME = 6, 1.0
-"""So many strange measurements within that time [s] are no accident."""
+"""The number of such measurements within that time [s] that shows that something else moves the head."""
 STILL_ANGLE, STILL_PLACE, STILL_TIME = radians(1.5), 0.002, 2.0
 """The head has been left alone if it moved by less than this [rad], [m] for so long [s]."""
 
@@ -29,7 +29,7 @@ _log = logging.getLogger(__name__)
 
 
 class DaemonMoves:
-    """The moves that the daemon runs, and the sounds that it heard; a thread asks for them.
+    """The moves that the daemon runs, and the sounds that it located; a thread polls them.
 
     `ours` are the moves that Lumen began.
     """
@@ -52,11 +52,11 @@ class DaemonMoves:
         return not self._running <= self.ours
 
     def sounds(self) -> list[float]:
-        """Return the angle of speech, to the left of the head's front, [rad] since the last call."""
+        """Return the directions of speech since the last call: angles to the left of the head's front [rad]."""
         return [self._sounds.popleft() for _ in range(len(self._sounds))]
 
     def now(self) -> list[str]:
-        """Ask the daemon which moves run. Raises RobotError if it does not answer."""
+        """Return the ids of the moves that the daemon runs now. Raises RobotError if it does not answer."""
         running = self._api.request("GET", "/api/move/running", patience=2.0)
         return [str(move.get("uuid")) for move in running if isinstance(move, dict)]
 
@@ -96,7 +96,7 @@ class Strays:
             self._sent.popleft()
 
     def forget(self) -> None:
-        """Forget all measurements: Lumen begins to stream, or has stopped."""
+        """Forget all targets and measurements, because Lumen begins to send targets or has stopped."""
         self._sent.clear()
         self._strange.clear()
         self._still, self.taken = None, False

@@ -1,4 +1,4 @@
-"""Where Reachy Mini's joints are, and the messages of its daemon that say the same."""
+"""Converts positions of Reachy Mini's joints to messages of its daemon, and back."""
 
 from collections.abc import Mapping, Sequence
 from math import asin, atan2, cos, hypot, sin
@@ -28,7 +28,7 @@ def rotation(roll: float, pitch: float, yaw: float) -> Matrix3:
 def target_message(joints: Mapping[str, float]) -> dict[str, Any]:
     """Return the daemon's `set_full_target` for the positions of all joints [rad, m].
 
-    `head` is the pose of the head against the base, a matrix of 4 x 4 row by row; `antennas` are right, left.
+    `head` is the pose of the head relative to the base, a 4 x 4 matrix row by row; `antennas` are right, left.
     """
     x, y, z, roll, pitch, yaw = (joints[name] for name in HEAD)
     rows = zip(rotation(roll, pitch, yaw), (x, y, z), strict=True)
@@ -38,7 +38,9 @@ def target_message(joints: Mapping[str, float]) -> dict[str, Any]:
 
 
 def head_joints(pose: Sequence[Sequence[float]]) -> dict[str, float]:
-    """Return the joints of the head [rad, m] in a pose of 4 x 4. Raises ValueError or TypeError for other data."""
+    """Return the joints of the head [rad, m] in a pose, a 4 x 4 matrix. Raises ValueError or TypeError for other
+    data.
+    """
     (r00, _, _, x), (r10, _, _, y), (r20, r21, r22, z), _ = (tuple(map(float, row)) for row in pose)
     roll, pitch, yaw = atan2(r21, r22), asin(min(max(-r20, -1.0), 1.0)), atan2(r10, r00)
     return dict(zip(HEAD, (x, y, z, roll, pitch, yaw), strict=True))
@@ -56,7 +58,7 @@ def lies(joints: Mapping[str, float]) -> bool:
 
 
 def distance(joints: Mapping[str, float], others: Mapping[str, float]) -> tuple[float, float]:
-    """Return how far two heads with bodies are apart: the greatest of their angles [rad], and their place [m].
+    """Return how far two poses of head and body differ: in their angles at most [rad], and in the head's place [m].
 
     Antennas are left out: they swing.
     """

@@ -37,7 +37,7 @@ class Shortage(NamedTuple):
 
 
 def shortest(goal: Mapping[str, float], near: Mapping[str, float], time: float = 0.0) -> Shortage | None:
-    """Return the joint of the head that is the shortest of its goal; None if all are there."""
+    """Return the joint of the head that `near` leaves farthest from its goal; None if each is near enough."""
     worst = max((Shortage(name, goal[name], near[name], time) for name in HEAD), key=lambda short: short.share)
     return worst if worst.share > 1.0 else None
 
@@ -45,7 +45,7 @@ def shortest(goal: Mapping[str, float], near: Mapping[str, float], time: float =
 def worst_of(motion: MotionDefinition, body: Body) -> Shortage | None:
     """Return the pose of a motion that falls short the most; None if the robot reaches all of it.
 
-    Joints that it does not move are where the robot stands.
+    Joints that it does not move are as in the posture Stand.
     """
     course, stand = Trajectory(motion), {name: body.postures["Stand"][name] for name in JOINTS}
     found = []

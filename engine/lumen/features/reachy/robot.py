@@ -1,4 +1,4 @@
-"""Reachy Mini behind the `Robot` seam."""
+"""Reachy Mini behind the `Robot` interface."""
 
 import logging
 import time
@@ -27,7 +27,7 @@ from lumen.robot.life_layer import LifeLayer
 from lumen.robot.skill_runner import SkillRunner
 
 LONGEST_TICK = 0.1
-"""Of a longer pause between two ticks only so much counts for speeds [s]: no joint catches up at once."""
+"""The longest time between two ticks that counts for speeds [s], so that no joint jumps after a pause."""
 WAKE_AGAIN = "reachy wakes again"
 """The id of the command that wakes the robot after its daemon was lost; its answer is `robot.back`."""
 
@@ -35,13 +35,13 @@ _log = logging.getLogger(__name__)
 
 
 class ReachyRobot(ExecutingRobot):
-    """The Reachy Mini whose daemon is at `url`, in real time: `clock` [s] stamps what it answers and notices.
+    """The Reachy Mini whose daemon is at `url`, in real time: `clock` returns the time of its answers and events [s].
 
     `voice` is the row of `voices` that it speaks with, or `none`; sound files are in `root`. If the connection breaks,
-    all commands have failed and `robot.lost` is noticed; after it was made again the robot is woken if it was awake,
-    and `robot.back` is noticed. While another program moves the robot, nothing is sent and commands that move it are
-    refused; `robot.busy` is noticed when that begins, `robot.free` when it has ended. Raises RobotError if there is no
-    robot, UsageError if `url` is no address or there is no such voice.
+    all commands fail and `robot.lost` is raised; once it is restored, the robot is woken if it was awake, and
+    `robot.back` is raised. While another program moves the robot, nothing is sent and commands that move it are
+    refused; `robot.busy` is raised when that begins, `robot.free` when it has ended. Raises RobotError if there is no
+    robot, UsageError if `url` is not an address or there is no such voice.
     """
 
     def __init__(
@@ -124,7 +124,7 @@ class ReachyRobot(ExecutingRobot):
         take_over(self._api, self.body)
 
     def _find_awake(self) -> None:
-        """A robot whose motors are on, and whose head does not lie, was woken before."""
+        """Note whether the robot was woken before: then its motors are on, and its head does not lie."""
         joints = self._link.measured.joints
         mode = self._api.request("GET", "/api/motors/status").get("mode")
         self._mover.awake = mode == "enabled" and not lies(joints)
@@ -150,7 +150,7 @@ class ReachyRobot(ExecutingRobot):
         return not self._executor.owner(self._part.get(joint, ""))
 
     def _notice_link(self, now: float) -> None:
-        """Let everything fail that runs while the robot is lost, and wake the robot once it is back."""
+        """Fail all commands when the robot is lost, and wake the robot once it is back."""
         for name, seconds, reason in self._link.changes():
             self._strays.forget()
             if name == "robot.lost":
@@ -206,7 +206,7 @@ class ReachyRobot(ExecutingRobot):
         return f"something else moves the robot{app}: another program that sends targets, or a hand"
 
     def _move(self, now: float, dt: float) -> None:
-        """Send where the joints should be next."""
+        """Send the joints' next target, unless the robot rests, is lost, or is moved by something else."""
         if not (self._mover.awake and self._link.up) or self._yields:
             self._life.still()
             return

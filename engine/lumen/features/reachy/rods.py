@@ -1,4 +1,4 @@
-"""Which poses of Reachy Mini's head its six rods reach: the inverse kinematics of a Stewart platform.
+"""The poses of Reachy Mini's head that its six rods reach: the inverse kinematics of a Stewart platform.
 
 Each rod leads from the tip of a motor's arm to the platform beneath the head. The lengths and places are those of the
 `kinematics_data.json` and of the motors' limits in `reachy-mini` 1.13.0 (Pollen Robotics, Apache-2.0), written down as
@@ -15,7 +15,7 @@ from lumen.language.robots import Body
 ARM, ROD = 0.04, 0.085
 """The lengths of a motor's arm and of a rod [m]."""
 HEIGHT = 0.177
-"""How high the platform is above the table where the position of the head is 0 [m]."""
+"""The height of the platform above the table if the position of the head is 0 [m]."""
 MOST_AGAINST_BODY = radians(65)
 """The greatest angle between head and body [rad]."""
 STEPS = 12
@@ -23,7 +23,9 @@ STEPS = 12
 
 
 class Motor(NamedTuple):
-    """A motor: its place [m] and the direction of its arm at 0, which is level, in the body's frame; `up` is its other.
+    """A motor in the body's frame: its place [m], and the level direction of its arm at angle 0.
+
+    At a quarter turn the arm points up if `up` is 1, down if it is -1.
 
     `joint` is where its rod holds the platform [m], in the platform's frame. `elbow` chooses which of two angles is
     meant. `limits` are those of its angle [rad].
@@ -51,7 +53,7 @@ MOTORS = (
 def motor_angles(head: Mapping[str, float], body: float) -> tuple[float | None, ...]:
     """Return the angle of each motor [rad] for a pose of the head, with the body at `body` [rad].
 
-    A motor whose rod is too short has None. The limits of the motors are ignored.
+    It is None for a motor whose rod can't span the distance. The limits of the motors are ignored.
     """
     x, y, z, roll, pitch, yaw = (head[name] for name in HEAD)
     turned = rotation(roll, pitch, yaw - body)
@@ -81,7 +83,7 @@ def reaches(head: Mapping[str, float], body: float) -> bool:
 
 
 def within_reach(joints: Mapping[str, float]) -> dict[str, float]:
-    """Return the joints with the head as far on its way from its zero pose as the rods reach.
+    """Return the joints with the head as far from its zero pose towards its pose as the rods reach.
 
     Its yaw is kept. The joints are the same if they are within reach.
     """

@@ -1,4 +1,4 @@
-"""Reachy Mini with its clock."""
+"""Sets up a Reachy Mini."""
 
 from pathlib import Path
 
@@ -15,10 +15,10 @@ class TypedVisitors:
     """A `Hall` in which visitors are real: a person who types is heard, and seen only if a visual module sees them."""
 
     def place(self, visitor: Visitor | None) -> None:
-        """They stand wherever they stand."""
+        """Do nothing: real visitors place themselves."""
 
     def face(self) -> tuple[float, float] | None:
-        """Return None: a module sees faces, and not the hall."""
+        """Return None: only a visual module sees faces."""
         return None
 
 

@@ -25,11 +25,11 @@ from lumen.robot.cues import CueNotifier, EventSink
 from lumen.robot.joint_ways import APPROACH_TIME, LOOK_SPEED, begun_from, home_angles, way_duration
 
 TOLERANCE, PLACE_TOLERANCE = radians(6), 0.006
-"""A head that is nearer than this to its goal has arrived [rad], [m]; it hangs by up to 4 degrees."""
+"""A head that is nearer than this to its goal has arrived [rad], [m]; it sags by up to 4 degrees."""
 LYING_TOLERANCE, LYING_PLACE_TOLERANCE = radians(2.5), 0.003
 """The same for a head that lies down [rad], [m]: it is let go there."""
 GRACE = 1.5
-"""The time that the head may take beyond its way [s]."""
+"""The time that the head may take beyond its planned duration [s]."""
 LEAST_WAY = 0.4
 """The time that a posture takes at least [s]."""
 LOOK_PERIOD = 0.1
@@ -41,7 +41,7 @@ FOREIGN_PATIENCE = 8.0
 
 
 class ReachySkills:
-    """Begins activities. `measured` returns the joints as they were measured last, `notice` takes events."""
+    """Begins activities. `measured` returns the joints as they were measured last, `notice` receives events."""
 
     def __init__(
         self,
@@ -92,14 +92,16 @@ class ReachySkills:
                 assert_never(command)
 
     def _look(self, turned: Mapping[str, float]) -> Steps:
-        """Turn the head, and let the rest of it return to how the robot stands."""
+        """Turn the head, and return its other joints to the posture Stand."""
         stand = self._body.postures["Stand"]
         target = {**{name: stand[name] for name in HEAD}, **turned}
         way = max(abs(angle - self._mover.goal[name]) for name, angle in turned.items())
         yield from self._go(target, 1.0, way / LOOK_SPEED, "where it should look")
 
     def _go(self, target: Mapping[str, float], speed: float, least: float, where: str) -> Steps:
-        """Go there smoothly. Raises RobotFailedError if the rods, or something else, keep the robot from it."""
+        """Move the joints smoothly to `target`. Raises RobotFailedError if the rods, or an obstacle, keep the head from
+        it.
+        """
         goal, start = self._mover.goal, dict(self._mover.goal)
         way = {name: angle - start[name] for name, angle in target.items()}
         takes = max(way_duration(way, self._body, least) / speed, 1e-3)
@@ -191,7 +193,8 @@ class ReachySkills:
     def _daemon_move(
         self, name: str, enough: Callable[[], bool] = lambda: False, *, stops_others: bool = False
     ) -> Steps:
-        """Have the daemon play a move until its end, or until it is `enough`; stop the move if no command waits for it.
+        """Have the daemon play a move until its end, or until `enough` is true; stop the move if no command waits for
+        it.
 
         Moves that Lumen began earlier are stopped first, and with `stops_others` those of other programs, too.
         """

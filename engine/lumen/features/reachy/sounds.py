@@ -19,7 +19,7 @@ from lumen.run.sound import Sound
 from lumen.upkeep.ratelimit import OnceLog
 
 MUTE = "none"
-"""The name of no voice: texts take their time, and are on the bus for a module that speaks."""
+"""The voice of a silent robot: a text takes as long as its speech would, and a module on the bus can speak it."""
 _log = logging.getLogger(__name__)
 
 
@@ -50,12 +50,12 @@ class RobotSounds:
         self._warnings = OnceLog(_log)
 
     def renew(self) -> None:
-        """The daemon may be another one now."""
+        """Forget what the daemon has and can do, because another one may answer now."""
         self._has_media = None
         self._uploaded.clear()
 
     def speech(self, text: str, language: str) -> LoadedSound:
-        """Return a text as sound; silent if it can't be had, which is logged once. Raises RobotError."""
+        """Return a text as a sound; silent if it can't be synthesized, which is logged once. Raises RobotError."""
         silent = LoadedSound(speech_duration(text))
         if self._voice is None or not text.strip() or not self._media():
             return silent
