@@ -1,5 +1,5 @@
-"""Lifelike movements of a real NAO: head and arms by `ALMotion.setAngles`, its eyes, and NAOqi's own if the style
-asks.
+"""Lifelike movements of a real NAO: head and arms by `ALMotion.setAngles`, its eyes, and NAOqi's own if the style has
+them.
 """
 
 from collections.abc import Callable, Collection, Mapping

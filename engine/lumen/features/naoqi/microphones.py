@@ -1,4 +1,4 @@
-"""The robot's microphones: NAOqi sends their sound to a service of ours until there is enough."""
+"""The robot's microphones: NAOqi sends their sound to a service of Lumen's until the recording is complete."""
 
 from collections.abc import Callable
 from typing import Any
@@ -32,7 +32,9 @@ class Microphones:
         return CallSequence(self._listen(command), self._hush)
 
     def _listen(self, command: Record) -> CallSteps:
-        """Record: NAOqi calls `processRemote` of our service about six times a second; earlier sound is discarded."""
+        """Record: NAOqi calls `processRemote` of Lumen's service about six times a second; earlier sound is
+        discarded.
+        """
         yield self._session.serve(MICROPHONE_SERVICE, self._service)
         yield self._session.post(
             AUDIO_DEVICE, "setClientPreferences", MICROPHONE_SERVICE, RECORDING_RATE, FRONT_MICROPHONE, INTERLEAVED

@@ -37,7 +37,7 @@ class CuePlayer:
 
 
 START_POSTURE_TOLERANCE = 0.1
-"""Joints nearer than this to the motion's starting posture need no way there [rad]."""
+"""Joints nearer than this to the motion's starting posture are not moved there first [rad]."""
 
 
 class MotionPlayer:

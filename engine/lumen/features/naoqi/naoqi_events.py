@@ -27,7 +27,7 @@ MOTOR_HOT, MOTOR_COOLED = 75.0, 70.0
 """The temperatures [degrees Celsius] at which it raises `motors.hot`, and may raise it again."""
 
 EVENT_SETTLE_TIME = 0.3
-"""A sensor's reading overrules an event if it is so much newer [s]."""
+"""A sensor's reading overrides an event if it is newer by more than this [s]."""
 
 _log = logging.getLogger(__name__)
 

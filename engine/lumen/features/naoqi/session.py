@@ -174,8 +174,10 @@ class NaoqiSession:
         return self._serving[name]
 
     def request(self, service: str, method: str, *arguments: Any, patience: float = 0.0) -> Any:
-        """Call a method and return NAOqi's answer; only for threads that may wait, at most `patience` [s] if that is
-        longer.
+        """Call a method, wait for NAOqi's answer and return it; the wait is at most the longer of `patience` and the
+        session's [s].
+
+        Only for threads that may wait.
 
         Raises RobotError; a silent robot counts as lost.
         """

@@ -30,7 +30,7 @@ class AskedChannel:
         return lambda *args, **kwargs: self._request(getattr(self._channel, name), *args, **kwargs)
 
     def send(self, exchange: str, key: str, properties: Any) -> None:
-        """Send an empty message; if the broker refuses it, the next question raises."""
+        """Send an empty message; if the broker refuses it, the next request raises."""
         self._channel.basic_publish(exchange, key, b"", properties)
 
     def close(self) -> None:

@@ -60,7 +60,7 @@ class Dispatcher:
         return self._thread.current
 
     def expect(self, marks: set[str]) -> threading.Event:
-        """Return an event that is set when messages with all of these bodies as marks have arrived."""
+        """Return an event that is set once a mark (FLUSH_MARK) with each of these bodies has arrived."""
         self._marks = marks
         if not marks:
             self._marked.set()

@@ -14,7 +14,7 @@ from lumen.upkeep.drops import DropLog
 MAX_PENDING_MESSAGES = 50_000
 """The number of waiting messages that may be lost; beyond it the oldest are dropped."""
 MAX_PENDING_BYTES = 64 * 1024 * 1024
-"""The total size of the bodies of either kind [bytes]."""
+"""The total size of waiting bodies [bytes], separately for messages that must arrive and those that may be lost."""
 MAX_PENDING_RELIABLE = 10_000
 """The number of waiting messages that must arrive; beyond it `put` raises."""
 LATE = "they were too old before they could be sent"

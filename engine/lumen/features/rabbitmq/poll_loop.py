@@ -33,7 +33,7 @@ class PollLoop(AbstractSelectorIOLoop):  # type: ignore[misc]  # pika is not typ
         self.add_handler(self._hearing.fileno(), self._heard, EVENT_READ)
 
     def wait(self, seconds: float) -> Events:
-        """Return the events of at most so many seconds, at once if a callback is pending; nothing is changed."""
+        """Wait at most so many seconds for events, or not at all if a callback is pending; return them, unhandled."""
         if self._callbacks:
             seconds = 0.0
         elif self._timers:

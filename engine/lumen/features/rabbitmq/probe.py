@@ -88,7 +88,7 @@ class BrokerProbe:
         return ""
 
     def served(self, key: str, route: Route) -> QueueStatus:
-        """Return how many messages and consumers the queue of a route has whose messages must arrive."""
+        """Return the numbers of messages and consumers in the queue of a route whose messages must arrive."""
         try:
             with self._asking() as channel:
                 found = channel.queue_declare(queue_of(key, route).name, passive=True).method
@@ -122,7 +122,7 @@ class BrokerProbe:
 
     @contextmanager
     def _asking(self) -> Iterator[AskedChannel]:
-        """Open a separate channel for questions. Raises ChannelClosedByBroker if the broker refuses, else BusError."""
+        """Open a separate channel for requests. Raises ChannelClosedByBroker if the broker refuses, else BusError."""
         with self._explained(), self._connection.asking() as channel:
             try:
                 yield channel

@@ -107,7 +107,9 @@ def queue_of(key: str, route: Route | None, number: int = 0, exchange: str = EXC
 
 
 def journal_of(key: str) -> Queue:
-    """Return the stream of an outgoing journal: a month or a gigabyte, which each module continues to read."""
+    """Return the stream of an outgoing journal, of at most a month and a gigabyte; each module reads on where it
+    ended.
+    """
     arguments = {"x-queue-type": "stream", "x-max-age": "30D", "x-max-length-bytes": MAX_JOURNAL_BYTES}
     return Queue(key, _name(f"lumen.journal.{key}"), arguments=arguments)
 

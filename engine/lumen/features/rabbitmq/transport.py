@@ -75,7 +75,7 @@ class Transport:
         )
 
     def close(self, deadline: float) -> None:
-        """Send what waits, and receive what of it is for us, until the deadline [s, monotonic]."""
+        """Send waiting messages, and receive those that are for this process, until the deadline [s, monotonic]."""
         if not self.dispatcher.inside and not self.publisher.blocked:
             self._flush(deadline)
 

@@ -1,4 +1,4 @@
-"""Chooses the OpenGL library for drawing without a screen when imported, best before mujoco is."""
+"""When imported, chooses the OpenGL library for drawing without a screen; import it before mujoco if possible."""
 
 import ctypes
 import importlib
@@ -52,7 +52,7 @@ def _settle() -> tuple[str, str]:
 
 
 def _fault(backend: str) -> str:
-    """The reason why mujoco and dm_control can't be imported with that backend; empty if not installed, or none."""
+    """Return why mujoco and dm_control can't be imported with that backend; empty if they can, or are not installed."""
     screen = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY") or sys.platform != "linux"
     if backend in _WITH_SCREEN and not screen:
         return f"MUJOCO_GL={backend} draws on a screen, but this machine has none: {_REMEDY}"

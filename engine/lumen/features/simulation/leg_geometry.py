@@ -144,7 +144,7 @@ class _LegReader:
         return all(carries(one, other) for one, other in pairwise(order))
 
     def _knee(self, name: str) -> float:
-        """Return the middle of the knee's range [rad]; its sign is the direction in which the knee bends."""
+        """Return the sum of the knee's limits [rad]; its sign is the direction in which the knee bends."""
         joint = self._body.joints[name]
         return joint.maximum + joint.minimum
 

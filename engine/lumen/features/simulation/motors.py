@@ -113,11 +113,15 @@ class Motors:
         return f"{unit} " if unit else ""
 
     def lag(self, name: str) -> float:
-        """The distance from the joint's goal to the angle that was sent to its servo in the last period [rad]."""
+        """Return the distance from the joint's goal to the angle that was sent to its servo in the last period
+        [rad].
+        """
         return self._short.item(self.index[name])
 
     def held_back(self, name: str) -> float:
-        """The distance of a joint from the angle sent to its servo [rad]: it is obstructed, or too weak."""
+        """Return the distance of a joint from the angle sent to its servo [rad]: if it is large, the joint is blocked
+        or too weak.
+        """
         i = self.index[name]
         return abs(self._world.angles.item(i) - self.command.item(i))
 

@@ -1,4 +1,4 @@
-"""Changes of posture along ways that do not fall, down to the floor and up again."""
+"""Changes of posture along paths on which the robot does not fall, down to the floor and up again."""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass

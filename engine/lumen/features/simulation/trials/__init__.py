@@ -1,4 +1,4 @@
-"""Motions in simulation: what the robot, and others much like it, come to when they play them.
+"""Plays motions in simulation, on the robot and on slightly different variants, and judges the outcomes.
 
-Who calls hands over a robot that stands and waits. Nothing here knows how it is simulated.
+`trial.py` receives a robot that stands and waits, and does not depend on how it is simulated.
 """

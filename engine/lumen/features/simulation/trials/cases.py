@@ -17,7 +17,7 @@ FIRST_POSTURE = "Stand"
 """The posture in which a robot begins."""
 
 LIVED = 20.0
-"""The time that a robot lives in a style [s]: several periods of its sways."""
+"""The time for which a style of life is played [s]: several periods of its sways."""
 
 Before = tuple[RobotCommand, ...]
 

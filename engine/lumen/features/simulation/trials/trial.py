@@ -176,17 +176,17 @@ def _most(found: dict[str, TimedAmount], what: str, at: float, value: float) -> 
 
 @dataclass(frozen=True)
 class CaseResult:
-    """A case, and what came of it with each robot, the first of them as the model describes it."""
+    """A case and its outcome with each robot; the first robot is as its model describes it."""
 
     case: Case
     outcomes: Sequence[Outcome]
 
     @property
     def tried(self) -> Sequence[Outcome]:
-        """Those that came to the motion's beginning."""
+        """The outcomes of robots that reached the motion's beginning."""
         return [outcome for outcome in self.outcomes if outcome.answer]
 
     def succeeded(self, outcome: Outcome) -> bool:
-        """Whether the robot came to the end of it, and a passage at its first attempt."""
+        """Return whether the robot reached the end of the motion, that of a passage at its first attempt."""
         late = self.case.passage and outcome.at > self.case.motion.duration + RETRIED_AFTER
         return outcome.answer == DONE and not late
