@@ -112,7 +112,7 @@ def _performed(said: Any, data: Mapping[str, Any], report: DocumentReport) -> Sk
 
 
 def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report: DocumentReport) -> Mapping[str, Any]:
-    """The JSON Schema under `in` or `out`, empty (and reported) if it can't be that of a verb."""
+    """Return the JSON Schema under `in` or `out`; empty (and report it) if it can't be that of a verb."""
     if not isinstance(schema := data.get(key), Mapping):
         return {}
     plain: dict[str, Any] = _with_texts(schema, languages)
@@ -142,7 +142,7 @@ def _schema(data: Mapping[str, Any], key: str, languages: Sequence[str], report:
 
 
 def _typed(schema: Any) -> Any:
-    """The schema of a property with the type that its `enum` implies if that contains texts only."""
+    """Return the schema of a property, with the type `string` if its `enum` contains only texts."""
     values = schema.get("enum") if isinstance(schema, Mapping) and "type" not in schema else None
     return {"type": "string", **schema} if values and all(isinstance(value, str) for value in values) else schema
 
@@ -152,7 +152,7 @@ def _has_default(schema: Any) -> bool:
 
 
 def _is_clear(schema: Mapping[str, Any]) -> bool:
-    """Whether a default certainly fits its schema; to check a whole schema costs more than the rest of a manifest."""
+    """Return whether a default certainly fits its schema: a complete check takes longer than the rest of a manifest."""
     default, kind, values = schema["default"], schema.get("type"), schema.get("enum")
     known = schema.keys() <= {"type", "enum", "default", "description", "format"}
     typed = isinstance(kind, str) and type(default) in _TYPES.get(kind, ())
@@ -179,7 +179,7 @@ def _check_default(schema: Mapping[str, Any], where: NodePath, report: DocumentR
 
 
 def _unusable(schema: Any, path: NodePath = ()) -> Iterator[NodePath]:
-    """Iterate over the paths of keywords that can't be used in a schema within another one."""
+    """Yield the paths of keywords that can't be used in a schema within another one."""
     if isinstance(schema, Mapping):
         for key, inner in schema.items():
             if key in _UNUSABLE and path[-1:] != ("properties",):
@@ -192,7 +192,7 @@ def _unusable(schema: Any, path: NodePath = ()) -> Iterator[NodePath]:
 
 
 def _check_takes(row: VerbRow, report: DocumentReport) -> None:
-    """Report `takes` if it is no duration, or if its expressions use something else than arguments."""
+    """Report `takes` if it is not a duration, or if its expressions use anything but arguments."""
     properties = row.arguments.get("properties", {})
     sources = [part.source for part in split_template(row.takes) if not isinstance(part, str)]
     if fault := takes_fault(row):
@@ -215,7 +215,7 @@ def _check_takes(row: VerbRow, report: DocumentReport) -> None:
 
 
 def _with_texts(schema: Any, languages: Sequence[str]) -> Any:
-    """The schema with each description in one language."""
+    """Return the schema with each description in one language."""
     if isinstance(schema, list):
         return [_with_texts(inner, languages) for inner in schema]
     if not isinstance(schema, Mapping):
@@ -232,7 +232,7 @@ def _with_texts(schema: Any, languages: Sequence[str]) -> Any:
 
 
 def _text(said: Any, languages: Sequence[str]) -> str:
-    """The text in the first language in which there is one."""
+    """Return the text in the first of these languages that it has, else in its own first."""
     if not isinstance(said, Mapping):
         return str(said)
     return str(next((said[language] for language in languages if language in said), next(iter(said.values()))))

@@ -1,4 +1,4 @@
-"""A call of a skill that a module performs: a program on the bus, maybe of another machine."""
+"""A call of a skill that a module performs: a program on the bus, possibly on another machine."""
 
 import threading
 import time
@@ -20,7 +20,7 @@ MAX_UNREAD_ANSWERS = 1_000
 
 
 class ModuleAnswers:
-    """Hears what modules answer to the calls of one robot, from the first call of a module on."""
+    """Receives modules' answers to the calls of one robot, from the first call of a module on."""
 
     def __init__(self, project: Project, bus: Bus) -> None:
         self._key, self._bus = key_of_robot(SKILL_ANSWER, project.robot), bus
@@ -112,7 +112,7 @@ class ModuleCall:
             return self._changed.wait_for(lambda: self._over, timeout)
 
     def kill(self, reason: str) -> None:
-        """Give the call up: a program on another machine can't be ended."""
+        """Cancel the call and give it up, because a program on another machine can't be killed."""
         self.ended = reason
         with suppress(RobotFailedError):
             self.order(cancel=True)

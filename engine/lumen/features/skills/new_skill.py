@@ -54,7 +54,7 @@ never: [failed]
 def write_skill(root: Path, name: str) -> list[str]:
     """Write the files of a skill into a project; return their paths in it.
 
-    Raises UsageError if the skill can't have that name, or if one of the files is there already.
+    Raises UsageError if the skill can't have that name, or if one of the files exists already.
     """
     if is_built_in(name) or name in usable_verbs() or name == "if":
         raise UsageError(f"there is a verb `{name}` already: give the skill another name")

@@ -16,7 +16,7 @@ from lumen.run.services import Services
 from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.5
-"""The pause between two looks at the code of skills [s]."""
+"""The time between two checks of the code of skills [s]."""
 TROUBLE_ROUTE, TROUBLE_TTL = "trouble", 10.0
 FAILED = "error.execution"
 REAL_SKILLS = "real_skills"
@@ -45,7 +45,7 @@ class SkillsPart(Part):
 
     @property
     def said(self) -> Mapping[str, Any]:
-        """The hashes of the code of skills: whether two houses have the same."""
+        """The hashes of the code of skills, by which the code of two houses can be compared."""
         hashes = self.workshop.hashes
         return {"skills": hashes} if hashes else {}
 
@@ -58,7 +58,7 @@ class SkillsPart(Part):
         self._look_after(project)
 
     def _look_after(self, project: Project) -> None:
-        """Begin to look after code, in a project that has skills."""
+        """Start to watch the code of skills, if the project has any and the part has begun."""
         if self._begun and project.verbs and not self._thread.started:
             self._thread.start()
 
@@ -69,13 +69,13 @@ class SkillsPart(Part):
             self._thread.join(1.0)
 
     def _look(self) -> None:
-        """Look after the code of skills until the end."""
+        """Check the code of skills for changes until the part closes."""
         while not self._ending.is_set():
             self.workshop.look()
             self._ending.wait(LOOK_PERIOD)
 
     def _failed(self, skill: str, reason: str) -> None:
-        """Let the behaviour hear of it, beside the `onError` of a `do` that waited for it."""
+        """Raise an event about a failed call, in addition to the `onError` of a `do` that waited for it."""
         self._happen(Event(FAILED, {"skill": skill, "reason": reason}))
 
     def _report(self, skill: str, text: str) -> None:
@@ -88,7 +88,7 @@ class SkillsPart(Part):
 
 
 def skills(services: Services) -> SkillsPart | None:
-    """Make the part; None in a story and on a recording robot, which pretend what skills do."""
+    """Make the part; None in a story and on a recording robot, which run no code of skills without REAL_SKILLS."""
     plan = services.plan
     hall = services.setup.hall
     pretends = plan.story is not None or (isinstance(hall, PretendsSkills) and hall.runs_no_skills)

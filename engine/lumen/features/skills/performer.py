@@ -1,4 +1,6 @@
-"""The performer of skills: passes a call to a program, and what it asks for meanwhile to the robot and the bus."""
+"""The performer of skills: passes a call to a program, and the program's requests during the call to the robot and the
+bus.
+"""
 
 from collections.abc import Callable, Mapping
 from math import inf
@@ -20,11 +22,11 @@ from lumen.robot.robot_routes import COMMAND_ROUTE, publish_on
 from lumen.run.sending import send
 
 LOOK = 0.25
-"""The pause between two looks at the memory that a program uses [s]."""
+"""The time between two checks of the memory that a program uses [s]."""
 MAX_TEXT = 1_000
-"""The characters of a text that a program has the robot say, and of its messages."""
+"""The most characters of a text that a program makes the robot say, and of its messages."""
 MAX_REQUESTS = 200
-"""The texts and messages that a program may have sent during a call."""
+"""The most texts and messages that a program may send during a call."""
 
 
 def perform(call: SkillCall) -> Mapping[str, Any]:
@@ -66,7 +68,9 @@ class _Performance:
         return {}
 
     def _heard(self, message: Mapping[str, Any]) -> Mapping[str, Any] | None:
-        """Do what a message asks for; return the result if it is the last one. Raises RobotFailedError."""
+        """Carry out a message of the program; return the result, None if the call continues. Raises
+        RobotFailedError.
+        """
         skill, tell = self._call.skill, self._workshop.tell
         match message:
             case {"result": dict() as result}:
@@ -125,7 +129,7 @@ class _Performance:
             self._killed(f"it did not end within {GRACE * 1_000:.0f} ms of its cancel")
 
     def _killed(self, reason: str) -> str:
-        """Kill the program; return what is reported of it."""
+        """Kill the program and report that; return the reported message."""
         self._process.kill(reason)
         self._workshop.crashed(self._call.skill)
         done = "was killed" if isinstance(self._process, SkillProcess) else "is given up"

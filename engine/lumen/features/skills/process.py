@@ -36,7 +36,7 @@ HEADROOM = 4
 """The multiple of `memory` that the system lets a program reserve; what it really uses is measured."""
 
 _MARK = "LUMEN_SKILL"
-"""The environment variable by which the children of a program are found, whatever they did to get away."""
+"""The environment variable by which the children of a program are found, even outside its process group."""
 _ENDS, _NEWS = ("result", "error"), ("wait", "progress", "say", "publish", "loaded")
 
 
@@ -94,7 +94,7 @@ class SkillProcess:
         return not self.ended
 
     def begin(self, skill: str, arguments: Mapping[str, Any], wake: Callable[[], None]) -> None:
-        """Have it perform a call; `wake` is called on another thread when there are messages of it."""
+        """Have it perform a call; `wake` is called on another thread when messages of the call arrive."""
         with self._changed:
             self._call += 1
             self._messages.clear()
@@ -102,7 +102,7 @@ class SkillProcess:
         self.send({"call": self._call, "skill": skill, "arguments": dict(arguments)})
 
     def expect(self, wake: Callable[[], None]) -> None:
-        """Have `wake` called when there are messages, before the first call."""
+        """Call `wake` when messages arrive before the first call, or at once if there are any."""
         with self._changed:
             self._wake = wake
             here = bool(self._messages)
@@ -110,7 +110,7 @@ class SkillProcess:
             wake()
 
     def send(self, message: Mapping[str, Any]) -> None:
-        """Send a message; one that has ended gets none. Raises RobotFailedError if it does not read its input."""
+        """Send a message, unless the program has ended. Raises RobotFailedError if it does not read its input."""
         line = json.dumps(message, ensure_ascii=False).encode() + b"\n"
         deadline = time.monotonic() + WRITE_PATIENCE
         while line:
@@ -131,7 +131,7 @@ class SkillProcess:
         return bool(self._messages)
 
     def take(self) -> list[Mapping[str, Any]]:
-        """Return the messages of the call that came since, at last one with `result`, `error` or `ended`."""
+        """Return the call's messages since the last `take`; a final one has `result`, `error` or `ended`."""
         with self._changed:
             taken = list(self._messages)
             self._messages.clear()
@@ -144,7 +144,7 @@ class SkillProcess:
 
     @property
     def fault(self) -> str:
-        """The reason to end it now: it and its children use too much memory. Else empty."""
+        """The reason to end it now, if it and its children use too much memory; else empty."""
         if self.ended:
             return ""
         used = sum(_pages(pid) for pid in _family(self._popen.pid)) * resource.getpagesize() / self._memory
@@ -159,7 +159,7 @@ class SkillProcess:
         self.kill()
 
     def kill(self, reason: str = "") -> None:
-        """End it and all its children at once; `reason` is what `ended` says, if it has not ended before."""
+        """End it and all its children at once; `reason` becomes `ended`, unless it has ended before."""
         with self._changed:
             self.ended = self.ended or reason or "it was ended"
         with self._killing:
@@ -172,7 +172,7 @@ class SkillProcess:
                 self._popen.wait(GRACE)
 
     def _read(self) -> None:
-        """Read what it prints until it has ended; this thread waits, and costs nothing, while it prints nothing."""
+        """Read what it prints until it has ended; while it prints nothing, this thread sleeps."""
         with closing(self._stream(self._popen.stdout)) as answers, closing(self._stream(self._popen.stderr)) as prints:
             # Prints come first: what a program printed before an answer is then shown before the answer has an effect.
             takers = {prints.fileno(): _Lines(self._print), answers.fileno(): _Lines(self._line)}
@@ -185,7 +185,9 @@ class SkillProcess:
         self._put({"ended": self.ended})
 
     def _take(self, takers: "dict[int, _Lines]", timeout: float | None = None) -> None:
-        """Wait for output, at most `timeout` [s], and have it taken; a closed stream is removed from `takers`."""
+        """Wait for output, at most `timeout` [s], and pass it to its taker; a closed stream is removed from
+        `takers`.
+        """
         for stream in _ready(takers, select.POLLIN, timeout):
             content = os.read(stream, 65_536)
             self._output += len(content)
@@ -200,7 +202,7 @@ class SkillProcess:
         return stream
 
     def _exit(self) -> str:
-        """Return how a program ended that closed its standard output."""
+        """Return how the program ended, after it closed its standard output."""
         try:
             code = self._popen.wait(GRACE)
         except subprocess.TimeoutExpired:
@@ -211,7 +213,7 @@ class SkillProcess:
         return f"it ended with exit code {code}{last}"
 
     def _line(self, line: str) -> None:
-        """Take a line of its standard output: a message, or something that it prints."""
+        """Process a line of its standard output: a message, or printed text."""
         try:
             message = json.loads(line) if line.startswith("{") else None
         except (ValueError, RecursionError):
@@ -249,13 +251,13 @@ class SkillProcess:
 
 
 class _Lines:
-    """Splits what comes of a stream into lines."""
+    """Splits the content of a stream into lines."""
 
     def __init__(self, take: Callable[[str], None]) -> None:
         self._line, self._incomplete_line = take, b""
 
     def take(self, content: bytes) -> None:
-        """Take more of the stream; nothing means that it has ended."""
+        """Process more content of the stream; empty content means that the stream has ended."""
         *lines, self._incomplete_line = (self._incomplete_line + content).split(b"\n")
         if not content:
             lines, self._incomplete_line = [*lines, self._incomplete_line], b""
@@ -264,7 +266,7 @@ class _Lines:
 
 
 def _ready(streams: Iterable[int], event: int, timeout: float | None) -> list[int]:
-    """Return those that can be read or written, in their order, after at most `timeout` [s]; None waits for ever."""
+    """Wait at most `timeout` [s], or for ever, and return the streams that can be read or written, in their order."""
     poll = select.poll()
     for stream in streams:
         poll.register(stream, event)
@@ -273,7 +275,7 @@ def _ready(streams: Iterable[int], event: int, timeout: float | None) -> list[in
 
 
 def _pages(pid: int) -> int:
-    """Return the memory of a process, in pages; 0 if it has ended, or if the system does not know it."""
+    """Return the memory of a process, in pages; 0 if it has ended, or if the system does not report it."""
     try:
         return int(Path(f"/proc/{pid}/statm").read_bytes().split()[1])
     except (OSError, ValueError, IndexError):
@@ -281,7 +283,7 @@ def _pages(pid: int) -> int:
 
 
 def _family(pid: int) -> list[int]:
-    """Return a process and its children, and theirs."""
+    """Return the ids of a process and of all its descendants."""
     found, waiting = list[int](), [pid]
     while waiting:
         found.append(waiting.pop())
@@ -292,7 +294,7 @@ def _family(pid: int) -> list[int]:
 
 
 def _marked(mark: str) -> list[int]:
-    """Return the processes that have a program's mark in their environment."""
+    """Return the ids of the processes that have a program's mark in their environment."""
     wanted, found = f"{_MARK}={mark}".encode(), list[int]()
     with suppress(OSError):
         for name in os.listdir("/proc"):

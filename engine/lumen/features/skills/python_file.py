@@ -41,7 +41,7 @@ def _read(content: bytes, file: str) -> ast.Module | CodeFault:
 
 
 def code_faults(content: bytes, file: str, skill: str, arguments: Mapping[str, Any]) -> Iterator[CodeFault]:
-    """Iterate over what in a file does not fit the skill of that name; `arguments` is its schema `in`."""
+    """Yield the faults of a file as the code of the skill of that name; `arguments` is its schema `in`."""
     read = _read(content, file)
     if isinstance(read, CodeFault):
         yield read
@@ -69,7 +69,7 @@ _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 def _functions(statements: Iterable[ast.AST]) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
-    """Iterate over all functions in statements, also those in classes, branches and functions."""
+    """Yield all functions in statements, also those in classes, branches and functions."""
     for statement in statements:
         if isinstance(statement, _FUNCTIONS):
             yield statement
@@ -83,7 +83,7 @@ _BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
 
 
 def _marked(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-    """Whether a function has the decorator `@skill`, by whatever way it was imported."""
+    """Return whether a function has the decorator `@skill`, however that was imported."""
     names = {each.id for each in function.decorator_list if isinstance(each, ast.Name)}
     return "skill" in names | {each.attr for each in function.decorator_list if isinstance(each, ast.Attribute)}
 

@@ -66,7 +66,7 @@ class _Bench:
 class Workshop:
     """Lends processes to calls of the skills of a `project`.
 
-    `tell` shows a line about a skill, `report` a trouble of one, which other processes and the console show as well.
+    `tell` prints a line about a skill; `report` prints a problem, which other processes and the console show as well.
     `failed` is called with a skill and the reason why a call of it failed, on the thread of that call.
     """
 
@@ -115,7 +115,7 @@ class Workshop:
                         bench.idle.append(process)
 
     def look(self) -> None:
-        """Look whether code was changed: faults in it are reported, and the old code stays."""
+        """Check whether code was changed: faults in new code are reported, and the old code stays in use."""
         for name, bench in list(self._benches.items()):
             if bench.code and bench.skill.kind != "module":
                 self._refresh(name, bench)
@@ -127,7 +127,9 @@ class Workshop:
 
     @property
     def hashes(self) -> dict[str, str]:
-        """The hash of each skill's code, as it is used or would be at the first call; without those never looked at."""
+        """The hash of each skill's code, as calls use it or the first call would; skills whose code was not read are
+        left out.
+        """
         with self._lock:
             found = {name: bench.code or bench.seen for name, bench in self._benches.items()}
         return {name: code.hash for name, code in found.items() if code}
@@ -146,7 +148,7 @@ class Workshop:
     def lent(self, call: SkillCall) -> Iterator[SkillProcess | ModuleCall]:
         """Lend a process, or a module, to a call; a process is kept for the next one unless it has ended.
 
-        Raises RobotError if no such workshop is open.
+        Raises RobotError if the skill was removed, has too many calls, or has a program that can't be started.
         """
         name = call.skill
         match call.row.details:
@@ -186,7 +188,7 @@ class Workshop:
                 bench.again = time.monotonic() + bench.backoff.next()
 
     def worked(self, name: str) -> None:
-        """A call was performed: the next pause is the first again."""
+        """Note that a call was performed: the next pause is the shortest again."""
         with self._lock:
             if bench := self._benches.get(name):
                 bench.backoff.reset()
@@ -214,7 +216,9 @@ class Workshop:
                 raise RobotRefusedError(f"`{call.skill}` was cancelled")
 
     def _refresh(self, name: str, bench: _Bench) -> None:
-        """Use the code as it is on the disk now, unless Python can't read it."""
+        """Use the code as it is on the disk now, unless Python can't read it. Raises RobotFailedError if there is no
+        earlier code.
+        """
         skill = bench.skill
         stamp = _stamp(self._root, skill)
         if stamp == bench.refused or (bench.code and bench.code.stamp == stamp):
@@ -277,7 +281,9 @@ def _in_background(work: Callable[[], None]) -> None:
 
 
 def _files(root: Path, skill: Skill) -> list[Path]:
-    """Return the files of a program in the project: those beside a Python file can be modules that it imports."""
+    """Return the project's files in a program; those in the folder of a Python file count, because it may import
+    them.
+    """
     if skill.kind == "python":
         own = root / skill.target[0]
         return sorted({own, *own.parent.glob("*.py")})
