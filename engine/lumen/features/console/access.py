@@ -25,7 +25,7 @@ MAX_NAME = 60
 FIRST_PAUSE, LONGEST_PAUSE = 1.0, 60.0
 """The pause of an address after its first wrong PIN that counts, doubled by each further one, and its maximum [s]."""
 FREE_TRIES = 3
-"""Wrong PINs of an address without a pause: people mistype."""
+"""The wrong PINs of an address that cause no pause: people mistype."""
 ALL_TRIES, ALL_PERIOD = 20, 10.0
 """All addresses together may try this many wrong PINs at once, then one per period [s]."""
 MAX_ADDRESSES = 1_000
@@ -42,7 +42,8 @@ class TooFastError(Exception):
 
 
 class Access:
-    """Identifies people by the PINs of the roles; without any PIN each is an author, which is for loopback only.
+    """Identifies people by the PINs of the roles; without any PIN everyone is an author, which is allowed on loopback
+    only.
 
     Sessions are signed with a `secret`, so that they outlive the console; those that were ended are not accepted.
     """
@@ -65,7 +66,9 @@ class Access:
         return self._signed(cookie)
 
     def role(self, address: str, pin: str) -> Role:
-        """Return the role of a PIN, `NOBODY` for a wrong one. Raises TooFastError, before any check, if it is early."""
+        """Return the role of a PIN, `NOBODY` for a wrong one. Raises TooFastError, without checking the PIN, if it
+        comes too soon.
+        """
         self._guard.check(address)
         given, found = pin.encode("utf-8", "surrogatepass"), Role.NOBODY
         for role, wanted in self.pins.items():  # no early end: the time taken must not reveal a role

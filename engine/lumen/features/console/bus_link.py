@@ -1,4 +1,4 @@
-"""The console's connection to a bus, made again whenever it is lost, in a thread that blocks no other."""
+"""The console's connection to a bus, opened again whenever it is lost, in a thread that blocks no other."""
 
 import logging
 import threading

@@ -157,7 +157,9 @@ class Commands:
         )
 
     def _note(self, robot: str, text: str, by: str) -> None:
-        """Write into the journal who did that, for a command that does not pass through the behaviour."""
+        """Write a note with the sender's name into the journal, for a command that does not pass through the
+        behaviour.
+        """
         if bus := self._watch.link.bus:
             with suppress(BusError):
                 bus.publish(self._watch.keys.of(robot).operator, NOTE(text=text, by=by))

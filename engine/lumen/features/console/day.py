@@ -29,7 +29,9 @@ MAX_ROWS = 1_000
 
 @dataclass
 class DayVisit:
-    """One visit: its first and last position, when it was [s since 1970], and who it was, as far as that is known."""
+    """A visit: its first and last position in the journal, its beginning and end [s since 1970], the visitor's name and
+    language if known, and how many sentences were heard (`asked`) and not understood (`missed`).
+    """
 
     number: int
     first: int

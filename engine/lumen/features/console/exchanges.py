@@ -1,4 +1,4 @@
-"""Messages of the console with their results: whether the bus has them, whether a process receives them, answers."""
+"""Follows each message of the console: whether the bus has it, whether a process receives it, and its answers."""
 
 import asyncio
 import uuid

@@ -35,10 +35,11 @@ WRITING = ("POST", "PUT", "PATCH", "DELETE")
 
 
 class Gate:
-    """Refuses requests of foreign pages, rebound names and careless programs; adds headers to every answer.
+    """Refuses requests from other sites' pages, under unknown host names, or with unsuitable bodies; adds headers to
+    answers.
 
     `hosts` are names and addresses under which the console is reached, besides the address of the connection itself.
-    The addresses that `proxies` report are believed.
+    The clients' addresses that `proxies` report are trusted.
     """
 
     def __init__(self, app: ASGIApp, hosts: Iterable[str], proxies: TrustedProxies | None = None) -> None:
@@ -148,7 +149,7 @@ def _guarded(send: Send, client: tuple[str, int] | None) -> Callable[[Message], 
 
 
 def json_object(body: bytes) -> dict[str, Any]:
-    """Return the JSON object in a body. Raises ValueError if the body is no JSON, or no object."""
+    """Return the JSON object in a body. Raises ValueError if the body is anything else."""
     try:
         data = json.loads(body or b"null")
     except (ValueError, RecursionError):

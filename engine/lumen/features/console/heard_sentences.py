@@ -1,4 +1,4 @@
-"""Sentences of visitors without names, with the states that heard them and the row that matched."""
+"""Visitors' sentences, from which names are removed, with the states that heard them and the row that matched."""
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -40,7 +40,8 @@ class HeardSentence(NamedTuple):
 def heard_sentence(behavior: str, taken: ReplayedStep, text: str) -> tuple[HeardSentence, dict[str, list[str]]] | None:
     """Return a sentence as it was heard, and the keys of the rows of each of its states; None if they have no rows.
 
-    Names that the behaviours held before or afterwards are taken out of it. Guards see the context of that moment.
+    Names that the behaviours' context held before or afterwards are removed from it. Guards see the context of that
+    moment.
     """
     machine, before = taken.machine, taken.before
     if machine is None or before is None:

@@ -29,7 +29,9 @@ REPLAY_TIME = 10.0
 
 
 def day(pipe: AnswerPipe, root: Path, robot: str, wanted: str, form: str, whose: str) -> Iterator[bytes]:
-    """Answer with a day, for a page or as `csv`: from this machine's files, or from pages read here if it is `told`."""
+    """Answer with a day, for a page or as `csv`: from this machine's files, or, if `whose` is `told`, from pages in the
+    pipe.
+    """
     from lumen.features.console.day import day_csv
     from lumen.features.console.kept_days import KeptDays
 
@@ -87,7 +89,7 @@ def saying(
 
 
 def chart(pipe: AnswerPipe, root: Path, robot: str, hash: str) -> Iterator[bytes]:
-    """The chart of the behaviour that runs, as boxes and lines."""
+    """Answer with the chart of the behaviour that runs, as boxes and lines."""
     from lumen.features.console.drawn_chart import chart_of
 
     yield orjson.dumps(chart_of(root, robot, hash))

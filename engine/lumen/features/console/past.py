@@ -55,9 +55,9 @@ QUESTION_TIMEOUT = 20.0
 MAX_QUESTION = 500
 MAX_STORY_NAME = 200
 MAX_FOUND = 200
-"""Entries that a search lists; the page says if there are more."""
+"""The most entries that a search returns; the answer tells if there are more."""
 MAX_SEARCHED = 200_000
-"""Positions after the first that a search reads: several busy days."""
+"""The number of positions that a search reads: several busy days."""
 ELSEWHERE = "this robot's files are on another machine: open the console there"
 SAID = ("behavior", "state", "row", "language", "text")
 """The keys of a saying that is posted."""
@@ -152,7 +152,7 @@ class Past:
         return _as_entries(await self._between(view, *_positions(request)))
 
     async def _search(self, request: Request) -> Response:
-        """The entries between two positions whose line has a text, upper and lower case alike, in any language."""
+        """Return the entries between two positions whose line contains a text, in any case and in any language."""
         view, (first, last) = self._asked(request, Role.OPERATOR), _positions(request)
         text = " ".join(request.query_params.get("text", "").split()).casefold()
         if not 0 < len(text) <= MAX_QUESTION:
@@ -167,7 +167,7 @@ class Past:
         return _as_entries(found[:MAX_FOUND], more=len(found) > MAX_FOUND or begin > first + MAX_SEARCHED)
 
     async def _between(self, view: KnownRobot, first: int, last: int) -> list[EncodedEntry]:
-        """At least `MAX_SHOWN` entries between two positions, or all. Raises DeniedError."""
+        """Return the first entries between two positions, at least `MAX_SHOWN` or all. Raises DeniedError."""
         try:
             return await self._source.entries(view, first, last)
         except BusError as error:
@@ -187,7 +187,7 @@ class Past:
         return as_json(said)
 
     async def _chart(self, request: Request) -> Response:
-        """The chart of the behaviour that runs, by the hash of its files."""
+        """Return the chart of the behaviour that runs, by the hash of its files."""
         view = self._asked(request, Role.SHOW)
         if not self._is_ours(view):
             raise DeniedError(400, ELSEWHERE)
@@ -231,7 +231,9 @@ class Past:
         return await self._written("story", view, position, *texts)
 
     async def _written(self, job: str, view: KnownRobot, *arguments: Any) -> Response:
-        """The answer of a job that writes a file. Raises DeniedError: a refusal is a fault of the request."""
+        """Return the answer of a job that writes a file. Raises DeniedError; a job's refusal is a fault of the request
+        (400).
+        """
         try:
             saved = await self._jobs.do(job, self._home(view), *arguments)
         except DeniedError as error:
@@ -262,7 +264,7 @@ class Past:
 
 
 def _positions(request: Request) -> tuple[int, int]:
-    """The positions of the first and the last entry that are requested. Raises DeniedError."""
+    """Return the positions of the first and the last entry that are requested. Raises DeniedError."""
     first, last = (request.query_params.get(name, "") for name in ("from", "to"))
     if not (first.isdigit() and last.isdigit() and len(first + last) < 36):
         raise DeniedError(400, "`from` and `to` must be positions of entries: whole numbers")
@@ -270,7 +272,7 @@ def _positions(request: Request) -> tuple[int, int]:
 
 
 def _has(entry: Mapping[str, Any], text: str) -> bool:
-    """Whether the line of an entry has a case-folded text, in English or another language."""
+    """Return whether the line of an entry contains a case-folded text, in English or another language."""
     lines = (entry.get("text", ""), *(entry.get("texts") or {}).values())
     return any(text in str(line).casefold() for line in lines)
 

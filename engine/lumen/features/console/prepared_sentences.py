@@ -1,4 +1,4 @@
-"""Sentences that operators keep for the robot to say: of the project, for each browser that shows it.
+"""Sentences that operators keep for the robot to say; every browser that shows the project has the same.
 
 They are in the project's state folder, as `prepared_sentences.json`. An operator adds them in the middle of a day; a
 row in lumen.yaml would be a saved file, which only an author can make active.
@@ -22,7 +22,7 @@ from lumen.upkeep.own_folders import private_folder, write_private
 PREPARED_FILE = "prepared_sentences.json"
 MAX_SENTENCES = 100
 MAX_BYTES = 1 << 20
-"""Of the file; a larger one was not written here."""
+"""The largest size of the file [bytes]; a larger one was not written here."""
 
 
 class PreparedSentence(NamedTuple):

@@ -1,4 +1,4 @@
-"""The proxies before the console that it believes: the address of a request, and whether it was encrypted."""
+"""The trusted proxies in front of the console: they report the address of a request, and whether it was encrypted."""
 
 import ipaddress
 from collections.abc import Iterable, MutableMapping
@@ -20,7 +20,7 @@ def network_of(text: str) -> Network:
 class TrustedProxies:
     """Reads `X-Forwarded-For` and `X-Forwarded-Proto` of requests that come from these addresses or networks.
 
-    Anyone else may write what they like into these headers: nothing of it counts. Raises UsageError for a text that is
+    Anyone else can write anything into these headers, so they are ignored there. Raises UsageError for a text that is
     neither an address nor a network.
     """
 
@@ -58,7 +58,7 @@ class TrustedProxies:
 
 
 def _values(scope: AsgiScope, name: bytes) -> list[str]:
-    """The comma-separated values of all headers of that name, in order."""
+    """Return the comma-separated values of all headers of that name, in order."""
     said = b",".join(value for header, value in scope["headers"] if header == name).decode("latin-1")
     return [value.strip() for value in said.split(",") if value.strip()]
 

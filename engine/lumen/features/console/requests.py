@@ -30,7 +30,7 @@ class DeniedError(Exception):
 
 
 class Reception:
-    """Finds the person, the robot and the data of a request. Everything here raises DeniedError but `resting`."""
+    """Finds the person, the robot and the data of a request. Every method except `resting` raises DeniedError."""
 
     def __init__(self, watch: Watch, access: Access) -> None:
         self.watch, self.access, self._limiter = watch, access, RateLimiter()
@@ -49,7 +49,7 @@ class Reception:
         return person
 
     def resting(self, request: Request) -> Person:
-        """Return the person who lets a robot rest: no one is refused, and the request does not count."""
+        """Return the person who makes a robot rest: no one is refused, and the request does not count."""
         try:
             return self._known(request, address_of(request), bearer=False)
         except TooFastError:

@@ -15,7 +15,7 @@ _VARIABLE = re.compile(r"\$[A-Za-z_][A-Za-z0-9_]*")
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report a console that anybody could steer the robot from."""
+    """Report a console that others can use without a PIN, PINs in files, and proxies that are not addresses."""
     settings, report = draft.settings, draft.main
     if settings is None or report is None:
         return

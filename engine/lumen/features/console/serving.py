@@ -84,7 +84,7 @@ class _Server(uvicorn.Server):
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Restore the handlers without raising the captured signal again, as uvicorn does: this end is in order."""
+        """Restore the handlers, but do not raise the captured signal again as uvicorn does: this is a normal end."""
         if threading.current_thread() is not threading.main_thread():
             yield
             return

@@ -40,7 +40,7 @@ class Listener(NamedTuple):
     full: bool
     """It has a role, so it receives everything."""
     once: bool
-    """End after what is there now."""
+    """The stream ends after the events that exist now."""
 
 
 def positions_in(text: str, robot: str) -> dict[str, int]:

@@ -23,7 +23,7 @@ class BrokenFile(NamedTuple):
     """A file that is invalid YAML."""
 
     diagnostics: tuple[Diagnostic, ...]
-    """The findings about that."""
+    """The findings about its invalid YAML."""
     readable: bytes
     """A readable replacement: the repaired text, or an earlier version of the file."""
     mended: MendedText | None

@@ -60,7 +60,7 @@ def renamable(analysis: Analysis, file: str, line: int, column: int) -> NameUse 
 
 
 def rename(analysis: Analysis, use: NameUse, name: str) -> Renaming:
-    """Return what renames the thing of that use. Raises UsageError if the new name is invalid or taken.
+    """Return the renaming of the thing that a use names. Raises UsageError if the new name is invalid or taken.
 
     A state keeps an `id` that differs from its key. Errors that the renaming causes are left to `refuse_harm`.
     """
@@ -101,7 +101,7 @@ def applied(analysis: Analysis, renaming: Renaming) -> Analysis:
 
 
 def refuse_harm(before: Sequence[Diagnostic], after: Sequence[Diagnostic]) -> None:
-    """Raise UsageError if the project has more findings after a renaming than before."""
+    """Raise UsageError if the project has more findings, or more errors, after a renaming than before."""
     # A skill's function still has the old name; lint reports that, but the editor changes no Python.
     after = [each for each in after if not each.place.file.endswith(".py")]
     # An error hides other findings, such as unused names, so the number of findings may fall despite a new error.
