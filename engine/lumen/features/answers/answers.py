@@ -1,4 +1,6 @@
-"""The module `answers`: asks a language model what no passage answers, and limits what of its answer may be said."""
+"""The module `answers`: sends a language model questions that no passage answers, and limits what may be said of its
+answers.
+"""
 
 import json
 import logging
@@ -91,7 +93,7 @@ _log = logging.getLogger(__name__)
 
 
 class Answers(Module):
-    """Answers each question of `lumen.NAO.ask` on `lumen.NAO.answer`, sentence by sentence, with an end without text.
+    """Answers each question of `lumen.NAO.ask` on `lumen.NAO.answer`, sentence by sentence, then an end without text.
 
     At most one event is raised, of those that the question offers, with data that matches its schema. Raises
     ModuleError if lumen.yaml has no model.

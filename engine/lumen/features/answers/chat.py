@@ -12,7 +12,7 @@ END = "[DONE]"
 
 
 class Piece(NamedTuple):
-    """Some more text, or that the completion has `ended` properly; one that was cut off has no such piece."""
+    """More text, or the proper end of the completion (`ended`), which is missing if it was cut off."""
 
     text: str = ""
     ended: bool = False

@@ -16,7 +16,7 @@ from lumen.language.projects import Project
 
 INSTALL = "pip install 'lumen-robot[answers-embeddings]'"
 BATCH = 8
-"""The number of texts between two looks at the clock: about 0.1 s."""
+"""The number of texts between two checks of the deadline: about 0.1 s."""
 
 
 class PackagedVectors:

@@ -30,7 +30,7 @@ def by_meaning(embed: Embed) -> "Method":
 
 
 def _likeness(embed: Embed, known: Sequence[KnownText]) -> "Scorer":
-    import numpy as np  # late: who asks no embeddings does not wait for it
+    import numpy as np  # late: only embeddings need it
 
     rows = np.array(embed(known), np.float32)
 

@@ -145,7 +145,7 @@ class Eyes(Module):
             self._window.close()
 
     def look(self, frame: Frame, now: float) -> None:
-        """Publish what a frame shows that was taken at `now` [s]."""
+        """Publish what a frame, taken at `now` [s], shows."""
         try:
             faces = self._detector.faces(frame.grey)
             if faces:

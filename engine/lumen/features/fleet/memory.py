@@ -1,4 +1,4 @@
-"""The state of a robot's agent on its disk, so that it keeps its promises after a crash."""
+"""The state of a robot's agent on its disk, from which it continues after a crash."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -18,7 +18,7 @@ class AgentMemory:
     followed: FollowedOrder = field(default_factory=FollowedOrder)
     """The last accepted order."""
     names: dict[str, str] = field(default_factory=dict)
-    """The fleet's name of the bundle for the hash of files in this house."""
+    """The fleet's name of each bundle, by the hash of its files as adapted to this house."""
     before: str = ""
     """The hash of the files that ran before the present ones."""
     failed: dict[str, list[Any]] = field(default_factory=dict)
@@ -32,7 +32,7 @@ class AgentMemory:
     writing: str = ""
     """The hash of files that are being written into the project's folder."""
     now: dict[str, float] = field(default_factory=dict)
-    """Counts since the present files run."""
+    """Counts since the present files began to run."""
     past: dict[str, float] = field(default_factory=dict)
     """Counts of the files before."""
     counted: str = ""

@@ -62,7 +62,7 @@ def verified(public: str, kind: bytes, data: bytes, signature: str) -> bool:
 
 def _ed25519() -> Any:
     demand("fleet", "a fleet", "cryptography")
-    from cryptography.hazmat.primitives.asymmetric import ed25519  # only who signs or checks needs it
+    from cryptography.hazmat.primitives.asymmetric import ed25519  # needed only to sign or to check
 
     return ed25519
 

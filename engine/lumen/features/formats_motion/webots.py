@@ -1,11 +1,11 @@
 """Webots' `.motion` files: a line of joint names, then a pose per line.
 
 Webots' reference manual, "Motion": `#WEBOTS_MOTION,V1.0,JOINT,…`, then `MM:SS:mmm,NAME,ANGLE,…` in [rad], with `*` for
-a joint that does not move. Teams of RoboCup's 3D league write V1.1 (`soccer.py`), which Webots does not support.
+a joint that does not move. Teams of RoboCup's 3D league write V1.1, which Webots does not support.
 
-`#WEBOTS_MOTION,V1.1`, then in the same or the second line the joints' names joined by `%`, then a pose per line:
-`play%ANGLE%…%DURATION`, in [rad], with the time to reach the pose [s]. There is no specification: this
-describes existing files.
+V1.1: `#WEBOTS_MOTION,V1.1`, then in the same or the second line the joints' names joined by `%`, then a pose per line:
+`play%ANGLE%…%DURATION`, in [rad], with the time to reach the pose [s]. There is no specification: this describes
+existing files.
 """
 
 import re

@@ -53,7 +53,7 @@ def _message(name: str, title: str, payload: Mapping[str, Any]) -> dict[str, Any
 
 
 def _orders(skills: Mapping[str, VerbRow]) -> dict[str, Any]:
-    """The JSON Schema of what a module receives: a call of each skill, and messages about a call."""
+    """Return the JSON Schema of what a module receives: a call of each skill, and messages about a call."""
     calls = [
         _body(skill={"const": name, "description": row.description}, arguments=argument_schema(row))
         for name, row in skills.items()
@@ -62,7 +62,7 @@ def _orders(skills: Mapping[str, VerbRow]) -> dict[str, Any]:
 
 
 def _answers(modules: Mapping[str, Mapping[str, VerbRow]]) -> dict[str, Any]:
-    """The JSON Schema of what a module answers."""
+    """Return the JSON Schema of what modules answer."""
     results = [
         {**row.result, "type": "object", "title": f"The result of {name}"}
         for skills in modules.values()
@@ -82,10 +82,10 @@ def _answers(modules: Mapping[str, Mapping[str, VerbRow]]) -> dict[str, Any]:
 
 
 def _body(**properties: Any) -> dict[str, Any]:
-    """The schema of a message about a call that has all of these properties."""
+    """Return the schema of a message about a call that has all of these properties."""
     return {"type": "object", "required": ["call", *properties], "properties": {"call": _CALL, **properties}}
 
 
 def _optional(message: dict[str, Any], /, **properties: Any) -> dict[str, Any]:
-    """A schema of `_body` with properties that may be left out."""
+    """Return a schema of `_body` with further properties that may be left out."""
     return {**message, "properties": {**message["properties"], **properties}}

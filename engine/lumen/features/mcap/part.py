@@ -33,8 +33,8 @@ Telling = Callable[[str], None]
 class RecordingPart(Part):
     """Records, and repairs what an earlier run left incomplete; the first part, since it is closed last.
 
-    `ring` allows to keep the last minutes, if the project wants that: only for the one run that owns the home. Raises
-    UsageError if `file` can't be written.
+    With `ring`, which only the run that owns the home may set, it keeps the last minutes if the project wants that.
+    Raises UsageError if `file` can't be written.
     """
 
     patient = True

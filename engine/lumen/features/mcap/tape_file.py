@@ -72,7 +72,7 @@ class FileTape:
         self._file = reopened(self.path, redacted(self.path, person)[1])
 
     def _try(self, work: Callable[[RecordingFile], None]) -> None:
-        """Do this with the file; an error of the disk ends only the recording."""
+        """Run `work` with the file; an error of the disk ends only the recording."""
         if self._file is None:
             return
         try:

@@ -16,7 +16,7 @@ from lumen.upkeep.drops import Drops
 from lumen.upkeep.threads import WatchedThread
 
 POLL = 0.5
-"""How soon a listener notices that it should end [s]."""
+"""The time between two checks of a listener whether to end [s]."""
 RETRY = 5.0
 """The time between two attempts with a port that was taken, or a name that was unknown [s]."""
 MAX_DATAGRAM = 65_535

@@ -1,4 +1,4 @@
-"""The NAO, or another biped, as a dm_control composer entity for your own worlds and tasks."""
+"""The NAO, or another biped, as an entity of dm_control's composer, for your own worlds and tasks."""
 
 from collections.abc import Sequence
 from pathlib import Path

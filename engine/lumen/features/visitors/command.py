@@ -121,7 +121,7 @@ def _tell_running(options: argparse.Namespace, settings: Settings | None, found:
 
 
 def _request(bus: Bus, settings: Settings, name: str, found: Forgetting) -> None:
-    """Request that of the running memory, which notifies the others; without one, notify them here."""
+    """Send the request to the running memory, which notifies the other modules; without one, notify them here."""
     try:
         answer = next(
             send_request(

@@ -19,7 +19,7 @@ from lumen.run.forgetting.files import attempt
 from lumen.run.module import DAY, KEEP_DAYS, Module
 
 DATABASE_FILE = "memory.db"
-"""The default key of the behaviour's context that has the visitor's name."""
+"""The name of the database's file in the home of an exhibition."""
 MAX_PENDING_ENTRIES = 10_000
 """The number of entries that may wait for an unwritable database; beyond it the oldest are dropped."""
 RETRY_INTERVAL = 1.0

@@ -23,7 +23,7 @@ class Speaker:
     """A voice of the simulated robot: each text takes as long as its sound.
 
     With a `file` it writes the sound of the whole run, each text at its simulated time; otherwise the machine's own
-    player gets it. The sound is also added to `heard`, if given. Texts in languages that espeak-ng lacks are spoken in
+    player plays it. The sound is also added to `heard`, if given. Texts in languages that espeak-ng lacks are spoken in
     `language`.
     """
 

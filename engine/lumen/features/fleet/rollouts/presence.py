@@ -36,7 +36,7 @@ class RobotPresence:
     about: str = ""
     """The bundle that it was ordered to run, else the running one."""
     trouble: str = ""
-    """The reason why it does not get farther."""
+    """The reason why it makes no progress."""
     wants: str = ""
     """The hash of a bundle that it lacks."""
     centre: str = ""
@@ -46,7 +46,7 @@ class RobotPresence:
     version: int = 0
     """The version of that order."""
     now: Mapping[str, float] = field(default_factory=dict)
-    """Counts since `bundle` runs."""
+    """Counts since `bundle` began to run."""
     before: Mapping[str, float] = field(default_factory=dict)
     """Counts of the bundle before."""
     clock: float = 0.0

@@ -40,8 +40,8 @@ def step(state: CentreState, fleet: Fleet, heard: HeardRobots, now: float) -> Ce
 
 
 def begin(state: CentreState, fleet: Fleet, bundle: str, plan: RolloutPlan, now: float) -> CentreState:
-    """Return the state with a new rollout, which the next `step` begins. Raises ValueError with the reason if it can't
-    be.
+    """Return the state with a new rollout, which the next `step` begins. Raises ValueError with the reason if that is
+    impossible.
     """
     if state.overruled:
         raise ValueError(state.overruled)
@@ -190,7 +190,7 @@ def _assigned(state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRo
 
 
 def _spread(robots: Iterable[str]) -> list[str]:
-    """Return the robots house by house in turn, so that a problem of one house shows beside the others."""
+    """Return the robots, one of each house in turn, so that a step includes many houses."""
     houses: dict[str, list[str]] = {}
     for robot in robots:
         houses.setdefault(robot.partition("/")[0], []).append(robot)

@@ -35,7 +35,7 @@ class RecordingFile:
 
     def __init__(self, path: Path) -> None:
         demand_recording()
-        from mcap.writer import Writer  # 0.4 s, and only who records needs it
+        from mcap.writer import Writer  # takes 0.4 s, and only recording needs it
 
         self.path, self.messages = path, 0
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | NO_LINK, 0o600)
