@@ -165,7 +165,9 @@ def post(url: str, body: dict[str, Any]) -> None:
 
 
 def _of_variable(name: str) -> str:
-    """Return the URL in an environment variable; errors do not quote it, since it may be a secret."""
+    """Return the URL in an environment variable. Raises UndeliveredError without quoting it, since it may be a
+    secret.
+    """
     url = os.environ.get(name, "").strip()
     if not url:
         raise UndeliveredError(f"the environment variable {name} is not set", final=True)

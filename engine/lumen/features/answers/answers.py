@@ -119,7 +119,9 @@ class Answers(Module):
         self._allowance.hour, self._allowance.visitor = self._model.hour, self._model.visitor
 
     def idle(self) -> float | None:
-        """Compute vectors of passages while there is no question, if that needs no network."""
+        """Compute vectors of passages while there is no question, if that needs no network; return 0.0 if more may be
+        missing.
+        """
         try:
             return 0.0 if self._embeddings and self._embeddings.prepare(self.project) else None
         except ModuleError as error:

@@ -123,7 +123,9 @@ class Embeddings:
         return bool(missing)
 
     def _embed(self, texts: Iterable[KnownText]) -> list[TextVector]:
-        """Return the vectors of these texts; those that are not kept are requested in batches."""
+        """Return the vectors of these texts; those that are not kept are requested in batches. Raises ModuleError if
+        they are late or of different lengths.
+        """
         texts = list(texts)
         missing = [text for text in dict.fromkeys(texts) if text not in self._kept]
         if len(self._kept) + len(missing) > MAX_KEPT:

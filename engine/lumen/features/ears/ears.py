@@ -118,7 +118,9 @@ class Ears(Module):
         self._look_for_phrases()
 
     def idle(self) -> float | None:
-        """Publish whether the ears listen if it has changed; return the time until the next change [s]."""
+        """Publish whether the ears listen if it has changed; return the time until the next change [s], None if none is
+        due.
+        """
         now = self.clock()
         because, until = self._addressing.state(now)
         if own := self._own_voice.during(now, now + TICK):

@@ -88,7 +88,7 @@ class Analysis:
 
     @property
     def known_index(self) -> NameIndex | None:
-        """The index of these files, or an earlier one, if it was computed."""
+        """The index of these files, or an earlier one; None if none was computed."""
         found: NameIndex | None = self.__dict__.get("index", self._last_index)
         return found
 

@@ -92,7 +92,7 @@ def _closed(head: str) -> str:
 
 
 def _marked(document: Document) -> tuple[NodePath, bool, str] | None:
-    """Return the path of the key or text with the mark, whether it is a key, and its text."""
+    """Return the path of the key or text with the mark, whether it is a key, and its text; None if nothing has it."""
     for path in document.spans:
         if path and isinstance(path[-1], str) and CURSOR_MARK in path[-1]:
             return path, True, path[-1]

@@ -167,7 +167,7 @@ _OPAQUE = frozenset(("context", "types", "events", "phrases", "answers", "rename
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def key_kind(kind: str, path: NodePath) -> NameKind | None:
-    """Return the kind of name in the key at the end of a path, in a file of that kind."""
+    """Return the kind of name in the key at the end of a path, in a file of that kind; None if it is not a name."""
     steps = _steps(path)
     if kind == "sayings":
         return _SAYINGS[len(steps) - 1] if len(steps) <= len(_SAYINGS) else None
@@ -184,7 +184,7 @@ def key_kind(kind: str, path: NodePath) -> NameKind | None:
 
 @lru_cache(maxsize=MAX_REMEMBERED_PATHS)
 def value_kind(kind: str, path: NodePath) -> NameKind | None:
-    """Return the kind of name in the text at a path, in a file of that kind."""
+    """Return the kind of name in the text at a path, in a file of that kind; None if it is not a name."""
     steps = _steps(path)
     if kind == "behavior":
         if steps[:1] and steps[0] in _OPAQUE:

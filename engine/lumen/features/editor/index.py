@@ -73,7 +73,7 @@ class NameIndex:
         return frozenset(stem(file) for file in self.files if file.startswith(f"{folder}/") and file.endswith(".yaml"))
 
     def at(self, file: str, line: int, column: int) -> NameUse | None:
-        """Return the use at that line and column, from 1; the shortest if there are several."""
+        """Return the use at that line and column, from 1; the shortest if there are several, None if there is none."""
         here = [use for use in self.uses if use.place.file == file and use.text and covers(use.place, line, column)]
         return min(here, key=lambda use: len(use.text), default=None)
 

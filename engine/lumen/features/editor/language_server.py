@@ -122,7 +122,8 @@ class LanguageServer(pygls_server.LanguageServer):
             judge.close()
 
     async def settled(self, uri: str) -> tuple[Analysis, str] | None:
-        """Return project and file of a document, once typing has paused and the findings are published.
+        """Return project and file of a document, once typing has paused and the findings are published; None without a
+        project.
 
         Raises JsonRpcContentModified if the document changed meanwhile; the editor then repeats the request.
         """

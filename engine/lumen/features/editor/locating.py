@@ -54,7 +54,7 @@ class DocumentText:
         return Place(self.document.file, line, column, line, column + length)
 
     def scalar(self, path: NodePath, *, key: bool = False) -> Place | None:
-        """Return the place of a key or text, without its quotes."""
+        """Return the place of a key or text, without its quotes; None if the file contains it in another form."""
         place = self.document.place(path, key=key)
         value = path[-1] if key else self.document.value(path)
         return self.part(place, str(value), 0, len(str(value)))

@@ -23,7 +23,7 @@ class CentreJournal:
         self.file = folder / FILE
 
     def last(self) -> CentreState | None:
-        """Return the last state in the journal; a line that a crash has cut off is ignored."""
+        """Return the last state in the journal, None if it has none; a line that a crash has cut off is ignored."""
         for row in reversed(self.rows()):
             try:
                 return state_from_json(row["state"])

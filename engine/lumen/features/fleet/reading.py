@@ -18,7 +18,9 @@ BAD_SHARE = Code("bad-share", "fleet", ERROR, "a rollout step is not a valid sha
 
 
 def build_fleet(data: Any, report: DocumentReport, *, name: str) -> Fleet | None:
-    """Return the fleet in the data of fleet.yaml, which has the shape of fleet.schema.json but may lack any key."""
+    """Return the fleet in the data of fleet.yaml, which has the shape of fleet.schema.json but may lack any key; None
+    if it is no map.
+    """
     if not isinstance(data, Mapping):
         return None
     centre, rollout = data.get("centre", {}).get("broker", ""), _rollout(data.get("rollout", {}), report)

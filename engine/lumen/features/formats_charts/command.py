@@ -45,7 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Write the graph and return the exit code."""
+    """Write the graph and return the exit code. Raises UsageError if there is no such behaviour."""
     project = lumen.load(shown_project(options.project))
     name = options.behavior or project.behavior
     if name not in project.behaviors:

@@ -67,7 +67,9 @@ class ScriptReading:
         self.called = False
 
     def run(self, body: list[ast.stmt], around: Branch = Branch.ALWAYS) -> Any:
-        """Follow statements in their order; return the value of their `return`, None if it can't be computed."""
+        """Follow statements in their order; return the value of their `return`, None if it can't be computed. Raises
+        TooManyStepsError.
+        """
         for statement, branch in statements(body, around, self._items):
             if isinstance(statement, FunctionNode):
                 continue

@@ -158,7 +158,9 @@ def _moves(body: list[ast.stmt]) -> bool:
 
 
 def lists_of(body: list[ast.stmt]) -> NamedLists | None:
-    """Return the lists of a motion that statements fill: those of Choregraphe's export, or three that are returned."""
+    """Return the lists of a motion that statements fill: those of Choregraphe's export, or three that are returned;
+    None if there are none.
+    """
     nodes = list(_inner(body))
     if set(USUAL_LISTS) <= {n.id for n in nodes if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}:
         return USUAL_LISTS

@@ -150,8 +150,8 @@ def _joints(file: str, lines: list[list[Cell]]) -> list[Cell]:
 
 
 def _time(text: str) -> float | None:
-    """Return the time of a pose [s] as Webots reads it: minutes and seconds may be missing, milliseconds are a
-    number.
+    """Return the time of a pose [s] as Webots reads it: minutes and seconds may be missing, milliseconds have up to
+    nine digits; None for any other text.
     """
     match = _TIME.fullmatch(text)
     return int(match[1] or 0) * 60.0 + int(match[2] or 0) + int(match[3]) / 1000.0 if match else None

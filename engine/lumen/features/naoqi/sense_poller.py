@@ -35,7 +35,9 @@ class SensePoller:
         self._thread.start()
 
     def fresh(self, timeout: float = 5.0) -> Reading | None:
-        """Return a reading that begins after this call, or the newest if none comes within `timeout` [s]."""
+        """Return a reading that begins after this call, or the newest if none comes within `timeout` [s]; None if the
+        last one failed.
+        """
         with self._changed:
             self._wanted = wanted = self._rounds + 1 + self._busy  # a round in progress began earlier
             self._hurry.set()

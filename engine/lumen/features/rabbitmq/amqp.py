@@ -152,8 +152,8 @@ class AmqpBus(Bus):
             transport.publisher.returned = handler
 
     def reply(self, message: Message, body: Any) -> None:
-        """Reply to a message: a text is sent unchanged, as modules of 2015 expect `command finished`; all else as
-        JSON.
+        """Reply to a message: a text is sent unchanged, as modules of 2015 expect `command finished`; all else as JSON.
+        Raises BusError if the bus is closed.
         """
         if not message.reply_to:
             return

@@ -44,7 +44,7 @@ class OutgoingMessage(NamedTuple):
 
     @property
     def expiration(self) -> str | None:
-        """The remaining time to live in AMQP's form: a text in [ms]."""
+        """The remaining time to live in AMQP's form, a text in [ms]; None without a deadline."""
         return None if self.deadline is None else str(max(1, round(1000 * (self.deadline - time.monotonic()))))
 
 

@@ -111,7 +111,9 @@ class PolledConnection:
         self.until(lambda: answers)
 
     def publish(self, exchange: str, key: str, properties: bytes, body: bytes, *, mandatory: bool) -> None:
-        """Send a message with the next turn. Raises ValueError if AMQP can't carry it."""
+        """Send a message with the next turn. Raises ValueError if AMQP can't carry it, ChannelWrongStateError if the
+        channel is closed.
+        """
         if not self.channel.is_open:
             raise ChannelWrongStateError("the channel is closed")
         self._connection.send(self.channel.channel_number, exchange, key, properties, body, mandatory=mandatory)

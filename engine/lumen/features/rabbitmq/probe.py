@@ -68,7 +68,7 @@ class BrokerProbe:
         """Return why this user may not send under this key; empty if it may.
 
         The message has the name of another user. The broker refuses that only after it has checked the permission to
-        send, so the message reaches no receiver.
+        send, so the message reaches no receiver. Raises BusUnreachableError if the broker accepts the message.
         """
         properties = pika.BasicProperties(user_id=FORGED_USER)
         try:

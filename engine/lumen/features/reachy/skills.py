@@ -160,7 +160,9 @@ class ReachySkills:
             now = yield None
 
     def _wake(self) -> Steps:
-        """Have the daemon wake the robot; nothing is streamed before that is over."""
+        """Have the daemon wake the robot; no targets are sent before that is over. Raises RobotRefusedError if others
+        move it.
+        """
         self._mover.awake = False
         now = yield None
         until = now + FOREIGN_PATIENCE

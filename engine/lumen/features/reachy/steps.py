@@ -40,7 +40,7 @@ class StepActivity:
             self._stop()
 
     def _next(self) -> DaemonCall | None:
-        """Begin; or keep waiting for the call that is under way."""
+        """Begin, or return the call in progress; None if the steps wait for the next tick."""
         if self._begun:
             return self._call
         self._begun = True

@@ -144,7 +144,7 @@ class _Ways:
         *,
         key: bool = False,
     ) -> SchemaField | None:
-        """Return the field if the body has it and its kind is allowed; report it otherwise."""
+        """Return the field if the body has it and its kind is allowed; else report it and return None."""
         known = self.fields(route)
         if name not in known:
             if self.has_schema(route):

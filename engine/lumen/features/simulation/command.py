@@ -66,7 +66,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Play the motion; return the exit code, 1 if the robot fell or missed a goal."""
+    """Play the motion; return the exit code, 1 if the robot fell or missed a goal. Raises UsageError and
+    ProjectError.
+    """
     root = shown_project(options.project)
     use_model(options.model, [root])
     found = motion_parts(read_files(root))

@@ -185,7 +185,9 @@ class SimulatedSkills:
     def _go(
         self, goals: tuple[str, ...], now: float, speed: float, after: Callable[[], None] | None = None
     ) -> PosturePlanner:
-        """Return the way to the nearest of these postures; a fallen or limp robot begins from how it lies or sits."""
+        """Return the way to the nearest of these postures; a fallen or limp robot begins from how it lies or sits.
+        Raises RobotRefusedError if a fallen one does neither.
+        """
         limp, down = self.fallen or not self.awake, lying(self._sensors)
         if limp and down:
             self._posture_state = PostureState(down, self._standing)

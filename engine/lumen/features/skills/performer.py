@@ -95,7 +95,9 @@ class _Performance:
         return None
 
     def _request(self, request: Callable[[], str]) -> None:
-        """Pass a request on to the bus, at most `MAX_REQUESTS` for a call; what can't be sent is reported."""
+        """Pass a request on to the bus, and report one that can't be sent. Raises RobotFailedError beyond
+        `MAX_REQUESTS`.
+        """
         self._sent += 1
         if self._sent > MAX_REQUESTS:
             raise RobotFailedError(self._killed(f"it had more than {MAX_REQUESTS} texts and messages sent in one call"))

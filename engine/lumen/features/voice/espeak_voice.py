@@ -64,7 +64,9 @@ class Espeak:
     def timed(
         self, text: str, language: str = "en", pace: int = WORDS_PER_MINUTE
     ) -> tuple[Sound, tuple[WordTime, ...]]:
-        """Return the sound and the times at which words begin; none for a voice that does not report them."""
+        """Return the sound, and the times at which words begin if the voice reports them. Raises ModuleError as `speak`
+        does.
+        """
         said = "".join(sign if sign.isprintable() else " " for sign in text[:MAX_TEXT_CHARACTERS])
         data = said.encode("utf-8", "replace") + b"\0"
         with self._lock:

@@ -40,7 +40,7 @@ async def hint(server: LanguageServer, params: lsp.InlayHintParams) -> list[lsp.
 
 
 def call(server: LanguageServer, params: lsp.SignatureHelpParams) -> lsp.SignatureHelp | None:
-    """Return the signature of the function that is being called at a position."""
+    """Return the signature of the function that is being called at a position; None if there is none."""
     if (found := server.asked(params, signatures.signature)) is None:
         return None
     shown = lsp.SignatureInformation(

@@ -14,7 +14,7 @@ REPAIRS = lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
 
 
 def prepare(server: LanguageServer, params: lsp.PrepareRenameParams) -> lsp.PrepareRenamePlaceholder | None:
-    """Return the range and text of the name at a position if it can be renamed."""
+    """Return the range and text of the name at a position if it can be renamed, else None."""
 
     def word(analysis: Analysis, file: str, line: int, column: int) -> lsp.PrepareRenamePlaceholder | None:
         found = renaming.renamable(analysis, file, line, column)

@@ -204,7 +204,9 @@ class ScxmlActionReader:
         return element.get(name)
 
     def data(self, element: XmlElement) -> Any:
-        """Return the data of a `<send>` or `<donedata>`: names, parameters, or content; None without any."""
+        """Return the data of a `<send>` or `<donedata>`: names, parameters, or content; None without any. Raises
+        LeftOutError or ScriptError if it can't be converted.
+        """
         found: dict[str, Any] = {}
         for name in element.get("namelist").split():
             found[name] = unparse(read_value(name, self.context.names))

@@ -152,7 +152,7 @@ class XStateStateTree:
 
 
 def _descend(state: XStateNode | None, path: str) -> XStateNode | None:
-    """Return the state at the end of the keys, which may contain dots themselves."""
+    """Return the state at the end of the keys, which may contain dots themselves; None if it does not exist."""
     if state is None:
         return None
     if (found := state.child(path)) is not None:
