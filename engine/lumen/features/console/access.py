@@ -103,7 +103,9 @@ class Access:
 
 
 class PinGuard:
-    """Limits attempts at PINs: a longer pause for an address each time, and a limit for all addresses together."""
+    """Limits attempts at PINs: a pause for each address that grows with its wrong PINs, and a limit for all
+    addresses.
+    """
 
     def __init__(self) -> None:
         self._wrong: OrderedDict[str, tuple[int, float]] = OrderedDict()

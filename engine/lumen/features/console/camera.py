@@ -119,7 +119,7 @@ class Cameras:
             await camera.listen(bus, self._watch.keys.of(robot).image)
 
     def _looked(self, camera: WatchedCamera) -> None:
-        """Count one viewer less, and end the subscription after a while if it was the last one."""
+        """Remove one viewer, and end the subscription after a while if it was the last one."""
         camera.lookers -= 1
         camera.wanted = time.monotonic()
         asyncio.get_running_loop().call_later(LINGER, self._leave, camera)

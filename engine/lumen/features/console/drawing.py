@@ -18,7 +18,7 @@ DIGITS = 4
 
 
 class Drawing:
-    """The robot of that name of the project in `root`; the first if it has several and the name is empty.
+    """Draws the robot of that name in the project in `root`; the first if it has several and the name is empty.
 
     Raises LumenError if its files have errors, or MuJoCo is not installed.
     """

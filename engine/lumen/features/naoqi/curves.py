@@ -22,7 +22,7 @@ BEZIER_HANDLE = 3
 
 
 class CubicPiece(NamedTuple):
-    """A cubic curve with angles `a0` to `a3`."""
+    """A cubic Bezier curve, whose points have the angles `a0` to `a3` [rad]."""
 
     start: float
     """The time of its beginning [s]."""

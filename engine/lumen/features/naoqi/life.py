@@ -67,7 +67,7 @@ SEND_PERIOD = 0.1
 """The time between two updates of the joints' goals [s]; NAOqi interpolates in between."""
 
 SPEED = 0.3
-"""The share of their greatest speed at which joints move there."""
+"""The share of their greatest speed at which joints move to these goals."""
 
 REST_AFTER = 0.5
 """The time without commands after which the robot moves by itself again [s]: NAOqi finishes late."""

@@ -101,7 +101,7 @@ class AmqpBus(Bus):
             transport.consumer.prepare(coming)
 
     def subscribe(self, pattern: str, handler: MessageHandler) -> Callable[[], None]:
-        """Call the handler with the messages of a pattern; return a function that ends that. Raises BusError."""
+        """Call the handler with the messages of a pattern; return a function that unsubscribes it. Raises BusError."""
         if self._closed:
             raise BusClosedError("the bus is closed: subscribing is no longer possible")
         check_subscription(pattern, handler)

@@ -146,7 +146,9 @@ def _cause(table: bytes) -> str:
 
 
 def _offset(table: bytes) -> int:
-    """Return the value of `OFFSET_HEADER` in a table, -1 if there is none: each entry is a name, a sign and a value."""
+    """Return the value of `OFFSET_HEADER` in a table, -1 if there is none: each entry is a name, a type letter and a
+    value.
+    """
     name = OFFSET_HEADER.encode()
     at = 0
     with suppress(struct_error):
@@ -198,11 +200,11 @@ def _time(data: bytes, at: int) -> tuple[int | None, int]:
 
 
 _LONG = frozenset((b"S", b"A", b"F", b"x"))
-"""The signs of values that begin with their length."""
+"""The type letters of values that begin with their length."""
 _SIZES = {
     b"t": 1, b"b": 1, b"B": 1, b"s": 2, b"u": 2, b"I": 4, b"i": 4, b"f": 4, b"D": 5, b"l": 8, b"d": 8, b"T": 8, b"V": 0,
 }  # fmt: skip
-"""The sizes of the other signs' values [bytes], as RabbitMQ writes them."""
+"""The sizes of the other types' values [bytes], as RabbitMQ writes them."""
 _NUMBERS = {
     b"t": ">?", b"b": ">b", b"B": ">B", b"s": ">h", b"u": ">H", b"I": ">i", b"i": ">I", b"l": ">q",
 }  # fmt: skip

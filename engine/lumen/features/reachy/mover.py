@@ -29,7 +29,7 @@ class Mover:
         self._aims.clear()
 
     def aim(self, angles: Mapping[str, float], speed: float) -> None:
-        """Move these joints there [rad, m], at most at `speed`, a share of their greatest speed."""
+        """Move these joints to `angles` [rad, m], no faster than `speed`, a share of their greatest speed."""
         self._aims |= {name: (angle, speed) for name, angle in angles.items() if name in self.goal}
 
     def drop_aims(self, joints: Collection[str]) -> None:

@@ -15,7 +15,7 @@ from lumen.features.reachy.pose import distance
 from lumen.upkeep.threads import WatchedThread
 
 LOOK_PERIOD = 0.4
-"""The period in which Lumen asks the daemon for its moves [s]."""
+"""The period in which Lumen polls the daemon for its moves [s]."""
 STRAY_ANGLE, STRAY_PLACE = radians(14), 0.014
 """A head farther than this from all targets that Lumen sent lately is moved by something else [rad], [m]."""
 LATELY = 0.5
@@ -81,7 +81,7 @@ class DaemonMoves:
 
 
 class Strays:
-    """Finds out from measured positions whether something else moves the head, a program or a hand."""
+    """Detects from measured positions whether another program, or a hand, moves the head."""
 
     def __init__(self) -> None:
         self._sent: deque[tuple[float, Mapping[str, float]]] = deque()

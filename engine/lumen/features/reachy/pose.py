@@ -16,7 +16,7 @@ LYING_HEIGHT, LYING_PITCH = -0.035, 0.3
 
 
 def rotation(roll: float, pitch: float, yaw: float) -> Matrix3:
-    """Return the rows of Rz(yaw) Ry(pitch) Rx(roll); angles in [rad]."""
+    """Return the rotation matrix Rz(yaw) Ry(pitch) Rx(roll), row by row; angles in [rad]."""
     cr, sr, cp, sp, cy, sy = cos(roll), sin(roll), cos(pitch), sin(pitch), cos(yaw), sin(yaw)
     return (
         (cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),

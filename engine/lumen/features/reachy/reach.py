@@ -26,7 +26,7 @@ class Shortage(NamedTuple):
 
     @property
     def share(self) -> float:
-        """The shortage as a multiple of the least one."""
+        """The shortage as a multiple of the least that is reported."""
         return abs(self.goal - self.reached) / (SHORT_LENGTH if self.joint in HEAD[:3] else SHORT_ANGLE)
 
     def __str__(self) -> str:
@@ -59,6 +59,6 @@ def worst_of(motion: MotionDefinition, body: Body) -> Shortage | None:
 
 
 def shortfall(motion: MotionDefinition, body: Body) -> str:
-    """Return what of a motion the robot does not reach, in words; empty if it reaches all of it."""
+    """Return a description of the pose that falls short the most; empty if the robot reaches all of the motion."""
     worst = worst_of(motion, body)
     return f"`{motion.name}` falls short at {worst.time:.1f} s: {worst}" if worst else ""

@@ -168,7 +168,9 @@ class ReachyRobot(ExecutingRobot):
                 self._events.append(Event(name, {"seconds": round(seconds, 3)}, now))
 
     def _woke_again(self, event: Event, now: float) -> bool:
-        """Return True for the answer of the command that wakes the robot again, and notice that it is back."""
+        """Return whether an event is the answer of the command that wakes the robot again; if it is, raise
+        `robot.back`.
+        """
         if not event.name.endswith(f".command.{WAKE_AGAIN}"):
             return False
         if event.name.startswith("error"):

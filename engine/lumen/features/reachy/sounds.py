@@ -24,7 +24,7 @@ _log = logging.getLogger(__name__)
 
 
 class LoadedSound(NamedTuple):
-    """A sound that the daemon can play: how long it takes [s], and its `file` there; empty if it stays silent."""
+    """A sound that the daemon can play: its duration [s], and its `file` on the robot, empty for a silent one."""
 
     duration: float
     file: str = ""

@@ -7,13 +7,13 @@ from lumen.errors import RobotError
 from lumen.features.reachy.daemon_api import DaemonCall
 
 Steps = Generator[DaemonCall | None, Any, None]
-"""A call is answered with its result; `None` with the time of the next tick [s]."""
+"""Steps that yield a call and receive its result, or yield `None` and receive the time of the next tick [s]."""
 
 
 class StepActivity:
     """An activity of the executor made of steps; `stop` is called if it is cancelled, and ends it at once.
 
-    `missed` lists the joints that did not arrive, if it came to its end nevertheless.
+    `missed` lists the joints that did not arrive, if it ended anyway.
     """
 
     def __init__(self, steps: Steps, stop: Callable[[], None] = lambda: None) -> None:

@@ -33,9 +33,9 @@ class BaseRequest:
     stage: Stage | None
     """The ground on which the robot may go; None if nothing bounds it."""
     free: Callable[[str], bool]
-    """Return whether no command moves a joint and the joint has power."""
+    """Returns whether no command moves a joint and the joint has power."""
     hot: Callable[[], bool]
-    """Return whether the motors should be spared."""
+    """Returns whether the motors should be spared."""
 
     @property
     def body(self) -> Body:

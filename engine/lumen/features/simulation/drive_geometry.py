@@ -11,7 +11,7 @@ from lumen.features.simulation.world import World
 from lumen.motion.gait.pendulum import GRAVITY
 
 TIPPING_SHARE = 0.25
-"""The share of the acceleration that would tip the robot over, or that its motors could reach, that it uses."""
+"""The robot uses this share of the acceleration that would tip it over, or that its motors can reach."""
 
 ON_THE_GROUND = 0.01
 """Geoms up to this height above the wheels' lowest points carry the robot [m]."""

@@ -88,8 +88,8 @@ class DriveActivity:
         self._cancelled = False
 
     def advance(self, now: float) -> bool:
-        """Steer until the end; True once the robot has arrived or stopped. Raises RobotFailedError if a hazard stopped
-        it.
+        """Steer until the end; return True once the robot has arrived or stopped. Raises RobotFailedError if a hazard
+        stopped it.
         """
         self._now = now
         if not self._cancelled and now >= self._look:

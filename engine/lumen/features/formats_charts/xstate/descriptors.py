@@ -24,7 +24,7 @@ def is_descriptor(text: str) -> bool:
 
 
 def own_event(event: str) -> tuple[str, str] | None:
-    """Return Lumen's family and the id of an event of XState's own, None for any other."""
+    """Return Lumen's prefix for an event of XState's own, and the id after it; None for any other event."""
     for begin, ours in _OWN_EVENTS.items():
         if event.startswith(begin) and (id := event.removeprefix(begin)):
             return ours, id
@@ -37,7 +37,7 @@ def invoke_id(id: str) -> str:
 
 
 class EventDescriptors:
-    """The descriptors of one machine, arranged by every event that it names."""
+    """Converts the descriptors of one machine to XState's form and order."""
 
     def __init__(self, machine: MachineDefinition) -> None:
         self.names = set(machine.events)

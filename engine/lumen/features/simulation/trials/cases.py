@@ -63,8 +63,8 @@ class Case:
 
 
 def cases(project: Project) -> list[Case]:
-    """Return every motion from its start and from wherever the behaviours lead to it, every passage and every style of
-    life.
+    """Return the cases: every motion from its start and after whatever the behaviours do before it, every passage, and
+    every style of life.
     """
     motions = project.motions
     ways: dict[str, list[Before]] = {name: [_to(motion.start or FIRST_POSTURE)] for name, motion in motions.items()}
