@@ -16,7 +16,7 @@ from lumen.run.storytelling.story_text import story_text
 from lumen.run.storytelling.visit_story import renaming, visit_story
 
 MAX_SAME = 100
-"""Stories of visits that began in the same minute."""
+"""The most stories of visits that began in the same minute."""
 
 
 class KeptStory(NamedTuple):

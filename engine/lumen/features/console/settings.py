@@ -19,4 +19,4 @@ class ConsoleSettings:
     hosts: tuple[str, ...] = ()
     """Other names under which browsers reach the console."""
     proxies: tuple[str, ...] = ()
-    """Addresses or networks of trusted proxies, whose headers about a request are believed."""
+    """Addresses or networks of proxies whose headers about a request are trusted."""

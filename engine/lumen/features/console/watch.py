@@ -54,7 +54,7 @@ FILES_PERIOD = 3.0
 """The time between two requests about an exhibition's files [s]."""
 QUESTION_TIMEOUT = 2.0
 BEFORE = 500
-"""Entries before the newest that are fetched at the beginning."""
+"""The number of entries before the newest that are fetched at first."""
 MAX_ROBOTS = 50
 FULL_PAGE = 100
 """After a page with this many entries, the next one is requested at once."""
@@ -168,7 +168,7 @@ class Watch:
                 await asyncio.sleep(PERIOD if self.lookers else IDLE_PERIOD)
 
     async def _request(self, view: KnownRobot) -> bool:
-        """Request its status and its new entries; return True if there are more entries."""
+        """Request a robot's status and its new entries; return True if there are more entries."""
         keys = self.keys.of(view.robot)
         said = await self.exchanges.request(keys.operator, NOW(), QUESTION_TIMEOUT)
         if not isinstance(said, dict) or "robot" not in said:  # an older Lumen

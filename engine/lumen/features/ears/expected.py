@@ -65,7 +65,7 @@ def heard_names(project: Project, states: Collection[str] | None) -> list[HeardN
 
 
 def expected(project: Project, heard: Iterable[HeardName], own: Iterable[str] = ()) -> list[list[str]]:
-    """Return sentences as words in small letters: forms of these names in any language, and the stories' sentences.
+    """Return sentences as words in lower case: forms of these names in any language, and the stories' sentences.
 
     `own` are texts that the robot itself says meanwhile. More likely sentences are repeated.
     """

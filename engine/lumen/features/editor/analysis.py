@@ -82,7 +82,7 @@ class Analysis:
 
     @property
     def known(self) -> KnownFindings:
-        """The findings at the last time that all files were readable, if they were computed."""
+        """The last findings that were computed while all files were readable; empty if there are none."""
         found = self.__dict__.get("diagnostics")
         return self._known if found is None or self.broken else frozenset(map(signature, found))
 

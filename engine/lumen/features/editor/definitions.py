@@ -1,4 +1,4 @@
-"""Finds the definition of a thing, and all its uses."""
+"""Finds the definition of the thing that a name refers to, and all its uses."""
 
 from lumen.features.editor.analysis import Analysis
 from lumen.language.diagnostics import Place

@@ -66,7 +66,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    """Return 0 if something was recorded, repaired or marked, else 1."""
+    """Record, repair a file or set a mark; return the exit code, 0 on success. Raises UsageError."""
     if options.recover:
         return _recover(options)
     span = seconds(options.span) if options.span else None

@@ -25,7 +25,7 @@ MAX_OUTPUT_BYTES = 1 * MEGABYTE
 """The greatest output of a program for one call, answers included."""
 MAX_UNREAD_MESSAGES = 1_000
 MAX_PRINTED_LINES = 40
-"""The printed lines that are shown within `PRINT_PERIOD`; further ones are counted."""
+"""The most printed lines that are shown within `PRINT_PERIOD`; further ones are counted."""
 PRINT_PERIOD = 1.0
 MAX_PRINTED_CHARACTERS = 300
 WRITE_PATIENCE = 1.0

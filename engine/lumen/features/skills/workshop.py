@@ -24,7 +24,7 @@ from lumen.upkeep.ratelimit import Backoff
 from lumen.upkeep.threads import WatchedThread
 
 MAX_PROCESSES = 4
-"""The calls of one skill that can be under way at the same time."""
+"""The most calls of one skill that can be under way at the same time."""
 FIRST_PAUSE, LONGEST_PAUSE = 0.5, 30.0
 """The pause before a program that crashed is started again, the first and the longest [s]."""
 LOADING = 20.0

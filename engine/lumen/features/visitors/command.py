@@ -1,4 +1,4 @@
-"""`lumen memory`: lists what the database module knows, and forgets a visitor permanently."""
+"""`lumen memory`: lists what the database module has stored, and forgets a visitor permanently."""
 
 import argparse
 import json

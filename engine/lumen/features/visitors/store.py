@@ -45,7 +45,7 @@ class JournalEntry(NamedTuple):
 
 
 class Forgotten(NamedTuple):
-    """The data that was deleted of a person."""
+    """How much data about a person was deleted."""
 
     visitors: int
     """The number of visitors."""

@@ -16,7 +16,7 @@ class DesiredState:
     centre: str
     """The centre's id."""
     term: int
-    """Grows when a centre takes over from another."""
+    """The number of the centre's term: it grows when a centre takes over from another."""
     version: int
     """Counts the centre's orders."""
     house: str
@@ -64,7 +64,8 @@ class FollowedOrder:
 
 
 def heed(followed: FollowedOrder, desired: DesiredState, robot: str) -> tuple[FollowedOrder, str]:
-    """Return the order that a robot follows after it received `desired`, and why it rejects that: empty if it does not.
+    """Return the order that a robot follows after it received `desired`, and why it rejects `desired`: empty if it does
+    not.
 
     No clock matters: term and version decide which order is newer. The signature must have been verified.
     """

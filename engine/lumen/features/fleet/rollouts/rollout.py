@@ -123,7 +123,7 @@ def _overruled(state: CentreState, heard: HeardRobots) -> CentreState:
 
 
 def _released(state: CentreState, heard: HeardRobots) -> CentreState:
-    """Return the state without exposed robots that have reported to be back, or whose bundle is proved."""
+    """Return the state without exposed robots that have reported that they are back, or whose bundle is proved."""
 
     def back(robot: str, bundle: str, version: int) -> bool:
         said = heard[robot].presence if robot in heard else None
@@ -167,7 +167,7 @@ def _told(rollout: Rollout, fleet: Fleet, heard: HeardRobots) -> str:
 def _assigned(state: CentreState, rollout: Rollout, fleet: Fleet, heard: HeardRobots, now: float) -> CentreState:
     """Return the state with the bundle given to as many robots as the step has and as may be exposed.
 
-    A robot that may still run a withdrawn bundle counts, and is chosen only after it has reported to be back.
+    A robot that may still run a withdrawn bundle counts, and is chosen only after it has reported that it is back.
     """
     target = rollout.plan.steps[rollout.at]
     room = allowed(rollout.plan, rollout.at, fleet) - len({*state.exposed, *rollout.assigned})
