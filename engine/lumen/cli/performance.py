@@ -26,14 +26,17 @@ GREETING = (
 
 
 class Performance:
-    """The output on a terminal of a whole exhibition that runs in one process."""
+    """The terminal output of a whole exhibition that runs in one process."""
 
     def __init__(self, setup: Setup, project: Project, made: Sequence[Services]) -> None:
         self.transcript = _VisitorsTranscript(setup, project, made)
         self._setup, self._took, self._lived = setup, 0.0, 0.0
 
     def introduce(self, services: Services, speed: str) -> None:
-        """Print the project, robot, behaviour, speed and story, and warn of another process or of missing images."""
+        """Print the project, robot, behaviour, speed and story.
+
+        Warn if another process already runs the project, or if there are no camera images.
+        """
         project, story = services.project, services.plan.story
         run_directory: RunDirectory = services.plan.options["directory"]
         pace = {"max": "as fast as this machine can", "1": "in real time"}.get(speed, f"at {speed} × real time")

@@ -227,7 +227,7 @@ def mean(word: object, near: str) -> str:
 
 
 def did_you_mean(word: object, candidates: Iterable[str], what: str = "") -> str:
-    """Return the hint for an unknown name: the nearest candidate, then all of them (`what`: "motions/ has")."""
+    """Return the hint for an unknown name: the nearest candidate, then up to eight after `what` ("motions/ has")."""
     names: Sequence[str] = sorted(set(candidates))
     near = nearest(word, names)
     shown = ", ".join(f"`{n}`" for n in names[:8]) + (", …" if len(names) > 8 else "")

@@ -64,7 +64,7 @@ def obstacles(content: bytes) -> tuple[Obstacle, ...]:
 
 
 def ground(content: bytes) -> tuple[Obstacle, ...]:
-    """Return the surfaces of a hall level with its stage, on which the robot can stand; none if they are unknown."""
+    """Return a hall's surfaces at the height of its stage, where the robot can stand; none if they are unknown."""
     stage, found = _solids(content)
     return tuple(_from(stage, shape) for shape, _, top in found if abs(top - stage.z) < TOE_HEIGHT)
 

@@ -48,7 +48,7 @@ def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
 
 
 def plain_texts(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
-    """Yield the places of texts on one line without a language that have words besides their expressions."""
+    """Yield the place of each one-line `say` text that has words outside its expressions, but no language."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for site in action_sites(machine):

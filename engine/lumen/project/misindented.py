@@ -185,7 +185,7 @@ def _moves(
 
 
 def _block(lines: Sequence[str], row: int) -> tuple[int, ...]:
-    """Return that line and the lines below it that are further in."""
+    """Return the indices of line `row` and of those below it that are indented further, or are items of its list."""
     end = row + 1
     for i in range(row + 1, len(lines)):
         if is_content(lines[i]):

@@ -45,7 +45,7 @@ class SkillRunner:
         self._ends |= ends
 
     def begin(self, command: Do, now: float) -> "RunningSkill | PretendedSkill":
-        """Begin a verb at `now` [s]. Raises RobotError if no feature has it, or if its last call does not end."""
+        """Begin a verb at `now` [s]. Raises RobotError if it is unknown, or a cancelled call of it has not ended."""
         verb = added_verb(command)
         if (end := self._ends.get(command.skill)) is not None:
             return PretendedSkill(command, verb, end, now)

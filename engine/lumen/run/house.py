@@ -51,7 +51,7 @@ class House:
         start(self._exhibitions)
 
     def tick(self) -> float:
-        """Tick each robot once; return the time of the first that continues [s]."""
+        """Tick each robot once; return the time [s] of the first that is still running."""
         for name, node in list(self._going.items()):
             try:
                 now = node.tick()

@@ -121,7 +121,7 @@ class Questions:
         return self._open.pop(id, None) is not None
 
     def silence(self, by: str) -> None:
-        """Silence the language model for `by`, also in the middle of an answer; an empty `by` lets it speak."""
+        """Silence the language model on behalf of `by`, even during an answer; an empty `by` lets it speak."""
         self.silenced = by
 
     @property

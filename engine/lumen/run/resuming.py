@@ -54,8 +54,9 @@ def resume(
 ) -> Resumption | Refusal:
     """Return how `new` continues from a snapshot of `old` at time 0 of a new clock, or why it can't.
 
-    The engine was `away` [s], during which timers ran on; before that the snapshot was `unchanged` for some time [s].
-    Newer files are a reload that waits for nothing, because what was under way has ended anyway.
+    The engine was away for `away` [s], during which timers ran on; before that, the snapshot had not changed for
+    `unchanged` [s]. Newer files are applied like a reload that does not wait, because what was under way has ended
+    anyway.
     """
     later = retimed(paused(snapshot, away)._replace(at=snapshot.at + unchanged + away), 0.0, "remaining")
     verdict = MigrationPlan(later) if old is new else plan(old, new, later, now=True)

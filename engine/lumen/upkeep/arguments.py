@@ -29,7 +29,7 @@ def missing_methods(value: Any, kind: type) -> list[str]:
 
 
 def need_map(value: Any, what: str) -> None:
-    """Raise UsageError if a value is no map with strings as keys."""
+    """Raise UsageError if a value is not a map with strings as keys."""
     need(value, Mapping, what, "a map")
     for key in value:
         need(key, str, f"each key of {what}", "a string")

@@ -15,7 +15,7 @@ MAX_BYTES = 4_000_000
 
 
 class ServerVectors:
-    """Requests vectors from a server, a batch at a time; questions and answers are sent alike."""
+    """Requests vectors from a server, a batch at a time, without telling it which texts are answers."""
 
     is_here = False
 

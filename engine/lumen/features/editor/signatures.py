@@ -31,7 +31,7 @@ class FunctionSignature(NamedTuple):
 
 
 def signature(analysis: Analysis, file: str, line: int, column: int) -> FunctionSignature | None:
-    """Return the innermost call that is open at a line and column, from 1; None if there is none."""
+    """Return the signature of the innermost call open at a line and column, counted from 1; None if there is none."""
     lines = lines_of(analysis.text(file))
     head = lines[line - 1][: column - 1] if line <= len(lines) else ""
     head = _TEXT.sub(lambda found: "_" * len(found[0]), re.sub(r"'[^']*$", "_", head) if head.count("'") % 2 else head)

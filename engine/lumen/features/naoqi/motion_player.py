@@ -26,7 +26,7 @@ class CuePlayer:
         self._begin = 0.0
 
     def begin(self, now: float) -> None:
-        """Begin the motion's time at `now` [s]."""
+        """Note that the motion begins at `now` [s]; the times of its cues count from then."""
         self._begin = now
 
     def __call__(self, now: float) -> None:

@@ -33,7 +33,7 @@ class Mover:
         self._aims |= {name: (angle, speed) for name, angle in angles.items() if name in self.goal}
 
     def drop_aims(self, joints: Collection[str]) -> None:
-        """A command owns these joints now."""
+        """Drop the aims of these joints, because a command owns them now."""
         for name in joints:
             self._aims.pop(name, None)
 

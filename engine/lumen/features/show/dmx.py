@@ -25,7 +25,7 @@ MULTICAST_REACH = 8
 class DmxUniverse:
     """Sends one universe. Nothing is sent before the first message, so that a start does not darken the hall.
 
-    Channels without a field, and of fields without a value so far, are 0; a field that a body lacks keeps its level.
+    A channel is 0 if it has no field, or its field has no value yet; a field missing from a body keeps its level.
     """
 
     def __init__(

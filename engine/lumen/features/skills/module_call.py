@@ -88,7 +88,7 @@ class ModuleCall:
             raise RobotFailedError(f"{self.title} can't be reached: {error}") from None
 
     def answered(self, body: Mapping[str, Any]) -> None:
-        """Take an answer, on any thread; those after the last one are ignored."""
+        """Receive an answer, on any thread; those that come after the result or the error are ignored."""
         with self._changed:
             if self._over:
                 return

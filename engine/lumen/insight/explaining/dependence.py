@@ -15,7 +15,7 @@ from lumen.statechart.values import Snapshot
 
 
 def needed(history: StepHistory, number: int) -> tuple[int, ...]:
-    """Return the numbers of the steps on which step `number` rests, itself included, in ascending order."""
+    """Return the numbers of step `number` and of all steps on which it depends, in ascending order."""
     found: set[int] = set()
     left = [number]
     while left:

@@ -29,7 +29,7 @@ class Stance(NamedTuple):
 def stand(
     legs: LegGeometry, torso: complex, height: float, lean: float, yaw: float, feet: Mapping[Side, Placed]
 ) -> Stance:
-    """Return the joints that hold the torso above `torso` at `height` [m], inclined forward by `lean` [rad].
+    """Return the stance with the torso at `height` [m] above the ground point `torso`, leaning forward by `lean` [rad].
 
     If both hips share one yaw motor, the heading of the torso follows from the feet: it is found by secant steps from
     `yaw` on, until both legs need the same motor angle. Otherwise the heading is halfway between those of the feet.

@@ -32,7 +32,7 @@ def cluster_address(text: str) -> str:
 
 @contextmanager
 def cluster(address: str, packed: bytes) -> Iterator[tuple[Executor, Any]]:
-    """Connect to a cluster; yield its executor, and a handle for `packed` in the arguments of tasks.
+    """Connect to a cluster; yield its executor, and a handle to pass to tasks in place of `packed`.
 
     Raises WorkersError if no scheduler answers, or it has no workers.
     """

@@ -14,7 +14,7 @@ _SENDERS = ("xstate.raise", "xstate.send", "xstate.sendTo")
 
 
 class XStateNames:
-    """Maps names so that two names of the file never become one, and each has the same result everywhere."""
+    """Maps the names in an XState file to Lumen's: no two become the same, and each becomes the same everywhere."""
 
     def __init__(self, outline: XStateStateTree) -> None:
         self.outline = outline

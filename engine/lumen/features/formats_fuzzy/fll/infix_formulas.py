@@ -50,7 +50,7 @@ def _tokens(text: str) -> list[Token]:
 
 
 class _FormulaParser(PrattParser):
-    """The powers are those of FuzzyLite's own table."""
+    """Parses FuzzyLite's formulas, with the binding powers of FuzzyLite's own table."""
 
     max_levels = MAX_FORMULA_LEVELS
 
