@@ -18,7 +18,8 @@ from lumen.robot.joint_ways import begun_from
 from lumen.robot.skill_runner import SkillRunner
 
 SHADOW = ""
-"""The id under which the verbs of features meet a command of the wrapped robot that ends them, or lets them move."""
+"""The id of a command in the executor of features' verbs that the wrapped robot performs: it ends them or wakes
+them."""
 
 Ability = TypeVar("Ability")
 
@@ -28,7 +29,7 @@ class BoundedRobot(CheckedRobot):
 
     If the robot senses its joints, a motion is delayed until they can reach its first key in time. Verbs of features
     are performed here unless the robot does that itself (`PerformsVerbs`): they wait for each other's parts of the
-    body, but not for what the robot moves. Rests and stops end them.
+    body, but not for parts that the wrapped robot moves. Rests and stops end them.
     """
 
     def __init__(self, robot: Robot, body: Body, fault: Callable[[str], LumenError] = of_own_robot) -> None:
@@ -84,7 +85,7 @@ class BoundedRobot(CheckedRobot):
         self.robot.start(id, command)
 
     def _angles(self) -> dict[str, float]:
-        """The present angles [rad] of the body's joints; empty if the robot does not sense them."""
+        """Return the present angles [rad] of the body's joints; empty if the robot does not sense them."""
         joints = self.read(Sense.JOINT)
         if not isinstance(joints, Joints):
             return {}
@@ -92,19 +93,19 @@ class BoundedRobot(CheckedRobot):
 
 
 def ability(robot: Robot, kind: type[Ability]) -> Ability | None:
-    """Return the robot, or the one that it wraps, as one with that ability; None if it lacks it."""
+    """Return the robot, or the one that it wraps, if it has that ability, else None."""
     own = robot.robot if isinstance(robot, CheckedRobot) else robot
     return own if isinstance(own, kind) else None
 
 
 def is_idle(robot: Robot) -> bool:
-    """Return True if the robot is idle by its own account (`Idles`) and performs no verb of a feature."""
+    """Return True if the robot reports that it is idle (`Idles`) and performs no verb of a feature."""
     own = ability(robot, Idles)
     return own is not None and own.idle and not (isinstance(robot, BoundedRobot) and robot.busy)
 
 
 class _Nothing:
-    """The activity of a shadow: the wrapped robot performs the command."""
+    """The activity of a `SHADOW` command, which the wrapped robot performs: it ends at once."""
 
     def advance(self, now: float) -> bool:
         return True

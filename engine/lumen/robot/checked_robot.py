@@ -11,14 +11,14 @@ Kind = TypeVar("Kind")
 
 
 def of_own_robot(what: str) -> LumenError:
-    """Return the error about a robot that is no robot of a package."""
+    """Return the error for a fault of a robot that does not come from a package."""
     return RobotError(f"the robot {what}")
 
 
 class CheckedRobot:
     """Passes everything on to `robot`; `fault` makes the error that ends the run if the robot returns something wrong.
 
-    `fault` gets what the robot did, such as "returned None from `poll`: it must return events".
+    `fault` is called with what the robot did, such as "returned None from `poll`: it must return events".
     """
 
     def __init__(self, robot: Robot, fault: Callable[[str], LumenError] = of_own_robot) -> None:

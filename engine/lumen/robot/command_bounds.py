@@ -1,4 +1,4 @@
-"""The limits and speeds of a body's joints, kept by each robot for all its commands, whoever sent them."""
+"""The limits and speeds of a body's joints, which each robot applies to all its commands, whoever sent them."""
 
 import logging
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ _log = logging.getLogger(__name__)
 class CommandBounds:
     """Brings commands within the limits and speeds of a body, and refuses what no robot of that body can perform.
 
-    Each change of a command is logged once, but those of aims: a stream of them would fill the log.
+    Each change of a command is logged once, except for aims: a stream of them would fill the log.
     """
 
     def __init__(self, body: Body) -> None:

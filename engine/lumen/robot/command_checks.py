@@ -28,20 +28,20 @@ from lumen.project.sounds import MAX_SOUND_DURATION
 from lumen.robot.command_parameters import CommandParameters, shown
 
 AIM_SPEED, POSTURE_SPEED = 0.3, 0.5
-"""Fractions of the greatest speed where a command from the bus names none."""
+"""Speeds of aims and postures as fractions of the maximum, if a command from the bus gives none."""
 
 RECORDING_DURATION, MAX_RECORDING_DURATION = 5.0, 20.0
-"""How long a recording is, as in 2015, and at most [s]: a message holds 1 MiB."""
+"""The default duration of a recording, as in 2015, and the longest [s]: a message holds 1 MiB."""
 
 MAX_JUDGES = 256
-"""The schemas of added verbs' arguments that are kept."""
+"""The number of compiled schemas of added verbs' arguments that are cached."""
 
 MAX_FADE_DURATION = 60.0
-"""How long lights may take to their colours [s]."""
+"""The longest time in which lights change to their colours [s]."""
 
 
 def aimed(p: CommandParameters, angles: Mapping[str, float]) -> Aim:
-    """An aim inside the joints' limits, as NAOqi would clip it."""
+    """Return an aim with its angles clipped to the joints' limits, as NAOqi does."""
     return Aim(nearest_angles(angles, p.project.body), p.fraction("speed", AIM_SPEED))
 
 
@@ -142,7 +142,7 @@ def read_sound(p: CommandParameters) -> PlaySound:
 
 
 def read_stop(p: CommandParameters) -> Stop:
-    """`what` is one of walk, play and say, or all."""
+    """Return the command to stop `what`: walk, play, say or all."""
     what = p.text("what", "all").lower()
     known: dict[str, Channel] = {channel: channel for channel in get_args(Channel)}
     if what not in known:
@@ -151,12 +151,12 @@ def read_stop(p: CommandParameters) -> Stop:
 
 
 def read_rest(p: CommandParameters) -> Rest:
-    """`by` is ours: the person who stops the robot."""
+    """Return the command to rest; `by`, which Lumen added, names the person who stops the robot."""
     return Rest(shown(p.text("by", "")))
 
 
 def read_style(p: CommandParameters) -> LifeStyle:
-    """A style of the project's own."""
+    """Return the project's life style of that name, or the style that switches life off."""
     name = shown(p.text("style"))
     if name == STILL:
         return STILL_STYLE
@@ -166,7 +166,7 @@ def read_style(p: CommandParameters) -> LifeStyle:
 
 
 def read_recording(p: CommandParameters) -> Record:
-    """`duration` [s] is ours."""
+    """Return the command to record; its `duration` [s] is a parameter that Lumen added."""
     duration = p.number("duration", RECORDING_DURATION)
     if not 0.1 <= duration <= MAX_RECORDING_DURATION:
         longest = f"{MAX_RECORDING_DURATION:g} s"
@@ -185,12 +185,12 @@ def added_verb(command: Do) -> VerbRow:
 
 @lru_cache(maxsize=MAX_JUDGES)
 def _judge(schema: str) -> JsonSchema:
-    """Return a JSON Schema that is made once: making it takes longer than all else that a command needs."""
+    """Return a compiled JSON Schema, cached because compiling it takes longer than the rest of a command."""
     return JsonSchema(json.loads(schema))
 
 
 def check_arguments(command: Do) -> None:
-    """Raises BadCommandError if no feature has that verb, or if its arguments don't fit its row."""
+    """Raise BadCommandError if no feature or project has that verb, or its arguments don't fit its row."""
     schema = argument_schema(added_verb(command))
     if _judge(json.dumps(schema)).fits(dict(command.arguments)):
         return

@@ -1,9 +1,9 @@
-"""Commands as the modules of 2015 wrote them, misspellings included, and ours, as what our robots understand.
+"""Commands as JSON: those of the modules of 2015, misspellings included, and those that Lumen added.
 
 A body is `{"type": …, "method": …, "parameter": {…}}`; the C# modules wrote `Method`. Names of keys and methods compare
-case-insensitively. A method is found by its name, whatever its type. Other names are those of motions, and last the
-names that the motions had in 2015; so a motion called `rest` does not keep the robot from resting. Lumen added `stop`,
-`look` and `perform`, which contains its motion.
+case-insensitively. A method is found by its name, whatever its type. A name that is no method is that of a motion, or
+the name that a motion had in 2015. Methods come first, so a motion called `rest` does not keep the robot from resting.
+Lumen added `stop`, `look` and `perform`, which contains its motion.
 """
 
 from collections.abc import Callable, Mapping
@@ -26,17 +26,17 @@ MAX_ID_LENGTH = 200
 
 
 def encode_command(command: RobotCommand) -> dict[str, Any]:
-    """The body of a command, spelt as in 2015 where 2015 had it."""
+    """Return the body of a command, spelt as in 2015 if the command existed then."""
     row = row_of(command)
     return {"type": row.kind, "method": row.method, "parameter": dict(row.encode(command))}
 
 
 def decode_command(body: Any, project: Project, pose: PoseSource = dict) -> RobotCommand | Language:
-    """The command that a body asks for; `pose` gives where the joints stand [rad], for `changeangle` alone.
+    """Return the command in a body; `pose` returns the joints' present angles [rad], which only `changeangle` needs.
 
-    `setlanguage` is a `Language`, for the owner of the language. Raises BadCommandError, naming the allowed values,
-    for a method that is unknown or impossible, and for a parameter that is missing or wrong; RobotRefusedError for a
-    relative change of a joint whose angle is unknown.
+    `setlanguage` becomes a `Language`, for the owner of the language. Raises BadCommandError, naming the allowed
+    values, for a method that is unknown or impossible, and for a parameter that is missing or wrong; RobotRefusedError
+    for a relative change of a joint whose angle is unknown.
     """
     order = lowered(body, "a command")
     method = order.get("method")
@@ -102,7 +102,7 @@ def _hand(p: CommandParameters, opening: float) -> Aim:
 
 
 def _move_toward(p: CommandParameters) -> Move:
-    """NAOqi has the speeds as fractions of the greatest: of the brisk pace."""
+    """Return the walk at these speeds, which are fractions of the maximum as in NAOqi: here that of the brisk pace."""
     from lumen.motion.gait import fastest_of  # imports numpy, which only this command needs
 
     given = p.number("x", 0.0), p.number("y", 0.0), p.turn()
@@ -121,4 +121,4 @@ _METHODS: Mapping[str, Callable[[CommandParameters], RobotCommand | Language]] =
     "closehand": lambda p: _hand(p, 0.0),
     "setlanguage": _set_language,
 }
-"""Each command's own method, and what else 2015 had for some."""
+"""The decoders of all methods: those in the rows of the commands, and others from 2015."""

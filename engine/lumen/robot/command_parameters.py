@@ -1,4 +1,4 @@
-"""The parameters of a command from the bus, read in the ways that 2015's modules wrote them."""
+"""The parameters of a command from the bus, also in the spellings of the modules of 2015."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -8,17 +8,17 @@ from lumen.language.diagnostics import did_you_mean
 from lumen.language.projects import Project
 
 MAX_MAGNITUDE = 2.0**63
-"""The largest number that a parameter may hold."""
+"""The largest magnitude of a number in a parameter."""
 LANGUAGES_2015 = {"english": "en", "indonesian": "id", "bahasa": "id"}
 
 PoseSource = Callable[[], Mapping[str, float]]
-"""The present angles of the joints [rad]."""
+"""A function that returns the present angles of the joints [rad]."""
 
 
 class CommandParameters:
     """The `parameter` of a command: each method reads one, and raises BadCommandError for one that is missing or wrong.
 
-    Names compare case-insensitively. `pose` is called for a command that counts from where the joints stand.
+    Names compare case-insensitively. `pose` is called only for a command that is relative to the present angles.
     """
 
     def __init__(self, method: str, data: Any, project: Project, pose: PoseSource) -> None:
@@ -32,7 +32,7 @@ class CommandParameters:
         return number(value, f"the parameter `{name}` of `{self.method}`")
 
     def fraction(self, name: str, default: float) -> float:
-        """A speed: NAOqi has it as a fraction of the greatest."""
+        """Return a speed as a fraction of the maximum, as in NAOqi, limited to 0.01 to 1."""
         return min(max(self.number(name, default), 0.01), 1.0)
 
     def text(self, name: str, default: str | None = None) -> str:
@@ -53,11 +53,11 @@ class CommandParameters:
         return code
 
     def turn(self) -> float:
-        """`tetha` was how it was spelt."""
+        """Return the turn, also under the name `tetha`, a misspelling of 2015."""
         return self.number("tetha", self.number("theta", 0.0))
 
     def joints(self) -> dict[str, float]:
-        """`angles` by `jointNames`; one of either may stand without a list."""
+        """Return `angles` by `jointNames`; a single value needs no list."""
         names, values = _listed(self.values.get("jointnames")), _listed(self.values.get("angles"))
         if not names or len(names) != len(values):
             raise BadCommandError(f"`{self.method}` needs as many `angles` as `jointNames`, and at least one")
@@ -65,7 +65,7 @@ class CommandParameters:
         return {n: number(v, f"the angle of `{n}`") for n, v in zip(joints, values, strict=True)}
 
     def joint(self, name: object) -> str:
-        """The joint that is meant: with a blank behind it, and with `Angkle`, is how they were spelt."""
+        """Return the joint of a name, also if it has blanks around it or `Angkle` for `Ankle`, as in 2015."""
         meant = str(name).strip().replace("Angkle", "Ankle")
         if meant not in self.project.body.joints:
             hint = did_you_mean(shown(meant), self.project.body.joints)
@@ -74,19 +74,19 @@ class CommandParameters:
 
 
 def lowered(data: Any, what: str) -> dict[str, Any]:
-    """An object with its keys in small letters."""
+    """Return an object with its keys in lower case. Raises BadCommandError if it is no object."""
     if not isinstance(data, Mapping):
         raise BadCommandError(f"{what} must be an object with names and values")
     return {str(key).lower(): value for key, value in data.items()}
 
 
 def shown(text: str) -> str:
-    """A stranger's text in a message of ours: short, and in one line."""
+    """Return a sender's text for use in a message: at most 40 characters, on one line."""
     return "".join(c if c.isprintable() else " " for c in text[:40])
 
 
 def number(value: Any, what: str) -> float:
-    """A number of moderate size."""
+    """Return a number as a float. Raises BadCommandError if it is none, or beyond MAX_MAGNITUDE."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= MAX_MAGNITUDE:
         raise BadCommandError(f"{what} must be a number")
     return float(value)

@@ -15,7 +15,7 @@ _log = logging.getLogger(__name__)
 
 
 class CommandQueries:
-    """Answers `cancel`, `outcome`, `stopped` and `resume` by `reply`.
+    """Answers the queries `cancel`, `outcome`, `stopped` and `resume` with `reply`.
 
     `resume` is called with the person who lets the robot move again.
     """
@@ -33,7 +33,7 @@ class CommandQueries:
         self._robot, self._reports, self._hold, self._reply, self._resume = robot, reports, hold, reply, resume
 
     def answer(self, message: Message) -> None:
-        """Answer one whose method is among `METHODS`."""
+        """Answer a message whose method is one of `METHODS`."""
         match method_of(message.body):
             case "resume":
                 self._let_go_on(message)
@@ -45,7 +45,7 @@ class CommandQueries:
                 self._request(message, method)
 
     def _let_go_on(self, message: Message) -> None:
-        """Resume in the name of the parameter `by`, and reply."""
+        """Let the robot move again on behalf of the person in `by`, and reply."""
         parameter = message.body.get("parameter")
         by = parameter.get("by") if isinstance(parameter, dict) else None
         self._resume(shown(by) if isinstance(by, str) and by else UNNAMED_PROGRAM)

@@ -1,4 +1,4 @@
-"""Commands that come over the bus: begun at the next tick, reported on until they are over."""
+"""Commands that arrive on the bus: they begin at the next tick, and are reported on until they are over."""
 
 import logging
 import threading
@@ -37,7 +37,7 @@ from lumen.upkeep.threads import MessageGuard
 MAX_WAITING_COMMANDS = 1_000
 """The number of commands of other modules that may wait."""
 MAX_WAITING_OWN = 1_000
-"""The number of commands of the behaviour that may wait beside them."""
+"""The number of commands of the behaviour that may wait in addition."""
 MAX_WAITING_AIMS = 100
 MAX_AIM_AGE = 0.5
 """The greatest age of an aim [s]: a newer one exists by then."""
@@ -59,7 +59,7 @@ _log = logging.getLogger(__name__)
 
 
 class _Arrival(NamedTuple):
-    """A message, and when it came [s]."""
+    """A message, and when it arrived [s]."""
 
     message: Message
     at: float
@@ -69,13 +69,13 @@ class CommandListener(HoldListener):
     """A listener to the commands on the bus; each method may be left out."""
 
     def given(self, command: RobotCommand, id: str) -> None:
-        """The robot begins a command."""
+        """Called when the robot begins a command."""
 
     def refused(self, method: str, reason: str) -> None:
-        """The robot does not begin a command; `method` is empty if it could not be read."""
+        """Called when the robot does not begin a command; `method` is empty if it could not be read."""
 
     def urgent(self) -> None:
-        """A message came, on any thread, that stops the robot: `begin` should be called soon."""
+        """Called on any thread when a message that stops the robot arrives: `begin` should be called soon."""
 
     def is_brains(self, id: str) -> bool:
         """Return whether a command of this id is one of the behaviour's."""
@@ -85,10 +85,10 @@ class CommandListener(HoldListener):
 class CommandReceiver:
     """Receives the commands that modules send to the robot's keys, as `m1`, `m2`, …, and those of a brain, as `b1`, ….
 
-    Messages may come on any thread; the robot is touched by `begin` alone. Everybody gets an answer, as `Reports` has
-    it. What rests or stops the robot is begun before everything that came with it, and what came before it is not
-    begun at all. As many commands wait for `begin` as their route keeps, as long as its time to live. Those of the
-    behaviour are counted apart. What stops the robot is never one too many, nor too late.
+    Messages may arrive on any thread; only `begin` uses the robot. Each sender gets an answer from `CommandReports`.
+    Commands that stop the robot begin before all that arrived with them; those that arrived before a stop of everything
+    do not begin at all. At most as many commands wait for `begin` as their route keeps, and for at most its time to
+    live; those of the behaviour are counted separately. Commands that stop the robot are exempt from both limits.
 
     A command with an `id` is performed once, however often its sender sends it; another one with that id is refused.
     Commands that stop the robot are performed each time that they are sent, with any id; only a message that the bus
@@ -212,7 +212,7 @@ class CommandReceiver:
         return key, self._bus.subscribe(key, receive)
 
     def _receive(self, message: Message) -> None:
-        """On whichever thread the bus has."""
+        """Queue a message for `begin`, or refuse it; called on a thread of the bus."""
         stopping, own = stops(message.body), self._is_brains(own_id(message.body))
         with self._coming:
             refusal = ENDED if self._closed else "" if stopping else self._full(own=own)
@@ -240,7 +240,7 @@ class CommandReceiver:
             return self._taken(self._received)
 
     def _full(self, *, own: bool) -> str:
-        """Why there is no room for one more, of the behaviour (`own`) or of other modules; empty if there is room."""
+        """Return why no further command, of the behaviour (`own`) or of other modules, may wait; empty if it may."""
         if own:
             waiting, most = self._own_waiting, MAX_WAITING_OWN
         else:
@@ -250,17 +250,17 @@ class CommandReceiver:
         return f"{waiting} commands are waiting already" if waiting >= most else ""
 
     def _refuse(self, message: Message, reason: str) -> None:
-        """Answer a command that was not even looked at; it may be sent again."""
+        """Report that a command failed before it was examined; its sender may send it again."""
         record = CommandRecord(message, own_id(message.body), method_of(message.body), state=FAILED, reason=reason)
         self._reply(message, record.report() if record.id else record.text())
 
     def _guarded(self, arrival: _Arrival, *, overtaken: bool = False) -> None:
-        """Take it; a fault of ours costs this command."""
+        """Handle a message; an error in Lumen's code loses only this command."""
         with self.guard(arrival.message.key):
             self._take(arrival, overtaken=overtaken)
 
     def _take(self, arrival: _Arrival, *, overtaken: bool = False) -> None:
-        """Do what a message asks, or report why not; `overtaken` by a command that stops everything."""
+        """Perform a message's command, or report why not; it is `overtaken` if a stop of everything came after it."""
         message = arrival.message
         record = CommandRecord(message, own_id(message.body), method_of(message.body), body=message.body)
         stopping = stops(message.body)
@@ -341,7 +341,8 @@ class CommandReceiver:
         return motion
 
     def _check_backlog(self, record: CommandRecord, command: RobotCommand) -> None:
-        """Raise RobotRefusedError if it would wait too long: it would be obsolete by then."""
+        """Raise RobotRefusedError for a text that is too long, or a command that would wait too long for earlier
+        ones."""
         takes = row_of(command).duration(command)
         record.parts, record.takes = parts_of(command, self._project.body), takes if isfinite(takes) else 0.0
         if isinstance(command, Say) and takes > MAX_SPEECH:

@@ -18,12 +18,7 @@ _ANSWERS = {"done": FINISHED, "error": FAILED, "cancelled": CANCELLED}
 
 @dataclass(eq=False)
 class CommandRecord:
-    """A command from the bus, `asker` the message that brought it.
-
-    `id` comes from its sender, and is empty if the sender gave none, as the modules of 2015; `at` is the robot's id.
-    The command moves these `parts` of the body for about `takes` [s]. `body` is that of the command, None if only the
-    id is known; `result` is what a verb of a feature returned.
-    """
+    """A command from the bus."""
 
     asker: Message
     id: str = ""
@@ -59,8 +54,8 @@ class CommandRecord:
 class CommandReports:
     """Remembers the records of commands, and reports each change of one.
 
-    `tell` publishes a report; `reply` answers a message: with the report if it has an id of its own, else with
-    2015's text, at the end.
+    `tell` publishes a report. `reply` answers the sender: with each report if the command has an id of the sender's,
+    else once at the end, with the text of 2015.
     """
 
     def __init__(self, tell: Callable[[dict[str, Any]], None], reply: Callable[[Message, Any], None]) -> None:
@@ -70,7 +65,7 @@ class CommandReports:
 
     @property
     def running(self) -> int:
-        """The number of commands that are under way, or wait for the parts they need."""
+        """The number of accepted commands that are not over: under way, or waiting for parts of the body."""
         return len(self._running)
 
     def ahead(self, parts: frozenset[str]) -> float:
@@ -82,7 +77,7 @@ class CommandReports:
         return self._known.get((sender, id)) or self._known.get((None, id))
 
     def asked(self, id: str, sender: str) -> CommandRecord | None:
-        """The record that this sender means with that id: its own, else the newest that has the id."""
+        """Return the record that this sender means by an id: its own command's, else the newest with that id."""
         others = (record for record in reversed(self._known.values()) if record.id == id)
         return self.find(id, sender) or next(others, None)
 
@@ -94,7 +89,7 @@ class CommandReports:
                 self._known.pop(next((key for key, old in self._known.items() if old.over), next(iter(self._known))))
 
     def accept(self, record: CommandRecord) -> None:
-        """The robot has it, under the id `at`."""
+        """Report that the robot has accepted a command, under the id `at` of its record."""
         self._running[record.at] = record
         self.change(record, ACCEPTED)
 
@@ -121,7 +116,7 @@ class CommandReports:
         self.repeat(record, record.asker)
 
     def repeat(self, record: CommandRecord, asker: Message) -> None:
-        """Tell how it stands, and this message as well."""
+        """Report the present state of a command again, to the subscribers and to the sender of this message."""
         record.asker = asker
         self._tell(record.report())
         if record.id:

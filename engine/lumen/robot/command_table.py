@@ -1,7 +1,7 @@
-"""What every robot has to know of each command, but how it performs it: a row for each.
+"""What every robot needs to know about a command, apart from how it performs the command: a row for each.
 
-A row says which parts of the body the command owns, which of those that wait goes first, how long the recording robot
-takes, and how it crosses the bus. Robots that move perform it in their `skills.py`.
+A row has the parts of the body that the command owns, its rank among waiting commands, its duration on the recording
+robot, and its form on the bus. Robots that move perform it in their `skills.py`.
 """
 
 from collections.abc import Callable, Mapping
@@ -58,24 +58,16 @@ from lumen.robot.motion_codec import decode_motion, encode_motion
 C = TypeVar("C")
 
 SPEECH_PAUSE, SPEECH_PER_CHARACTER = 0.4, 0.06
-"""How long a text takes to say where nobody says it [s], and each of its characters."""
+"""The duration of a text on a robot without a voice [s], and the additional duration of each character [s]."""
 WALKING_SPEED, TURNING_SPEED = 0.1, 0.25
-"""How fast a recorded walk goes [m/s] and turns [rad/s]: the simulated robot turns around by 90 degrees in 7 s."""
+"""The speed of the recording robot's walk [m/s] and turn [rad/s]: the simulated robot turns by 90 degrees in 7 s."""
 USUAL_DURATION, LOOK_DURATION = 2.0, 1.0
-"""How long the recording robot takes for a posture, and to turn its head [s]."""
+"""The durations of most commands, and of a turn of the head, on the recording robot [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class CommandRow(Generic[C]):
-    """One command.
-
-    `verb` is its name in the YAML, or what a motion or module calls it. Of commands that wait those of the lowest
-    `rank` go first. `parts` are those of the body that it owns from its beginning to its end. `duration` is how long
-    the recording robot takes [s]. On the bus it is `{type: kind, method, parameter}`, `encode` makes its parameters
-    and `decode` reads them; spelt as in 2015 where 2015 had it. `stop: CHANNEL` ends it, as `stop: all` does.
-    `check` raises BadCommandError for one that no robot of that body can perform. One that `moves` is for a robot that
-    nobody has stopped.
-    """
+    """The properties of one command."""
 
     command: type[C]
     verb: str
@@ -92,13 +84,13 @@ class CommandRow(Generic[C]):
 
 
 def owns(*parts: str) -> Callable[[object, Body], frozenset[str]]:
-    """The same parts of any body, for every command of a kind."""
+    """Return a function that returns the same parts for any command and body."""
     owned = frozenset(parts)
     return lambda _command, _body: owned
 
 
 def speech_duration(text: str) -> float:
-    """How long a text takes to say where nobody says it [s]."""
+    """Return the duration of a text on a robot without a voice [s]."""
     return SPEECH_PAUSE + SPEECH_PER_CHARACTER * len(text)
 
 
@@ -244,7 +236,7 @@ _AIM = CommandRow(
     owns(),
     check=check_aim,
 )
-"""Nobody waits for an aim, and it moves what no command owns."""
+"""An aim is not answered, and moves only joints that no command owns."""
 
 _LIVE = CommandRow(
     Live,
@@ -257,7 +249,7 @@ _LIVE = CommandRow(
     owns(),
     moves=False,
 )
-"""A manner, and no movement: a robot whose motors are off has none."""
+"""It sets a style and moves nothing by itself, so it is allowed while a person keeps the robot still."""
 
 _DO = CommandRow(
     Do,
@@ -281,7 +273,7 @@ _BY_COMMAND: Mapping[type, CommandRow[Any]] = {row.command: row for row in COMMA
 
 
 def row_of(command: RobotCommand) -> CommandRow[Any]:
-    """The row of a command."""
+    """Return the row of a command."""
     return _row_of_added(command) if isinstance(command, Do) else _BY_COMMAND[type(command)]
 
 
@@ -293,12 +285,12 @@ def _row_of_added(command: Do) -> CommandRow[Do]:
 
 
 def check_command(command: RobotCommand, body: Body) -> None:
-    """Raises BadCommandError for a command that no robot of that body can perform."""
+    """Raise BadCommandError for a command that no robot of that body can perform."""
     if lack := lack_of(command, body):
         raise BadCommandError(f"`{row_of(command).verb}`: {lack.message}")
     row_of(command).check(command, body)
 
 
 def parts_of(command: RobotCommand, body: Body) -> frozenset[str]:
-    """The parts of the body that a command owns from its beginning to its end."""
+    """Return the parts of the body that a command owns from its beginning to its end."""
     return row_of(command).parts(command, body)

@@ -1,4 +1,4 @@
-"""The words, sounds and skills of a motion, raised as events as their times come."""
+"""The words, sounds and skills of a motion, raised as events at their times."""
 
 from collections.abc import Callable
 
@@ -12,12 +12,12 @@ EventSink = Callable[[Event], None]
 
 
 def cue_event(motion: MotionDefinition, cue: Cue, now: float) -> Event:
-    """The event that a cue of that motion is due."""
+    """Return the event which reports that a cue of a motion is due."""
     return Event(CUE, {"motion": motion.name, "kind": cue.kind, "value": cue.value}, now)
 
 
 class CueNotifier:
-    """Hands a motion's cues to `notice` as events, each at its time."""
+    """Passes a motion's cues to `notice` as events, each at its time."""
 
     def __init__(self, motion: MotionDefinition, notice: EventSink) -> None:
         self._motion, self._notice = motion, notice
@@ -26,6 +26,6 @@ class CueNotifier:
         )
 
     def advance(self, t: float, now: float) -> None:
-        """Live until `t` [s] from the motion's beginning, which is `now` on the robot's clock."""
+        """Raise the cues until `t` [s] after the motion's beginning; that moment is `now` on the robot's clock."""
         while self._left and self._left[-1].time <= t:
             self._notice(cue_event(self._motion, self._left.pop(), now))

@@ -12,11 +12,11 @@ from typing import NamedTuple
 from lumen.upkeep.own_folders import private_folder
 
 DEDUPLICATION_FILE = "commands.jsonl"
-"""Its name, among what an exhibition keeps from run to run."""
+"""The name of the log among the files that an exhibition keeps from run to run."""
 MAX_LOGGED_IDS = 1_000
-"""The most ids in the log."""
+"""The number of latest commands that are kept."""
 DEDUPLICATION_WINDOW = 60.0
-"""For how long [s] a command may still come again: longer than a broker keeps one and a brain waits for its answer."""
+"""The time within which a command may arrive again [s]: longer than a broker keeps it, or a brain awaits its answer."""
 
 _log = logging.getLogger(__name__)
 
@@ -33,11 +33,12 @@ class BegunCommand(NamedTuple):
 
 
 class DeduplicationLog:
-    """The begun commands in a file, one to a line, each written before its command is begun; without a file none.
+    """The begun commands in a file, one per line, each written before its command begins; without a file, none.
 
-    `before` are those of the process before that are younger than `DEDUPLICATION_WINDOW`, the oldest first: who counts
-    its commands from 1 at each start may do so. The system has what is written, so that a process that is killed loses
-    nothing; a disk that takes nothing is logged once, and the robot obeys all the same.
+    `before` are those of the previous process that are younger than `DEDUPLICATION_WINDOW`, the oldest first; older
+    ones are ignored, because a sender may count its commands from 1 at each start. Each line is passed to the operating
+    system at once, so a killed process loses none. If the disk refuses, that is logged once, and the robot performs the
+    command all the same.
     """
 
     def __init__(self, file: Path | None = None) -> None:

@@ -1,9 +1,9 @@
 """Execution of commands, which wait until the parts of the body that they need are free.
 
 Head, arms, legs, voice, LEDs and ears each have one owner at a time. `Rest` and `Stop` cancel what runs and come before
-everything. Of the others, those of the behaviour come before those of other modules; in each group they wait by
-rank, then in the order they came. A body supplies the activities; this module keeps the order, the ownership and the
-answers, and is the same for every robot that executes commands itself.
+everything. Of the others, those of the behaviour come before those of other modules; in each group they wait by rank,
+then in the order they came. A body supplies the activities; this module handles the order, the ownership and the
+answers, in the same way for every robot that executes commands itself.
 """
 
 from collections import deque
@@ -33,7 +33,7 @@ class Activity(Protocol):
         ...
 
     def cancel(self) -> None:
-        """End early: `advance` turns true as soon as the body is balanced, at most 1 s later."""
+        """End early: `advance` returns True as soon as the body is balanced, at most 1 s later."""
         ...
 
 
@@ -58,7 +58,7 @@ class Yields(Protocol):
 
 
 class ExecutingRobot:
-    """The methods that all robots share whose commands run in an executor."""
+    """The methods of every robot whose commands run in an executor."""
 
     _executor: "Executor"
 
@@ -84,7 +84,7 @@ class _Task:
 
     @property
     def going(self) -> bool:
-        """True while it is under way and not cancelled."""
+        """True while the command is under way and not cancelled."""
         return self.activity is not None and not self.cancelled
 
     @property
@@ -104,14 +104,14 @@ class _Ended:
         return not any(task in self.alive for task in self.tasks)
 
     def cancel(self) -> None:
-        """A stop can't be stopped."""
+        """Do nothing, because a stop can't be cancelled."""
 
 
 class Executor:
     """Starts, queues, cancels and answers commands.
 
-    `begin` makes the activity of a command at a time [s], or raises RobotError; so does `skill` for the verbs of
-    features, which are performed alike for every robot. `parts` names what a command moves.
+    `begin` returns the activity of a command at a time [s], or raises RobotError; `skill` does the same for the verbs
+    of features, which every robot performs in the same way. `parts` returns the parts of the body that a command owns.
     """
 
     def __init__(
@@ -147,9 +147,9 @@ class Executor:
         self._cancel([t for t in self._tasks if t.id == id])
 
     def fail(self, reason: str, *, fallen: bool = False) -> None:
-        """Let everything that runs or waits fail at once.
+        """Make all commands that run or wait fail at once.
 
-        After it has `fallen`, verbs of features that move it are refused until it wakes.
+        If the robot has `fallen`, verbs of features that move it are refused until it wakes.
         """
         self._rests = self._rests or fallen
         for task in self._tasks[:]:
@@ -177,7 +177,7 @@ class Executor:
         return not (self._tasks or self._answers or self._begun)
 
     def advance(self, now: float) -> list[Event]:
-        """Live until `now` [s]; the answers of what ended, in the order it ended."""
+        """Run until `now` [s]; return the answers of the commands that ended, in that order."""
         self._run(now)
         self._admit(now)
         answers = [Event(f"{kind}.command.{task.id}", data, now) for kind, task, data in self._answers]
@@ -199,7 +199,7 @@ class Executor:
                     self._end(kind, task, data)
 
     def _admit(self, now: float) -> None:
-        """Begin what can; a command that waits keeps its parts from those behind it."""
+        """Begin the commands whose parts are free; one that waits reserves its parts against those behind it."""
         taken: set[str] = set().union(*(t.parts for t in self._tasks if t.activity))
         for task in self._tasks[:]:
             if task.activity is None:
@@ -227,12 +227,12 @@ class Executor:
         return self._skill(command, now)
 
     def _before(self, task: _Task) -> _Task | None:
-        """Return the move under way that this one continues without a stop in between; None for other commands."""
+        """Return the `Move` under way that this one replaces without a stop in between; None if there is none."""
         moving = isinstance(task.command, Move)
         return next((t for t in self._tasks if moving and isinstance(t.command, Move) and t.going), None)
 
     def _displace(self, task: _Task) -> None:
-        """End moves that block this command: they have no end of their own, so it would wait for ever."""
+        """End each `Move` that blocks this command: it has no end of its own, so the command would wait for ever."""
         if not isinstance(task.command, Move):
             endless = (t for t in self._tasks if isinstance(t.command, Move) and not t.parts.isdisjoint(task.parts))
             for move in list(endless):
@@ -256,7 +256,7 @@ class Executor:
 
 
 def _news(activity: Activity) -> Mapping[str, Any] | None:
-    """The data of `done.command.ID` for an activity that came to its end."""
+    """Return the data of `done.command.ID` for an activity that has finished."""
     if isinstance(activity, Misses) and activity.missed:
         return {MISSED: activity.missed}
     if isinstance(activity, Yields) and activity.result:

@@ -35,9 +35,9 @@ class GesturePlayer:
         self._offsets: dict[str, float] = {}
 
     def say(self, said: Say, duration: float, now: float, words: Sequence[WordTime] = ()) -> tuple[str, ...]:
-        """A text begins, which takes `duration` [s]; the names of the gestures that it gets.
+        """Plan the gestures of a text of `duration` [s] that begins at `now` [s]; return their names.
 
-        `words` tells when each begins; without them it is where in the text it stands.
+        `words` has the time at which each word begins; without it, the times follow from the words' places in the text.
         """
         library = NO_GESTURES if said.gestures == "none" else self.library
         self._texts += 1
@@ -58,7 +58,7 @@ class GesturePlayer:
         self._plan = ()
 
     def wanted(self, now: float, free: Collection[str]) -> dict[str, float]:
-        """The offsets at `now` [s] of joints in the parts that are `free`."""
+        """Return the offsets at `now` [s] of joints in the parts that are `free`."""
         found: dict[str, float] = {}
         for planned in self._plan:
             since = now - self._begin - planned.at
@@ -67,7 +67,7 @@ class GesturePlayer:
         return found
 
     def advance(self, now: float, dt: float, free: Collection[str]) -> dict[str, float]:
-        """The offsets at `now` [s], `dt` [s] after the last ones."""
+        """Return the offsets at `now` [s], `dt` [s] after the last ones."""
         goals = self.wanted(now, free) if self._plan else {}
         approach(self._offsets, goals, self._speeds, dt, SETTLING)
         return self._offsets

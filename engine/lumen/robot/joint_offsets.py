@@ -8,10 +8,10 @@ _REACHED = 1e-4
 def approach(
     offsets: dict[str, float], goals: Mapping[str, float], speeds: Mapping[str, float], dt: float, settling: float
 ) -> None:
-    """Bring `offsets` nearer to `goals` [rad; hands 0..1] in `dt` [s]; a joint that is wanted nowhere goes back to 0.
+    """Move `offsets` towards `goals` [rad; hands 0..1] for `dt` [s]; a joint without a goal returns to 0.
 
-    `settling` [s] is the time constant of the way, `speeds` [rad/s] is the most for each joint. Those that are back are
-    taken out.
+    `settling` [s] is the time constant of the approach, `speeds` [rad/s] limits each joint. Joints that are back at 0
+    are removed.
     """
     share = min(1.0, dt / settling)
     for joint in (*offsets, *(goals.keys() - offsets.keys())):

@@ -37,7 +37,7 @@ def home_angles(motion: MotionDefinition, body: Body, owned: Collection[str]) ->
 
 
 def away(home: Mapping[str, float], here: Mapping[str, float], body: Body, tolerance: float) -> bool:
-    """Return whether a leg is farther than `tolerance` [rad] from the posture that a motion begins in."""
+    """Return whether a joint of the legs is farther than `tolerance` [rad] from the posture that a motion begins in."""
     return any(abs(here[name] - home[name]) > tolerance for name in body.parts.get(LEGS, ()) if name in home)
 
 

@@ -68,7 +68,7 @@ class LifeLayer:
         self.speech = GesturePlayer(body, seed)
 
     def live(self, command: Live) -> None:
-        """Be alive like this from now on."""
+        """Use the style and the gestures of this command from now on."""
         self.style, self.speech.library = command.style, command.gestures
 
     def touched(self, sensor: str, now: float) -> None:
@@ -108,7 +108,7 @@ class LifeLayer:
         self.speech.hush(now)
 
     def led(self, joints: Collection[str], now: float) -> None:
-        """Note an external aim of these joints; if one is of the head, that is left alone for LED_FOR [s]."""
+        """Note an external aim of these joints; if one is of the head, life does not move the head for LED_FOR [s]."""
         if any(turn.joint in joints for turn in self._turns.values()):
             self._led_at = now
 
@@ -126,7 +126,7 @@ class LifeLayer:
     def advance(
         self, now: float, dt: float, free: Collection[str], vigour: Callable[[str], float]
     ) -> Mapping[str, float]:
-        """The offsets at `now` [s], `dt` [s] after the last ones; see `wanted`."""
+        """Return the offsets at `now` [s], `dt` [s] after the last ones; see `wanted`."""
         computed, found = self._computed
         if now >= computed + LIFE_PERIOD or found != (free, self.style):
             self._wanted, self._computed = self.wanted(now, free, vigour), (now, (free, self.style))
@@ -138,10 +138,10 @@ class LifeLayer:
         return self.offsets
 
     def wanted(self, now: float, free: Collection[str], vigour: Callable[[str], float]) -> dict[str, float]:
-        """Where the offsets go to at `now` [s], without the way there.
+        """Return the goals of the offsets at `now` [s], to which `advance` moves them smoothly.
 
-        `free` are the parts of the body that nothing else moves, `vigour` how lively each may be (0 to 1). Arms and
-        legs move only if the legs are free, too: a robot that walks or sits down needs all of its balance.
+        `free` are the parts of the body that nothing else moves; `vigour` returns how lively each may be (0 to 1). Arms
+        and legs move only if the legs are free, too: a robot that walks or sits down needs all of its balance.
         """
         alive = {part for part in free if part == HEAD or LEGS in free}
         found = {j: angle for j, angle in sway(self.style, self._seed, now).items() if self._part.get(j) in alive}

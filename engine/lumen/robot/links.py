@@ -51,7 +51,7 @@ class BodyLinks(Protocol):
         ...
 
     def shapes(self) -> Iterator[LinkShape]:
-        """Yield what one sees of the links."""
+        """Yield the visible shapes of the links."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""Motions as JSON data: how one crosses the bus, so that who plays it needs no file of it."""
+"""Motions as JSON data: a message contains the whole motion, so that its receiver needs no file."""
 
 from collections.abc import Mapping
 from itertools import pairwise
@@ -19,7 +19,7 @@ LIMIT_TOLERANCE = 1e-6
 
 
 def encode_motion(motion: MotionDefinition) -> dict[str, Any]:
-    """The motion as JSON data: keys are `[time, angle, interpolation, *handle_in, *handle_out]`, [s] and [rad]."""
+    """Return a motion as JSON data: keys are `[time, angle, interpolation, *handle_in, *handle_out]`, [s] and [rad]."""
     tracks = {joint: [_row(key) for key in keys] for joint, keys in motion.tracks.items()}
     cues = [[cue.time, cue.kind, cue.value] for cue in motion.cues]
     ends = {"start": motion.start, "end": motion.end, "origin": dict(motion.origin)}
@@ -62,7 +62,7 @@ def _row(key: Keyframe) -> list[Any]:
 
 
 def _track(joint: str, keys: Any, body: Body) -> tuple[Keyframe, ...]:
-    """The keys of a joint; their times have to increase, from above 0 on."""
+    """Return the keys of a joint. Raises BadCommandError unless their times are above 0 and increase."""
     found = tuple(_key(joint, row, body) for row in keys) if isinstance(keys, list) else ()
     times = [0.0, *(key.time for key in found)]
     if not found or any(after <= before for before, after in pairwise(times)):

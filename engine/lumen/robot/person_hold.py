@@ -30,20 +30,21 @@ def on_head(event: Event) -> bool:
 
 
 class HoldListener:
-    """Hears that a person stopped the robot, or lets it move again."""
+    """A listener that is notified when a person stops the robot, or lets it move again."""
 
     def held(self, stopped: StoppedBy | None) -> None:
-        """A person holds the robot, or lets it go (None)."""
+        """Called when a person stops the robot, or lets it move again (None)."""
 
     def noticed(self, event: Event) -> None:
-        """The event for the behaviour: `stop` or `resume`, `by` whom."""
+        """Called with the event for the behaviour: `stop` or `resume`, with the person in `by`."""
 
 
 class PersonHold:
     """The person who stopped the robot (`stopped`), None if it may move.
 
-    A command that moves the robot is then refused, whoever sends it. The hold ends by `release`, or if the behaviour
-    moves the robot after a hand was on its head. While the behaviour lets the robot rest, others do not move it either.
+    While the robot is held, a command that moves it is refused, whoever sends it. The hold ends with `release`, or when
+    the behaviour moves the robot after a hand was on its head. While the behaviour lets the robot rest, commands of
+    others that move it are refused, too.
     """
 
     def __init__(self, *listeners: HoldListener) -> None:
@@ -59,7 +60,7 @@ class PersonHold:
         self._notice(Event("stop", {"by": by}))
 
     def release(self, by: str) -> None:
-        """A person lets it move; the behaviour, which may wake it, is told."""
+        """Let the robot move again on behalf of `by`; the behaviour gets a `resume` event, and may wake the robot."""
         self._release()
         self._notice(Event("resume", {"by": by}))
 

@@ -91,12 +91,12 @@ class _Walking(_Lasting):
 
 
 class RecordingRobot(ExecutingRobot):
-    """Every command takes as long as the real one would: a motion its duration, speech 0.4 s and 0.06 s a character.
+    """Gives commands realistic durations: a motion takes its own, speech takes 0.4 s and 0.06 s per character.
 
     `behaves` maps a verb to `fails`, `hangs` or another duration [s], `results` an added verb to its result (else it is
     made of the defaults of its schema). With a `runner` other added verbs are performed by their code. `performed`
-    lists (time [s], command) in the order begun. `advance` is its passing of time; the head goes where commands say,
-    so that faces move in its camera.
+    lists (time [s], command) in the order begun. Time passes only by `advance`. The head turns as commands demand, so
+    that faces move in its camera.
     """
 
     def __init__(

@@ -20,7 +20,7 @@ def publish_on(
     ttl: float | None = None,
     origin: MessageOrigin = UNKNOWN_ORIGIN,
 ) -> None:
-    """Publish on a route, for as long as it says, else for `ttl` [s]. Raises BusError where the bus refuses."""
+    """Publish on a route, with the route's time to live, else `ttl` [s]. Raises BusError if the bus refuses."""
     row = project.routes.get(route)
     lasting = row.ttl if row and row.ttl is not None else ttl
     bus.publish(project.key_of(route), body, reply_to=reply_to, ttl=lasting, origin=origin)

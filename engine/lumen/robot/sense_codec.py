@@ -1,4 +1,4 @@
-"""Readings of the senses as the JSON bodies of 2015, and `time` [s], the robot's clock, which is ours."""
+"""Readings of the senses as the JSON bodies of 2015; Lumen added `time` [s], on the robot's clock."""
 
 import base64
 import wave
@@ -22,7 +22,7 @@ NO_READING = KeyError, TypeError, ValueError, OverflowError
 """The errors of a decoder that got a body without a reading."""
 JPEG_QUALITY = 80
 RECORDING_RATE = 16_000
-"""Samples of a recording a second."""
+"""The number of samples per second of a recording."""
 
 
 def encode_reading(sense: str, reading: OtherReading) -> dict[str, Any]:
@@ -40,7 +40,7 @@ def encode_reading(sense: str, reading: OtherReading) -> dict[str, Any]:
 def decode_reading(sense: str, body: Any, names: Sequence[str]) -> OtherReading | None:
     """Return the reading in a body of that sense; None if it has none, or is of a robot with other joints.
 
-    Of images it is always None: pictures are for other modules. Raises LumenError with the name of the installed
+    For images it is always None, because they are for other modules. Raises LumenError with the name of the installed
     package if its code is faulty.
     """
     row: SenseRow = table("senses")[sense]
@@ -57,7 +57,7 @@ def decode_reading(sense: str, body: Any, names: Sequence[str]) -> OtherReading 
 
 
 def encode_joints(reading: Joints) -> dict[str, Any]:
-    """Angles are in [rad]."""
+    """Return the body of a reading of the joints; angles are in [rad]."""
     body = {
         "name": list(reading.names),
         "angle": list(reading.angles),
@@ -81,7 +81,7 @@ def decode_joints(body: Mapping[str, Any], names: Sequence[str]) -> Joints | Non
 
 
 def encode_sonar(reading: Sonar) -> dict[str, Any]:
-    """Distances are in [m]."""
+    """Return the body of a reading of the sonars; distances are in [m]."""
     return {"rightSensor": reading.right, "leftSensor": reading.left, "time": reading.time}
 
 
@@ -98,7 +98,7 @@ def decode_tactile(body: Mapping[str, Any], names: Sequence[str]) -> Tactile:
 
 
 def encode_battery(reading: Battery) -> dict[str, Any]:
-    """The charge is in [%]."""
+    """Return the body of a reading of the battery; the charge is in [%]."""
     return {
         "percentage": reading.percentage,
         "isPlugged": reading.plugged,
@@ -135,11 +135,10 @@ def _position(body: Mapping[str, Any]) -> Whereabouts | None:
 
 
 def image_body(image: Image, number: int, date: str, size: Size | None = None, camera: str = "") -> dict[str, Any]:
-    """Return the body of a frame of that size: `number` counts frames, `date` is its time (ISO 8601), `camera` the
-    name of its camera.
+    """Return the body of a message with an image, of that size if one is given.
 
-    Renders and compresses, so call it from the thread that owns the camera. Raises RobotError if the robot cannot
-    give an image.
+    `number` counts frames, `date` is the time of the frame (ISO 8601), `camera` the name of its camera. Renders and
+    compresses, so call it from the thread that owns the camera. Raises RobotError if the robot cannot give an image.
     """
     pixels = image.pixels(size) if size else image.pixels()
     jpeg, (height, width) = _jpeg(pixels), pixels.shape[:2]
@@ -160,7 +159,7 @@ def image_body(image: Image, number: int, date: str, size: Size | None = None, c
 
 
 def recording_body(name: str, samples: bytes) -> dict[str, Any]:
-    """The body of a recording: `samples` of 16 bits, little-endian, one channel, `RATE` a second, as a WAV."""
+    """Return the body of a recording, a WAV: `samples` are 16 bits, little-endian, one channel, at RECORDING_RATE."""
     buffer = BytesIO()
     with wave.open(buffer, "wb") as file:
         file.setnchannels(1)

@@ -1,4 +1,4 @@
-"""The thread of one sense: it encodes and publishes readings, and blocks no caller that does not wait on purpose."""
+"""The thread of one sense: it encodes and publishes readings, and blocks only callers that choose to wait."""
 
 import logging
 import re
@@ -30,9 +30,9 @@ class PublishCounts:
 
 @dataclass(eq=False)
 class PendingReading:
-    """A reading on its way; it is published after the one handed over before it, if there is one to wait for.
+    """A reading that waits to be published, after the one handed over before it if there is one to wait for.
 
-    `begun` is set when its turn to be published has come, at `began` [s, monotonic], `done` when that is over.
+    `begun` is set when its publishing begins, at `began` [s, monotonic], and `done` when that has ended.
     """
 
     reading: OtherReading
@@ -54,10 +54,10 @@ class PendingReading:
 class SensePublisher:
     """One thread for one sense, with room for one reading: the newest wins, the others are counted as dropped.
 
-    `encode` makes the body and `publish` sends it, both on this thread. A body that the bus refuses or that a package
-    can't make (LumenError) costs that body alone, and each reason a line in the log. If the robot can't give the
-    sense (RobotError: a camera without OpenGL), the sense is off, with a line in the log, until `arm`. A `direct`
-    one has no thread: what it is handed has been published when `hand` returns.
+    `encode` makes the body and `publish` sends it, both on this thread. If the bus refuses a body, or a package can't
+    make it (LumenError), only that body is lost, and each reason is logged once. If the robot can't give the sense
+    (RobotError: a camera without OpenGL), the sense is off, with a line in the log, until `arm`. A `direct` publisher
+    has no thread: `hand` returns once the reading has been published.
     """
 
     PATIENCE = 1.0
@@ -148,7 +148,7 @@ class SensePublisher:
         self.count.published += 1
 
     def _refused(self, reason: str, fault: Exception | None = None) -> None:
-        """Count a refusal, and log each reason once, whatever its numbers; a `fault` of ours with its traceback."""
+        """Count a refusal; log each reason once, whatever its numbers, and a `fault` of Lumen with its traceback."""
         self.count.refused += 1
         with self._changed:
             kind = _DIGITS.sub("#", reason)

@@ -110,7 +110,7 @@ class RobotServer:
     def use(self, project: Project) -> None:
         """Switch to another bundle: its routes and periods from the next sample on, its motions for new commands.
 
-        A sense that was switched off gets another chance.
+        A sense that was switched off after an error is tried again.
         """
         self._listen(project)
         for broadcast in self._broadcasts.values():

@@ -27,7 +27,7 @@ _log = logging.getLogger(__name__)
 
 
 class SkillRunner:
-    """Begins performers; one that has not returned after it was cancelled is not begun again until it has.
+    """Begins the performers of verbs; one that was cancelled is not begun again until it has returned.
 
     With `lockstep` the robot's time stands still while a performer computes, as a story with real code needs: an
     `advance` returns only when each performer waits for a time that has not come, or has ended.
@@ -41,7 +41,7 @@ class SkillRunner:
         self._starter = WatchedThread("lumen-skills", self._start)
 
     def set_ends(self, ends: Mapping[str, Mapping[str, Any] | str]) -> None:
-        """Have verbs end so from now on, without their code: with a result, or by `fails` or `hangs`."""
+        """Set how verbs end from now on, without running their code: with a result, or by `fails` or `hangs`."""
         self._ends |= ends
 
     def begin(self, command: Do, now: float) -> "RunningSkill | PretendedSkill":
@@ -72,7 +72,7 @@ class SkillRunner:
 
 
 class PretendedSkill:
-    """A verb that a story has end in some way: an activity that runs no code. Raises RobotFailedError for `fails`."""
+    """A verb whose end a story sets: an activity that runs no code. Raises RobotFailedError for `fails`."""
 
     def __init__(self, command: Do, verb: VerbRow, end: Mapping[str, Any] | str, now: float) -> None:
         if end == "fails":
@@ -120,7 +120,7 @@ class RunningSkill:
             return self._over
 
     def cancel(self) -> None:
-        """Have the robot wait for it no more, and the performer end early if its row does not forbid that."""
+        """End the robot's wait for the verb, and end the performer early unless the verb's row forbids that."""
         self._left = True
         if self.row.cancel:
             self.end()

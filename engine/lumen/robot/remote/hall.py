@@ -1,4 +1,4 @@
-"""The hall around a robot that is somewhere else."""
+"""The hall around a robot in another process."""
 
 import logging
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from lumen.ports import Bus, Message
 from lumen.robot.robot_routes import HALL_ROUTE, SEEN_ROUTE, publish_on
 
 HALL_MESSAGE_TTL = 2.0
-"""For how long what is done in a hall may wait on the bus [s]."""
+"""The time to live on the bus of a visitor's action [s]."""
 
 _log = logging.getLogger(__name__)
 

@@ -1,4 +1,4 @@
-"""A robot on the other side of the bus, as the runtime sees it."""
+"""A robot in another process, which the runtime uses over the bus like any other."""
 
 import logging
 import time
@@ -32,10 +32,10 @@ from lumen.robot.sense_codec import decode_reading
 RESEND_PERIOD = 1.0
 """An unanswered command is sent again after this long [s].
 
-The robot performs it once all the same, unless it stops the robot: to stop twice is safe.
+The robot still performs it only once, unless it is a stop, which is safe to perform twice.
 """
 COMMAND_ANSWER_TIMEOUT = 5.0
-"""A command without any answer fails after this long [s], and is no longer wanted."""
+"""A command without any answer fails after this long [s], and is cancelled if the robot accepts it later."""
 OUTCOME_QUERY_PERIOD = 5.0
 """The outcome of a command is queried this long after its last report [s]."""
 AIM_TTL = 0.2
@@ -50,7 +50,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass
 class _Pending:
-    """A command that is not over, `heard` of, `cancelled`, or `held` back; times in [s] on the caller's clock."""
+    """A command that is not over; times are in [s] on the clock `patience`."""
 
     id: str
     command: RobotCommand | None
@@ -68,11 +68,11 @@ Delegate = Callable[[str, Perform], bool]
 class RemoteRobot:
     """The robot whose server is on this bus, as the routes of the project say.
 
-    Commands travel under ids that no other process has (`session`): by it the robot knows its brain. One that is not
-    heard of is sent again; one that the robot never took fails after 5 s, and would not be performed if it came after
-    all. What stops the robot has a way of its own on the bus: what was sent before and not heard of is called off with
-    it, what comes after it waits until the robot has it. `clock` [s] stamps events, `patience` [s] is the time that
-    answers take. `delegate` may take motions over.
+    The ids of its commands begin with `session`, which no other process has and by which the robot recognises its
+    brain. A command without an answer is sent again; after 5 s it fails, and is cancelled if the robot accepts it
+    later. Commands that stop the robot have a route of their own: commands sent before and not answered are cancelled,
+    and later ones wait until the robot has the stop. `clock` returns the time of events [s], `patience` the time by
+    which answers are awaited [s]. `delegate` may pass motions on to another module.
     """
 
     def __init__(
@@ -148,14 +148,15 @@ class RemoteRobot:
                 self._request("cancel", whole)
 
     def recover(self, session: str, ids: Iterable[str]) -> None:
-        """Ask what became of commands that another process of that session began; they are answered as our own."""
+        """Query the outcomes of commands that an earlier process of a session began; they are answered like new
+        ones."""
         now = self._patience()
         for id in ids:
             self._pending[f"{session}.{id}"] = _Pending(id, None, now, now)
             self._request("outcome", f"{session}.{id}")
 
     def lose(self, reason: str) -> None:
-        """The robot is gone, and with it all that it was doing."""
+        """End all open commands as lost, because the robot is gone."""
         for whole in list(self._pending):
             self._end(whole, "lost", reason)
 
@@ -172,7 +173,7 @@ class RemoteRobot:
         return begun
 
     def read(self, sense: Sense) -> Reading | None:
-        """The newest reading that has come; of images none, which are for other modules."""
+        """Return the newest reading that has arrived; None for images, which are for other modules."""
         found = self._readings.get(sense)
         return found[0] if found and isinstance(found[0], NumericReading) else None
 
@@ -181,7 +182,7 @@ class RemoteRobot:
         return found[0] if found else None
 
     def time(self) -> float | None:
-        """The robot's own time [s], by its newest reading and how long ago that came; None before the first."""
+        """The robot's own time [s], from its newest reading and the time since that arrived; None before the first."""
         newest = max(self._readings.values(), key=lambda found: found[1], default=None)
         return None if newest is None else newest[0].time + self._clock() - newest[1]
 
@@ -211,7 +212,7 @@ class RemoteRobot:
                 self._request("cancel", whole)
 
     def _release(self) -> None:
-        """The robot has what stops it, or never will: now send what was held back."""
+        """Send the commands that were held back, unless one that stops the robot is still on its way."""
         if self._stopping():
             return
         now = self._patience()
@@ -230,7 +231,7 @@ class RemoteRobot:
             _log.warning("a command was not sent to the robot: %s", error)
 
     def _sense(self, sense: str, message: Message) -> None:
-        """On whichever thread the bus has."""
+        """Store a reading of a sense; called on a thread of the bus."""
         try:
             reading = decode_reading(sense, message.body, tuple(self._project.body.joints))
         except LumenError as error:
@@ -270,7 +271,7 @@ class RemoteRobot:
         self._events.append(Event(f"{kind}.command.{pending.id}", data, self._clock()))
 
     def _chase(self) -> None:
-        """Send again what was not heard of, ask after what was not heard of for long, and give up in the end."""
+        """Resend commands without an answer, query those without recent news, and fail those that stay unanswered."""
         now = self._patience()
         for whole, pending in list(self._pending.items()):
             quiet = now - pending.queried
