@@ -12,7 +12,8 @@ from lumen.statechart.type_checks import fits, type_checks
 def forgetful(machine: MachineDefinition, snapshot: Snapshot, person: PersonName) -> Snapshot:
     """Return the snapshot without the name in its context and its timers; the same object if the name is not in it.
 
-    A value that its type does not allow any more is the one that the key has first, which is the author's, and stays.
+    A value that does not fit its type without the name is replaced by the key's initial value. Initial values stay,
+    because the author wrote them.
     """
     checks, context = type_checks(machine), dict(snapshot.context)
     for key, value in snapshot.context.items():
@@ -34,7 +35,7 @@ def forgetful(machine: MachineDefinition, snapshot: Snapshot, person: PersonName
 
 
 def forgetful_data(frozen: Mapping[str, Any], person: PersonName) -> dict[str, Any]:
-    """Do the same for the data of a snapshot (`lumen.statechart.serialize`); leave other data unchanged."""
+    """Return the data of a snapshot (`lumen.statechart.serialize`) without the name; leave other data unchanged."""
     found = dict(frozen)
     if "context" in found:
         found["context"] = _values(found["context"], person)

@@ -12,7 +12,7 @@ NOT_TAKEN = {"refused": "reload-refused", "rolled back": "reload-rolled-back"}
 def happening(message: Message, robot: str) -> str:
     """Return what a message reports about this robot, as a word or the text of a mark; empty for usual messages.
 
-    A fall, an error that the behaviour hears of, files that are refused or taken back, and a mark.
+    Unusual are a fall, an error that reaches the behaviour, files that are refused or rolled back, and a mark.
     """
     match message.body:
         case {"ask": operator_requests.MARK.ask, **rest} if message.key in _keys(OPERATOR_REQUEST, robot):
@@ -29,5 +29,5 @@ def happening(message: Message, robot: str) -> str:
 
 
 def _keys(key: str, robot: str) -> tuple[str, str]:
-    """Return one of our keys with the robot's name, and its alias without a name, for a single robot."""
+    """Return one of Lumen's keys with the robot's name, and its alias without a name, for a single robot."""
     return key_of_robot(key, robot), INTERNAL_ALIASES[key]

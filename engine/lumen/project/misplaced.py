@@ -49,7 +49,7 @@ def misnamed_for(root: Path, folder: str, name: str) -> Misnamed | None:
 
 
 def _listed(root: Path, folder: str) -> list[str]:
-    """The names in a folder of the project; none if the folder is outside of the project."""
+    """Return the names in a folder of the project; none if the folder is outside of the project."""
     try:
         listed = sorted(os.listdir(root / folder))
         return listed if _is_inside(root, folder) else []

@@ -40,7 +40,7 @@ def whole_translation(document: Document, path: NodePath) -> str:
 
 
 def quoting(whole: str) -> str:
-    """The hint for a text that a comma splits; `whole` is what `whole_text` returns."""
+    """Return the hint for a text that a comma splits; `whole` is what `whole_text` returns."""
     return f"a comma ends a text inside braces: put quotes around the whole text: {whole}"
 
 

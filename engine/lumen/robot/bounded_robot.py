@@ -18,8 +18,7 @@ from lumen.robot.joint_ways import begun_from
 from lumen.robot.skill_runner import SkillRunner
 
 SHADOW = ""
-"""The id of a command in the executor of features' verbs that the wrapped robot performs: it ends them or wakes
-them."""
+"""The id of the wrapped robot's commands in the executor of features' verbs: there they end verbs, or allow them."""
 
 Ability = TypeVar("Ability")
 

@@ -21,15 +21,23 @@ class CommandRecord:
     """A command from the bus."""
 
     asker: Message
+    """The message that brought it, or the last query about it."""
     id: str = ""
+    """The id from its sender; empty if the sender gave none, as the modules of 2015."""
     method: str = ""
     at: str = ""
+    """The robot's id of it; empty until the robot has it."""
     state: str = ""
     reason: str = ""
+    """Why it failed."""
     result: Mapping[str, Any] | None = None
+    """The result of a verb of a feature."""
     parts: frozenset[str] = frozenset()
+    """The parts of the body that it owns."""
     takes: float = 0.0
+    """Its estimated duration [s]."""
     body: Any = None
+    """The body of its message, None if only the id is known."""
 
     @property
     def over(self) -> bool:
@@ -41,13 +49,13 @@ class CommandRecord:
         return self.id or self.asker.correlation_id or self.at
 
     def report(self) -> dict[str, Any]:
-        """The body on `avatar.ROBOT.event.command`."""
+        """Return the body of a report on `avatar.ROBOT.event.command`."""
         body = {"id": self.known_as, "state": self.state, "method": self.method}
         news = {"reason": self.reason or None, "result": self.result}
         return {**body, **{name: value for name, value in news.items() if value is not None}}
 
     def text(self) -> str:
-        """The final answer in the format of the modules of 2015."""
+        """Return the final answer in the format of the modules of 2015."""
         return f"command failed: {self.reason}" if self.state == FAILED else f"command {self.state}"
 
 

@@ -87,7 +87,7 @@ class LifeLayer:
             self._attention = before.again(yaw, pitch, self.style.attention, now)
 
     def heard_by_head(self, yaw: float, pitch: float, now: float) -> None:
-        """As `heard`, but relative to the measured direction of the head: microphones in the head turn with it."""
+        """Do what `heard` does, relative to the measured direction of the head: its microphones turn with it."""
         turned = {
             role: self._turns[role].sign * self._offsets.get(self._turns[role].joint, 0.0)
             for role in HEAD_ROLES

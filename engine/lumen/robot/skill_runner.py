@@ -162,7 +162,7 @@ class RunningSkill:
             self._changed.notify_all()
 
     def _settled(self) -> bool:
-        """True if the performer has ended, or waits for a later time."""
+        """Return True if the performer has ended, waits for a later time, or is no longer awaited."""
         waits = self._until is not None and self._now < self._until < inf
         return waits or self._over or self._left or bool(self.thread.lost)
 

@@ -55,22 +55,22 @@ class Coverage:
 
     @property
     def skills(self) -> tuple[int, int]:
-        """How many of the project's own skills were used, and how many there are."""
+        """Number of the project's own skills that were used, and of all."""
         return len(self.used.intersection(self.project.verbs)), len(self.project.verbs)
 
     @property
     def counts(self) -> dict[str, tuple[int, int]]:
-        """What was covered and what there is, of each kind; `skills` only in a project that has some."""
+        """Numbers of covered items and of all items, by kind; `skills` only in a project that has some."""
         counts = {"states": self.states, "transitions": self.transitions}
         return {**counts, "skills": self.skills} if self.project.verbs else counts
 
     @property
     def percent(self) -> float:
-        """The smallest of these, in percent."""
+        """The lowest coverage of any kind [%]."""
         return min(100.0 * some / every if every else 100.0 for some, every in self.counts.values())
 
     def gaps(self) -> list[Gap]:
-        """What is left, by file and line."""
+        """Return what was not covered, sorted by file and line."""
         unused = (
             Gap(Place(f"skills/{name}.yaml"), f"skill `{name}` is never used")
             for name in self.project.verbs

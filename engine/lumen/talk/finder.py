@@ -9,15 +9,15 @@ from lumen.talk.patterns import Form, Slot, forms
 from lumen.talk.speech import Speech
 
 NEAR = 5
-"""The most words, fillers aside, between a negation and the words that it negates."""
+"""The most words, not counting fillers, between a negation and the words that it negates."""
 NEAR_AFTER = 2
-"""The same if the negation follows."""
+"""The same for a negation that follows the words."""
 MAX_NAME_WORDS = 4
 _ENDS, _SLOTS = 0, 1
-"""Keys of a node of the trie beside its words: the forms that end there, and the slots that follow."""
+"""Keys of a node of the trie besides words: for the forms that end there, and for the slots that follow."""
 _MAX_FINDS = 500
 _MAX_WALKS = 10_000
-"""Of one text: patterns with several slots have no end of ways to fit a long one."""
+"""The most steps of a search in one text: patterns with several slots fit a long text in very many ways."""
 
 _Node: TypeAlias = dict[Any, Any]
 Languages: TypeAlias = Mapping[str, Sequence[str]]
@@ -27,14 +27,14 @@ _PARTICLES = frozenset(
         "bint", "ibn", "abu", "ter", "ten", "zu", "af",
     )
 )  # fmt: skip
-"""Words in lower case that a name may hold."""
+"""Words in lower case that a name may contain."""
 
 
 class Entry(NamedTuple):
     """A form in the trie: its name, its strength, and the rules that apply to it.
 
-    `row` is the row of a table of answers. `strength` is the number of its words that are no fillers. A form that is
-    `alone` must be a whole clause; `negative` and `question` forms hold such a word themselves.
+    `row` is the row of a table of answers. `strength` is the number of its words that are not fillers. A form that is
+    `alone` must be a whole clause; a `negative` or `question` form contains a negation or a question word itself.
     """
 
     name: str
@@ -47,7 +47,7 @@ class Entry(NamedTuple):
 
 
 class Find(NamedTuple):
-    """A form in a text: words `start` to `end`, and what its slots caught; a list's entry counts its words."""
+    """A form found in a text: the words from `start` to before `end`, and what its slots caught."""
 
     entry: Entry
     start: int
@@ -76,11 +76,11 @@ class ReadSentence:
         self.walks = 0
 
     def said(self, start: int, end: int) -> str:
-        """These words as they were said."""
+        """Return the words from `start` to before `end` as they were said."""
         return self.text[self.spans[start][0] : self.spans[end - 1][1]] if end > start else ""
 
     def is_whole(self, find: Find) -> bool:
-        """Whether a clause holds nothing else but fillers and forms of the same name."""
+        """Return whether the clauses of a find contain nothing else but fillers and forms of the same name."""
         words = range(len(self.words))
         inside = set(self.clauses[find.start : find.end])
         rest = [i for i in words if self.clauses[i] in inside and not self.filler[i] and not find.start <= i < find.end]
@@ -90,7 +90,7 @@ class ReadSentence:
         return all(any(other.start <= i < other.end for other in same) for i in rest)
 
     def negation(self, find: Find) -> int | None:
-        """Which word negates a find; None if none does."""
+        """Return the index of the word that negates a find; None if none does."""
         if find.entry.negative or find.entry.anyhow:
             return None
         before = self._negating("negations", range(find.start - 1, -1, -1), self.clauses[find.start], NEAR)
@@ -100,7 +100,8 @@ class ReadSentence:
         return self._negating("negations_after", after, self.clauses[find.end - 1], NEAR_AFTER)
 
     def _negating(self, kind: str, places: Iterable[int], clause: int, near: int) -> int | None:
-        """The first word of that kind within the clause, with at most `near` words between that are no fillers."""
+        """Return the index of the first word of a kind in the clause, after at most `near` words that are not
+        fillers."""
         negations, contrasts, between = self._marked(kind), self._marked("contrasts"), 0
         for i in places:
             if self.clauses[i] != clause or contrasts[i]:
@@ -113,7 +114,7 @@ class ReadSentence:
         return None
 
     def is_asked(self, find: Find) -> bool:
-        """Whether it is part of a who, why or when question."""
+        """Return whether a find is part of a who, why or when question."""
         if find.entry.question:
             return False
         clause = self.clauses[find.start]
@@ -148,7 +149,7 @@ class Finder:
 
     `tables` are phrases by language for each name, `rows` the same for each row of the answers of a name, `lists` the
     phrases of the entries of each list with the entry. Names in `anyhow` are found even if they are negated. `others`
-    are phrases that are not looked for, and that are no names either.
+    are phrases that are not searched for, but whose words do not count as a person's name either.
     """
 
     def __init__(
@@ -164,7 +165,7 @@ class Finder:
         self._tables = (*tables.values(), *(table for several in (rows or {}).values() for table in several), *others)
         self.root: _Node = {}
         self.leading: list[tuple[frozenset[str], _Node]] = []
-        """Forms that begin with a slot, and words that such a form needs."""
+        """The forms that begin with a slot, each with words that it needs."""
         self.slots_only: list[tuple[Form, Entry]] = []
         self.lists = {name: self._list(entries) for name, entries in (lists or {}).items()}
         for name, table in tables.items():
@@ -175,7 +176,7 @@ class Finder:
 
     @cached_property
     def phrases(self) -> frozenset[tuple[str, ...]]:
-        """The words of all phrases without slots; none of them is a name."""
+        """The words of all phrases without slots, which do not count as a person's name."""
         texts = {text for table in self._tables for several in table.values() for text in several}
         return frozenset(self.speech.same(form.literals) for text in texts for form in forms(text) if form.plain)
 
@@ -225,7 +226,7 @@ class Finder:
             _insert(self.root, parts, entry)
 
     def read(self, text: str) -> ReadSentence:
-        """Find all forms that have words of their own in a text."""
+        """Read a text and find all forms in it, except those that consist of slots only."""
         reading = ReadSentence(text, self.speech)
         words, root = reading.words, self.root
         for start, word in enumerate(words):
@@ -240,7 +241,7 @@ class Finder:
         return reading
 
     def slotted(self, reading: ReadSentence) -> dict[str, list[Find]]:
-        """Find the forms that are slots only."""
+        """Return the forms in a text that consist of slots only, by name."""
         if reading.slotted is None:
             found: dict[str, list[Find]] = {}
             reading.slotted = found
@@ -315,7 +316,7 @@ class Finder:
     def _names(
         self, reading: ReadSentence, start: int, small: frozenset[str], *, careful: bool, last: bool
     ) -> Iterator[int]:
-        """The ends of a name that begins with a word, the longest first: one to four words of one clause."""
+        """Yield the ends of a name that begins at a word, the longest first: one to four words of one clause."""
         ends = self._name_ends(reading, start, small, careful=careful)
         yield from reversed(ends[-1:] if last else ends)
 
@@ -348,7 +349,7 @@ class Finder:
         return [end for end in found if not careful or self._is_sure(reading, start, end, small, several=several)]
 
     def _refused(self, word: str, speech: Speech, small: frozenset[str], *, careful: bool, several: bool) -> bool:
-        """Whether no name begins with that word; one of two capitalised words may be a state, as in "Happy Salma"."""
+        """Return whether no name can begin with a word; several capitalised words can be one, as in "Happy Salma"."""
         if word in small or word in speech.negations or word in speech.questions:
             return True
         return careful and not several and (word in speech.not_names or word in speech.name_ends)
@@ -392,7 +393,7 @@ def _appended(slots: list[tuple[Slot, _Node]], slot: Slot) -> _Node:
 
 
 def _has_capitals(reading: ReadSentence) -> bool:
-    """Whether the speaker's words come with capitals, beyond those with which every sentence begins and "I"."""
+    """Return whether a text has capitals, apart from "I" and the first words of clauses."""
     found = reading.kept.get("capitals")
     if found is None:
         text, spans, clauses = reading.text, reading.spans, reading.clauses
@@ -409,7 +410,7 @@ def _begins_with_capital(reading: ReadSentence, position: int) -> bool:
 
 
 def _caseless(said: str) -> bool:
-    """Whether a word is of a script without capitals."""
+    """Return whether a word is in a script without capitals."""
     return said.upper() == said.lower()
 
 

@@ -11,7 +11,7 @@ BLANKS = "".join(chr(code) for code in range(0x3001) if chr(code).isspace() and 
 """Unicode's White_Space; Python also counts four separators of records."""
 
 MAX_TEXT_EXAMINED = 1_000
-"""Characters of a text that is searched."""
+"""The number of characters of a text that are examined."""
 
 _AROUND = BLANKS + ".,;:!?…\"'“”‘’„«»()[]-–—。！？、，"
 _ENDS = re.compile(r"[.!?;:,…。！？、，；：؟،।]|\s[-–—]+\s")
@@ -118,7 +118,7 @@ def after(text: str, phrase: str) -> str:
 
 
 def placed_words(text: str) -> Iterator[tuple[str, int, int]]:
-    """The words of a text with their places, punctuation left out."""
+    """Yield the words of a text without punctuation, each with its start and end."""
     blanked = text.translate(WORDS_ONLY)
     position = 0
     for word in blanked.split():
@@ -128,14 +128,14 @@ def placed_words(text: str) -> Iterator[tuple[str, int, int]]:
 
 
 def _ends(text: str, last: int, start: int) -> bool:
-    """Whether a clause ends between two words: a full stop within "3.5" ends none."""
+    """Return whether a clause ends between two words; the full stop within "3.5" ends none."""
     if start - last == 1:
         return text[last] > "\u0500" and _ENDS.match(text, last) is not None
     return _ENDS.search(text, last, start) is not None
 
 
 def _is_title(word: str, text: str, end: int) -> bool:
-    """Whether the full stop after a word is that of an abbreviated title, as in "Dr. Hasan"."""
+    """Return whether the full stop after a word is that of an abbreviated title, as in "Dr. Hasan"."""
     return word in _TITLES and text[end : end + 2] == ". "
 
 

@@ -1,4 +1,5 @@
-"""The rows of `hears` of a behaviour: which of them a sentence takes, in which order, and what was caught for it."""
+"""The rows of `hears` of a behaviour: which of them may be taken for a sentence, in which order, and what their slots
+catch."""
 
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,26 +17,26 @@ HEARD = "heard"
 ALWAYS = ("text", "phrase", "answer")
 """The keys of `heard` that every row has."""
 MATCHER = 1
-"""The version of the rules by which a sentence finds its row; a journal holds it."""
+"""The version of the rules by which a row is chosen for a sentence; journals record it."""
 _MAX_READINGS = 64
 ENTRY = "context."
-"""How a name begins that is the path of phrases of a list's entry."""
+"""The prefix of a name that is the path, in the context, of the phrases of a list's entry."""
 
 Dropped = Literal["", "negated", "not negated", "part", "question", "no question", "refusal"]
 """Why a find does not count for a row; empty if it counts."""
 
 
 class Taken(NamedTuple):
-    """A row that a sentence may take: its number, and what was found for it; nothing for `else`."""
+    """A row that may be taken for a sentence: its number, and the find for it, which `else` lacks."""
 
     number: int
     find: Find | None = None
 
 
 class RowOrder(NamedTuple):
-    """The rows of a state that a sentence may take, the best first.
+    """The rows of a state that may be taken for a sentence, the best first.
 
-    The `late` ones, which are slots only and then `else`, count only if no state has taken another.
+    Those in `late`, rows of slots only and then `else`, count only if no state has taken another row.
     """
 
     first: tuple[Taken, ...]
@@ -76,7 +77,7 @@ class Hearing:
         self._finders: dict[int, tuple[Any, Finder]] = {}
 
     def read(self, text: str) -> ReadSentence:
-        """Read a text; the last ones are kept."""
+        """Read a text; the results for the last texts are cached."""
         reading = self._readings.get(text)
         if reading is None:
             reading = self._readings[text] = self.finder.read(text)
@@ -85,7 +86,7 @@ class Hearing:
         return reading
 
     def order(self, number: int, text: str, context: Mapping[str, Any]) -> RowOrder:
-        """The rows that a sentence may take, of the state that the row of this number belongs to."""
+        """Return the rows that may be taken for a text, of the state to which the row of this number belongs."""
         reading = self._readings.get(text) or self.read(text)
         found: RowOrder | None = reading.kept.get(number)
         if found is None:
@@ -110,7 +111,8 @@ class Hearing:
         return found
 
     def nearest(self, number: int, text: str, context: Mapping[str, Any]) -> tuple[Find, Dropped] | None:
-        """The best find of the row of this number whether or not it counts, and why it does not; None without any."""
+        """Return the best find for the row of this number, counted or not, and why it does not count; None without
+        any."""
         reading, row, asked = self.read(text), self.rows[number], asked_in(self.blocks[number])
         find = self.best(reading, row, asked, context) or self.best(reading, row, asked, context, counting=False)
         if find is None:
@@ -142,7 +144,7 @@ class Hearing:
     def best(
         self, reading: ReadSentence, row: Hears, asked: set[str], context: Mapping[str, Any], *, counting: bool = True
     ) -> Find | None:
-        """The find for a row: the strongest, of equals the one of the upper answer, then the last.
+        """Return the find for a row: the strongest; of equals, that of the upper answer, then the last.
 
         Only finds that count are considered, unless `counting` is false.
         """
@@ -171,12 +173,12 @@ class Hearing:
             yield from self.finder.slotted(reading).get(name, ())
 
     def entry(self, path: str, context: Mapping[str, Any]) -> Any:
-        """The phrases at a path of the context, `context.round.entry.right`; None if there are none."""
+        """Return the phrases at a path of the context, as `context.round.entry.right`; None if there are none."""
         table = value_at(context, path.split(".")[1:])
         return table if isinstance(table, str | list | tuple | Mapping) else None
 
     def _entry_finder(self, path: str, context: Mapping[str, Any]) -> Finder | None:
-        """The phrases at a path of the context, as a finder; None if there are none."""
+        """Return a finder of the phrases at a path of the context; None if there are none."""
         table = self.entry(path, context)
         if table is None:
             return None
@@ -189,7 +191,8 @@ class Hearing:
 
 
 def dropped(reading: ReadSentence, find: Find, way: str, asks: bool) -> Dropped:
-    """Why a find does not count in that way: found, negated or asked; `asks` if a row takes questions for it."""
+    """Return why a find does not count for a row of that `way`; `asks` is whether a row takes questions for its
+    name."""
     if reading.negation(find) is not None:
         return "" if way == "not" else "negated"
     if way == "not":
@@ -202,12 +205,12 @@ def dropped(reading: ReadSentence, find: Find, way: str, asks: bool) -> Dropped:
 
 
 def asked_in(block: Sequence[Hears]) -> set[str]:
-    """The names that rows of a state take questions for."""
+    """Return the names for which rows of a state take questions."""
     return {name for row in block if row.way == "asked" for name in row.names}
 
 
 def hearing_of(machine: MachineDefinition) -> Hearing:
-    """The rows of a machine, made when they are first needed and kept beside it."""
+    """Return the `Hearing` of a machine, which is made when it is first needed and kept with the machine."""
     found: Hearing | None = machine.__dict__.get("_hearing")
     if found is None:
         with gc_paused():  # nothing that is made here is garbage
@@ -217,7 +220,7 @@ def hearing_of(machine: MachineDefinition) -> Hearing:
 
 
 def always_caught(machine: MachineDefinition, row: Hears) -> frozenset[str]:
-    """The keys that `heard` has whenever a row is taken: not the slots that some of its forms lack."""
+    """Return the keys that `heard` has whenever a row is taken, without slots that some of its forms lack."""
     found = [frozenset(slot.name for slot in form.parts if isinstance(slot, Slot)) for form in _forms(machine, row)]
     return frozenset(ALWAYS).union(frozenset.intersection(*found) if found else ())
 
@@ -230,25 +233,25 @@ def _forms(machine: MachineDefinition, row: Hears) -> Iterator[Form]:
 
 
 def by_language(value: Any) -> dict[str, tuple[str, ...]]:
-    """Phrases as an entry of a list has them: a text, a list of texts, or one for each language."""
+    """Return phrases by language, given as a text, a list of texts, or a map with these for each language."""
     table = value if isinstance(value, Mapping) else {"": value}
     rows = {key: (row,) if isinstance(row, str) else tuple(row or ()) for key, row in table.items()}
     return {key: tuple(text for text in row if isinstance(text, str)) for key, row in rows.items()}
 
 
 def phrases_in(entry: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
-    """The `phrases` of an entry of a list, by which a slot of the list's name finds it."""
+    """Return the `phrases` of a list's entry by language; a slot with the list's name catches the entry by them."""
     value = entry.get("phrases")
     return by_language(value) if isinstance(value, str | list | tuple | Mapping) else {}
 
 
 def languages_of(rows: Sequence[Answer]) -> frozenset[str]:
-    """The languages that a table of answers has phrases in."""
+    """Return the languages in which a table of answers has phrases."""
     return frozenset(language for row in rows for language in row.phrases)
 
 
 def in_language(value: Any, language: str, languages: frozenset[str]) -> Any:
-    """Of a map of languages the current one's value, else the first; any other value as it is."""
+    """Return the value for a language in a map of languages, else the first; return any other value unchanged."""
     if not isinstance(value, Mapping) or not value or not value.keys() <= languages | {language}:
         return value
     return value[language] if language in value else next(iter(value.values()))

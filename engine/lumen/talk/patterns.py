@@ -1,6 +1,6 @@
 """Phrases as patterns: `(a|b)`, `[optional]`, `{TYPE}` or `{TYPE:SLOT}`, and a full stop for a whole clause.
 
-A pattern is expanded into its forms when it is read; what can't be read so is taken as the plain words it has.
+A pattern is expanded into its forms when it is read; a phrase that is not a valid pattern counts as its plain words.
 The signs are those of JSGF and of Home Assistant's `hassil`.
 """
 
@@ -58,7 +58,7 @@ class PatternError(ValueError):
 
 @lru_cache(maxsize=8192)
 def forms(phrase: str) -> tuple[Form, ...]:
-    """Return the forms of a phrase, in the order written; those of its plain words if it is no sound pattern."""
+    """Return the forms of a phrase, in the order written; that of its plain words if it is not a valid pattern."""
     try:
         return read_pattern(phrase)
     except PatternError:
@@ -67,12 +67,13 @@ def forms(phrase: str) -> tuple[Form, ...]:
 
 @lru_cache(maxsize=8192)
 def read_pattern(phrase: str) -> tuple[Form, ...]:
-    """Return the forms of a phrase; raise PatternError if it is no sound pattern."""
+    """Return the forms of a phrase. Raises PatternError if it is not a valid pattern."""
     return _formed(*_expanded(phrase), phrase)
 
 
 def written_forms(phrase: str) -> Iterator[tuple[str | Slot, ...]]:
-    """The forms of a phrase as they are written, texts and slots in order; the phrase if it is no sound pattern."""
+    """Yield the forms of a phrase as written, texts and slots in order; the whole phrase if it is not a valid
+    pattern."""
     try:
         texts, slots = _expanded(phrase)
     except PatternError:
@@ -122,7 +123,7 @@ class _Reader:
         return found
 
     def sequence(self, closing: str) -> list[str]:
-        """The forms up to `closing` or a `|`, neither of which is read."""
+        """Return the texts of the forms up to a closing bracket or a `|`, which is not read."""
         found = [""]
         while self.position < len(self.phrase) and (sign := self.phrase[self.position]) not in ")]}|":
             more = self.group() if sign in "([" else [self.slot() if sign == "{" else self.plain()]
@@ -179,7 +180,7 @@ _EMPTY = "remove the empty alternative; put an optional part in [ ]"
 
 @lru_cache(maxsize=8192)
 def slots_of(phrase: str) -> tuple[Slot, ...]:
-    """The slots of a phrase."""
+    """Return the slots of a phrase, each once."""
     if "{" not in phrase:
         return ()
     return tuple(dict.fromkeys(part for form in forms(phrase) for part in form.parts if isinstance(part, Slot)))

@@ -12,14 +12,14 @@ from lumen.talk.patterns import Slot, forms, written_forms
 from lumen.talk.speech import NEGATIONS, NEGATIONS_AFTER, QUESTIONS
 
 NONSENSE = ("lorem ipsum dolor sit amet", "")
-"""Texts that take `else`: no phrase is in them, and the first is too long for a name."""
+"""Texts for which `else` is taken: they contain no phrase, and the first is too long for a name."""
 SAMPLES: Mapping[str, tuple[str, Any]] = {
     "name": ("Budi", "Budi"),
     "name?": ("Budi", "Budi"),
     "number": ("3", 3),
     "text": ("something", "something"),
 }
-"""For the types of slots that are not lists: a text, and the value that it catches."""
+"""For each type of slots that is not a list: a text, and the value that the slot catches."""
 
 _Lists = Mapping[str, Sequence[Mapping[str, Any]]]
 
@@ -32,9 +32,10 @@ class SampleSentence(NamedTuple):
 
 
 def of_phrase(phrase: str, lists: _Lists, literals: Sequence[Any] = ()) -> Iterator[SampleSentence]:
-    """A sentence for each form of a phrase, in the order written; none for a form with a list that has no phrases.
+    """Yield a sentence for each form of a phrase, in the order written; none for a form with a list without phrases.
 
-    With `literals` there are more, with each of these in the slots that it fits, and with other entries of the lists.
+    With `literals` there are more sentences: with each literal in the slots that it fits, and with other entries of the
+    lists.
     """
     for form in written_forms(phrase):
         slots = [part for part in form if isinstance(part, Slot)]
@@ -50,7 +51,7 @@ def of_phrase(phrase: str, lists: _Lists, literals: Sequence[Any] = ()) -> Itera
 def of_row(
     machine: MachineDefinition, row: Hears, context: Mapping[str, Any], literals: Sequence[Any] = ()
 ) -> Iterator[str]:
-    """Sentences that a row may be taken by, the plainest first; another row of its state may have more words.
+    """Yield sentences for which a row may be taken, the simplest first; another row of its state may match more words.
 
     `literals` are tried in its slots, too: its guard may compare them with what is caught.
     """
@@ -70,7 +71,7 @@ def of_row(
 
 
 def _tables(machine: MachineDefinition, name: str, context: Mapping[str, Any]) -> Iterator[Languages]:
-    """The phrases of a name, by language."""
+    """Yield the tables of a name's phrases, each by language."""
     if name.startswith(ENTRY):
         value = value_at(context, name.split(".")[1:])
         if isinstance(value, str | list | tuple | Mapping):
@@ -82,7 +83,7 @@ def _tables(machine: MachineDefinition, name: str, context: Mapping[str, Any]) -
 
 
 def _in_way(machine: MachineDefinition, way: str, language: str, text: str) -> Iterator[str]:
-    """The sentence as it is, refused, or within a question."""
+    """Yield sentences with a text in the way that a row requires: as it is, negated, or within a question."""
     if way == "":
         yield text
     elif way == "not":
@@ -110,6 +111,6 @@ def _samples(slot: Slot, lists: _Lists, literals: Sequence[Any]) -> Iterator[tup
 
 
 def _plain(table: Languages, lists: _Lists) -> Iterator[str]:
-    """The first sentence that has no slots, of the phrases of an entry."""
+    """Yield the sentence of an entry's first phrase that has a form without slots, if there is one."""
     phrases = (phrase for several in table.values() for phrase in several if any(form.plain for form in forms(phrase)))
     yield from (next(of_phrase(phrase, lists)).text for phrase in islice(phrases, 1))

@@ -16,16 +16,16 @@ NUMBERS, CONTRACTIONS = "numbers", "contractions"
 WORD_LISTS = (
     FILLERS, SMALL_WORDS, NEGATIONS, NEGATIONS_AFTER, CONTRASTS, QUESTIONS, QUESTIONS_ANYWHERE, NOT_NAMES, NAME_ENDS,
 )  # fmt: skip
-"""The names of phrases that are no meanings."""
+"""The reserved names of phrases that are lists of words without a meaning of their own."""
 TABLES = (NUMBERS, CONTRACTIONS)
-"""The names of answers that are no answers: number words and contractions, each with its meaning."""
+"""The reserved names of answers that are tables of words: number words and contractions, each with its meaning."""
 
 Phrases = Mapping[str, Mapping[str, tuple[str, ...]]]
 _HUNDRED, _THOUSAND = 100, 1000
 
 
 class WordList:
-    """Words and sequences of words; `marks` which words of a text are part of one."""
+    """Words and sequences of words, as entries to be found in texts."""
 
     def __init__(self, entries: Iterable[tuple[str, ...]]) -> None:
         self.by_first: dict[str, list[tuple[str, ...]]] = {}
@@ -40,11 +40,11 @@ class WordList:
         return word in self.single
 
     def are_in(self, words: Sequence[str]) -> bool:
-        """Whether an entry is among the words."""
+        """Return whether `words` contain an entry."""
         return not self.by_first.keys().isdisjoint(words) and any(self.marks(words))
 
     def length(self, words: Sequence[str], start: int) -> int:
-        """Return the number of words of its longest entry that begins there."""
+        """Return the number of words of the longest entry that begins at the index `start`; 0 if none does."""
         for entry in self.by_first.get(words[start], ()):
             length = len(entry)
             if length == 1 or tuple(words[start : start + length]) == entry:
@@ -52,7 +52,7 @@ class WordList:
         return 0
 
     def marks(self, words: Sequence[str]) -> list[int]:
-        """For each word the length of the entry that it is part of, 0 if it is part of none."""
+        """Return for each word the length of the entry that it is part of, 0 if it is part of none."""
         found = [0] * len(words)
         if self.by_first.keys().isdisjoint(words):
             return found
@@ -99,7 +99,7 @@ class Speech:
         self.small = frozenset(word for words in self.small_words.values() for word in words)
 
     def same(self, words: Iterable[str]) -> tuple[str, ...]:
-        """The words with contractions written out and number words as digits."""
+        """Return the words with contractions written out and number words as digits."""
         same = self._same
         words = tuple(words)
         if same.keys().isdisjoint(words):
@@ -113,7 +113,8 @@ class Speech:
         return tuple(found)
 
     def number(self, words: Sequence[str], start: int) -> tuple[int, int]:
-        """Return the number that begins there and its end, which is the start without a number."""
+        """Return the number that begins at the index `start`, and the index after it, which is `start` without a
+        number."""
         total = part = 0
         position = start
         while position < len(words):
@@ -139,7 +140,7 @@ class Speech:
 
 
 def _power(number: int) -> int:
-    """The largest power of ten that divides a number."""
+    """Return the largest power of ten that divides a number."""
     power = 1
     while number % (10 * power) == 0:
         power *= 10

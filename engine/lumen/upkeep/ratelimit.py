@@ -62,7 +62,8 @@ class RateLimiter:
         self._senders: dict[str, dict[str, float]] = {}
 
     def apart(self, key: str, sender: str) -> str:
-        """The key under which a sender's messages are counted: a separate one, unless too many others sent recently."""
+        """Return the key under which a sender's messages are counted: a separate one, unless too many others sent
+        recently."""
         if len(self._senders) > MAX_KEYS:
             self._senders.clear()
         now, senders = self._clock(), self._senders.setdefault(key, {})

@@ -53,12 +53,19 @@ class _Pending:
     """A command that is not over; times are in [s] on the clock `patience`."""
 
     id: str
+    """The id under which the brain started it."""
     command: RobotCommand | None
+    """The command; None if another process of this session sent it."""
     since: float
+    """When it was first sent."""
     queried: float
+    """When it was last sent, queried or reported on."""
     heard: bool = False
+    """Whether the robot has reported on it."""
     cancelled: bool = False
+    """Whether it is to be cancelled."""
     held: bool = False
+    """Whether it waits until the robot has a command that stops it."""
 
 
 Delegate = Callable[[str, Perform], bool]
@@ -148,8 +155,7 @@ class RemoteRobot:
                 self._request("cancel", whole)
 
     def recover(self, session: str, ids: Iterable[str]) -> None:
-        """Query the outcomes of commands that an earlier process of a session began; they are answered like new
-        ones."""
+        """Query the outcomes of commands that an earlier process of a session began; they are answered as usual."""
         now = self._patience()
         for id in ids:
             self._pending[f"{session}.{id}"] = _Pending(id, None, now, now)

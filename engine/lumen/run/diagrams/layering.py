@@ -137,9 +137,7 @@ def _narrow(ranks: Mapping[N, int], sizes: Mapping[N, Extent], widest: float) ->
 def _with_ways(
     ranks: Mapping[N, int], room: dict[N, Extent], edges: Sequence[Edge[N]]
 ) -> tuple[list[list[object]], dict[tuple[object, object], list[object]], dict[object, Extent]]:
-    """Return the layers, with a narrow node wherever an edge passes through one, and each edge as the nodes along
-    it.
-    """
+    """Return the layers with a narrow node where an edge passes, each edge as the nodes along it, and all sizes."""
     layers: list[list[object]] = [[] for _ in range(max(ranks.values(), default=-1) + 1)]
     for n, rank in ranks.items():
         layers[rank].append(n)
@@ -216,9 +214,8 @@ def _centres(
 
 
 def _apart(wished: Sequence[float], widths: Sequence[float]) -> list[float]:
-    """Return the places nearest to the wished ones, in the same order and with distance: the mean of pushing right and
-    left.
-    """
+    """Return the places nearest to the wished ones that do not overlap: the mean of pushing right and of pushing
+    left."""
     right, left = list(wished), list(wished)
     for i in range(1, len(right)):
         right[i] = max(right[i], right[i - 1] + (widths[i - 1] + widths[i]) / 2 + GAP)

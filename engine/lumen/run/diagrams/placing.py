@@ -1,6 +1,4 @@
-"""Places the boxes of a diagram: the content of a box is laid out first, then counts as one node of its
-surroundings.
-"""
+"""Places the boxes of a diagram: the content of a box is laid out first, then the box as one node."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -9,9 +7,7 @@ from lumen.run.diagrams.diagram import Diagram, StateBox
 from lumen.run.diagrams.layering import GAP, Extent, Point, layered
 
 WIDEST, WAYS = 1260.0, 60.0
-"""The greatest width of a layer, and the room around each frame for arrows [px], so that the whole is readable at
-1400.
-"""
+"""The greatest width of a layer, and the room around a frame for arrows [px]: readable in a width of 1400."""
 TITLE, ROW = 14.0, 12.0
 """Sizes of letters [px]."""
 TITLE_HEIGHT, ROW_HEIGHT = 20.0, 16.0

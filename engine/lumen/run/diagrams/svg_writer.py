@@ -110,9 +110,7 @@ def _arrows(arrows: tuple[PlacedArrow, ...]) -> Iterator[str]:
 
 
 def _spread(arrows: tuple[PlacedArrow, ...]) -> dict[tuple[int, bool], Point]:
-    """Return the points at which arrows begin (True) and end, spread along a box's side in the order of their other
-    ends.
-    """
+    """Return the points where arrows begin (True) and end, spread along a side in the order of their other ends."""
     sides: dict[tuple[str, bool], list[tuple[float, int, bool, PlacedBox]]] = {}
     for number, arrow in enumerate(arrows):
         down = arrow.start.corner.y < arrow.end.corner.y
