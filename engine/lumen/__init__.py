@@ -1,6 +1,7 @@
 """Lumen: the behaviour of a humanoid robot, written in YAML.
 
-The names below are the promise we keep; each is imported when it is first used, so that `import lumen` costs nothing.
+The names below are the public API, which stays compatible; each is imported when it is first used, so that `import
+lumen` costs nothing.
 """
 
 from typing import TYPE_CHECKING

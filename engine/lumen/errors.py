@@ -94,7 +94,7 @@ class JournalError(LumenError):
 
 
 class RecordingError(LumenError):
-    """A file is no recording (MCAP), or the disk does not take one."""
+    """A file is not a recording (MCAP), or a recording can't be written to the disk."""
 
 
 class RobotError(LumenError):
@@ -181,7 +181,7 @@ class ModuleError(LumenError):
 
 
 class UndeliveredError(LumenError):
-    """An alert did not arrive; `final` says whether a new attempt would fail in the same way."""
+    """An alert did not arrive; `final` is whether a new attempt would fail in the same way."""
 
     def __init__(self, message: str, *, final: bool = False) -> None:
         super().__init__(message)

@@ -10,13 +10,13 @@ INSTALL_BARE = "pip install --no-deps 'dm-control>=1.0.50,<2'"
 
 
 class MissingExtraError(UsageError):
-    """A feature needs packages that are not installed; the message says which command installs them."""
+    """A feature needs packages that are not installed; the message has the command that installs them."""
 
 
 def demand(extra: str, what: str, *modules: str, instead: str = "") -> None:
-    """Raise MissingExtraError where one of these modules, which `extra` brings for `what`, is not installed.
+    """Raise MissingExtraError if a module that `what` needs, and `extra` installs, is missing.
 
-    `instead` says what works without them. This function imports none of them.
+    `instead` is what works without these modules. This function imports none of them.
     """
     missing = [module for module in modules if not _is_installed(module)]
     if not missing:

@@ -221,7 +221,8 @@ def _modules(attendance: RobotAttendance, project: Project) -> Iterator[Finding]
 
 
 def _skills(attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
-    """Whether the programs of the project's skills are where the robot's process runs, or are modules that live."""
+    """Yield for each of the project's skills whether its program is where the robot's process runs, or its module
+    lives."""
     modules = {name: module for name, row in project.verbs.items() if (module := _module_of(row))}
     lacking = attendance.lacking(set(modules.values())) if modules else set[str]()
     for name, module in modules.items():

@@ -57,7 +57,7 @@ PLACEHOLDERS: Mapping[str, Callable[[Path], Iterable[str]]] = {
     "ROUTE": _routes,
     "OLD": lambda root: ("live", "HEAD"),
 }
-"""By the placeholder of an argument in `--help`, else by its destination.
+"""Functions from a project's folder to names, by the placeholder of an argument in `--help`, else by its destination.
 
 All other arguments are files or free text.
 """

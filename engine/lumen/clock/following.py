@@ -21,7 +21,8 @@ SLOWEST, FASTEST = 0.05, 2.0
 class FollowingClock:
     """A clock that runs at `speed` times real time, or at the pace of a robot's clock if reported (`follow`).
 
-    Its readings are its own: between two moments as much time passes as on the robot, or soon will have.
+    Only intervals correspond to the robot's clock, not readings: as much time passes as on the robot, apart from a
+    difference that is still made up for.
     """
 
     def __init__(self, speed: float = 1.0, monotonic: Callable[[], float] = time.monotonic) -> None:

@@ -8,7 +8,8 @@ from lumen.clock.bell import Bell
 class RealClock:
     """The seconds since it was made, plus the initial `now` [s].
 
-    At another `speed` than 1 they are that many times shorter, for processes beside a simulation of the same speed.
+    At a `speed` other than 1 they are that many times shorter, for processes that share the time of a simulation of
+    that speed.
     """
 
     realtime = 1.0

@@ -240,7 +240,7 @@ EXPORTED_KINDS = ("behavior", "controller", "diagram", "project")
 
 
 class Importer(NamedTuple):
-    """A kind of file of another tool that `lumen import` converts to one of ours.
+    """A kind of file of another tool that `lumen import` converts to one of Lumen's.
 
     `kind` is `behavior`, `controller`, `motion` or `robot`. `read` names a `FileReader` of
     `lumen.project.formats.importers`, for a motion a `MotionReader` of `lumen.project.formats.importers`, for a
@@ -269,7 +269,7 @@ class Phase(IntEnum):
     """When a part of an exhibition is made, and ticked: those of a lower phase come first."""
 
     RECORD = auto()
-    """Parts that hear everything that the others say."""
+    """Parts that receive everything that the others report."""
     BEHAVIOR = auto()
     """No parts yet: the behaviour, which the others serve or watch."""
     WORLD = auto()

@@ -1,13 +1,14 @@
-"""How far to turn for one sight, from where the joints stood when it was seen.
+"""How far to turn for one sighting, from the angles of the joints when the image was taken.
 
 The plain answer is the controller's output times the binding's gain. Under minimum and maximum that answer has a flaw:
 as long as the term in the middle fires enough to cover the others, the centroid does not move at all. With Tables 1 and
 2 of the paper the head rests anywhere within 45 px of the face. Two remedies, both in the controller's `track:`.
 
-`zoom`: the image is looked at magnified about the inputs' neutral points, and the answer made as much smaller; of these
-answers the largest counts (`Magnifier`). So the surface keeps its steepest slope down to the centre.
+`zoom`: the image is evaluated magnified about the inputs' neutral points, and the answer is divided by the
+magnification; the largest of these answers counts (`Magnifier`). So the surface keeps its steepest slope down to the
+centre.
 
-`looks`: the controller is asked again, about the image as the head would see it after the turn so far. So what one
+`looks`: the controller is evaluated again, for the image as the head would see it after the turn so far. So what one
 step of a flat surface leaves over need not wait for the next image.
 """
 

@@ -150,7 +150,7 @@ def package_at_fault(error: BaseException) -> Distribution | None:
 
 
 def _raiser(error: BaseException) -> tuple[Distribution, str, int] | None:
-    """Return the distribution, the module and the line that raised an error; None if that is code of Lumen's."""
+    """Return the distribution, the module and the line that raised an error; None if that is Lumen's own code."""
     packages = _packages()
     for module, line in reversed(_calls(error)):
         package = module.partition(".")[0]

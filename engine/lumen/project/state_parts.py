@@ -42,7 +42,7 @@ def read_buttons(data: Any, where: NodePath, state: str) -> tuple[ReadButton, ..
 
 
 def _label(texts: Any) -> dict[str, str]:
-    """By language; a text that is the same in all is under the empty one."""
+    """Return texts by language; a text that serves all languages has the empty key."""
     table = {"": texts} if isinstance(texts, str) else texts
     return {"" if language == "any" else language: str(text) for language, text in table.items()}
 

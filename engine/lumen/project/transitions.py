@@ -90,7 +90,7 @@ class TransitionReader:
                 yield from self._candidates(entry, body, where, event=f"error.do.{entry.name}", exact=True)
 
     def _pressed(self, entry: OutlinedState, body: Any, where: NodePath) -> Iterator[Transition]:
-        """The transitions of buttons with `actions`: they perform these, and the state stays."""
+        """Yield the transitions of buttons with `actions`: they perform these, and the state stays active."""
         for button, data in read_buttons(body, where, entry.name):
             if data is not None:
                 actions = self.actions.block(data, (*button.where, "actions"))

@@ -1,5 +1,4 @@
-"""The rows of `hears` of a behaviour: which of them may be taken for a sentence, in which order, and what their slots
-catch."""
+"""The rows of `hears` of a behaviour: which of them match a sentence, in which order, and what their slots catch."""
 
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
@@ -111,7 +110,7 @@ class Hearing:
         return found
 
     def nearest(self, number: int, text: str, context: Mapping[str, Any]) -> tuple[Find, Dropped] | None:
-        """Return the best find for the row of this number, counted or not, and why it does not count; None without
+        """Return the best find for the row of this number, even one that does not count, and why not; None without
         any."""
         reading, row, asked = self.read(text), self.rows[number], asked_in(self.blocks[number])
         find = self.best(reading, row, asked, context) or self.best(reading, row, asked, context, counting=False)
@@ -191,8 +190,7 @@ class Hearing:
 
 
 def dropped(reading: ReadSentence, find: Find, way: str, asks: bool) -> Dropped:
-    """Return why a find does not count for a row of that `way`; `asks` is whether a row takes questions for its
-    name."""
+    """Return why a find does not count for a row of that `way`; `asks`: whether a row takes questions for its name."""
     if reading.negation(find) is not None:
         return "" if way == "not" else "negated"
     if way == "not":

@@ -72,8 +72,7 @@ def read_pattern(phrase: str) -> tuple[Form, ...]:
 
 
 def written_forms(phrase: str) -> Iterator[tuple[str | Slot, ...]]:
-    """Yield the forms of a phrase as written, texts and slots in order; the whole phrase if it is not a valid
-    pattern."""
+    """Yield the forms of a phrase as written, texts and slots in order; the phrase if it is no valid pattern."""
     try:
         texts, slots = _expanded(phrase)
     except PatternError:

@@ -113,7 +113,7 @@ class Speech:
         return tuple(found)
 
     def number(self, words: Sequence[str], start: int) -> tuple[int, int]:
-        """Return the number that begins at the index `start`, and the index after it, which is `start` without a
+        """Return the number that begins at the index `start`, and the index of its end: `start` if there is no
         number."""
         total = part = 0
         position = start

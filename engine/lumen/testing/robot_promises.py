@@ -108,7 +108,7 @@ def test_an_aim_is_not_answered(trial: RobotTrial) -> None:
 
 
 def test_an_aim_leaves_alone_what_a_command_owns(trial: RobotTrial) -> None:
-    """A joint that a command moves comes to the goal of the command, whatever an aim says meanwhile."""
+    """A joint that a command moves reaches the goal of the command, whatever aims arrive meanwhile."""
     joint = _head(trial)
     if not joint or not trial.angles():
         return
@@ -141,7 +141,7 @@ def test_what_is_no_angle_moves_nothing(trial: RobotTrial) -> None:
 
 
 def test_no_command_leaves_the_limits(trial: RobotTrial) -> None:
-    """With its life beside, no joint goes beyond its limits, whatever is demanded."""
+    """Also with idle life added, no joint goes beyond its limits, whatever is demanded."""
     body, head = trial.project.body, _head(trial)
     far = {head: (Keyframe(0.3, -9.0),)} if head else {}
     hasty = {head: (Keyframe(0.1, 2.0), Keyframe(0.2, -2.0))} if head else {}

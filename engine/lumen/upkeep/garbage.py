@@ -32,8 +32,8 @@ class GcScheduler:
     """A scheduler of full collections, called after each tick, when the most time is left until the next.
 
     Objects that exist when it is made are never searched again, and Python begins no full collection itself, at any
-    moment and on any thread: one of all that was imported and loaded lasts a tick and more, one of later objects some
-    milliseconds. `close` restores the usual settings.
+    moment and on any thread: a collection of everything that was imported and loaded would last a tick or more, one of
+    later objects lasts some milliseconds. `close` restores the usual settings.
     """
 
     def __init__(self) -> None:

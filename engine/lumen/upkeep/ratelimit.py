@@ -62,8 +62,7 @@ class RateLimiter:
         self._senders: dict[str, dict[str, float]] = {}
 
     def apart(self, key: str, sender: str) -> str:
-        """Return the key under which a sender's messages are counted: a separate one, unless too many others sent
-        recently."""
+        """Return the key that counts a sender's messages: a separate one, unless too many others sent recently."""
         if len(self._senders) > MAX_KEYS:
             self._senders.clear()
         now, senders = self._clock(), self._senders.setdefault(key, {})

@@ -214,8 +214,7 @@ def _centres(
 
 
 def _apart(wished: Sequence[float], widths: Sequence[float]) -> list[float]:
-    """Return the places nearest to the wished ones that do not overlap: the mean of pushing right and of pushing
-    left."""
+    """Return the places nearest to the wished ones without overlap: the mean of pushing right and pushing left."""
     right, left = list(wished), list(wished)
     for i in range(1, len(right)):
         right[i] = max(right[i], right[i - 1] + (widths[i - 1] + widths[i]) / 2 + GAP)
