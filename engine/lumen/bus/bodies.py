@@ -36,7 +36,7 @@ _FLOATS, _INTEGERS = frozenset((float,)), frozenset((int,))
 def copied(body: Any, depth: int = MAX_BODY_DEPTH) -> Any:
     """Return a copy that shares no container with `body`; tuples become lists, as in JSON.
 
-    Raises BusError for what JSON can't express: other types, keys that are no strings, NaN and infinity, deep nesting;
+    Raises BusError for what JSON can't express: other types, keys that are not strings, NaN and infinity, deep nesting;
     and for integers beyond ±2**63.
     """
     kind = type(body)
@@ -118,7 +118,7 @@ def check_key(key: str) -> None:
 
 
 def check_subscription(pattern: str, handler: object) -> None:
-    """Raise BusError if the pattern is no key, or the handler can't be called."""
+    """Raise BusError if the pattern is not a valid key, or the handler can't be called."""
     check_key(pattern)
     if not callable(handler):
         raise BadMessageError(f"a subscriber must be a function, not {str(handler)[:40]!r}")
@@ -197,7 +197,7 @@ def _foreign(data: bytes, content_encoding: str) -> str:
 
 
 def text_of_json(body: Any) -> str:
-    """Return why a body is wrong that is a string with JSON in it; empty if it is no such string."""
+    """Return why a body is wrong that is a string with JSON in it; empty for any other body."""
     if not isinstance(body, str) or body.lstrip()[:1] not in ("{", "["):
         return ""
     try:

@@ -171,7 +171,7 @@ class _Listening:
     undo: Callable[[], None]
     """Ends the subscription."""
     alias: "_Listening | None" = None
-    """The subscription under the alias of the pattern, None without an alias."""
+    """The subscription under the alias of the pattern, None if the pattern has no alias."""
 
 
 def by_key(project: Project) -> dict[str, Route]:

@@ -221,8 +221,7 @@ def _modules(attendance: RobotAttendance, project: Project) -> Iterator[Finding]
 
 
 def _skills(attendance: RobotAttendance, project: Project) -> Iterator[Finding]:
-    """Yield for each of the project's skills whether its program is where the robot's process runs, or its module
-    lives."""
+    """Yield for each of the project's skills whether its program is where the robot runs, or its module is alive."""
     modules = {name: module for name, row in project.verbs.items() if (module := _module_of(row))}
     lacking = attendance.lacking(set(modules.values())) if modules else set[str]()
     for name, module in modules.items():
@@ -278,7 +277,7 @@ def _served(probe: Probe, project: Project) -> Iterator[Finding]:
 
 
 def _skew(body: Any) -> float | None:
-    """Return how far this machine's clock is ahead of a body's `datePublished` [s]; None without a valid date."""
+    """Return how far this machine's clock is ahead of a body's `datePublished` [s]; None if it has no valid date."""
     date = body.get("datePublished") if isinstance(body, dict) else None
     if not isinstance(date, str):
         return None

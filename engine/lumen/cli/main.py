@@ -141,7 +141,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _exit_code(verb: str, returned: object) -> int:
-    """Return what a subcommand returned. Raises LumenError with the name of its package if that is no exit code."""
+    """Return what a subcommand returned. Raises LumenError with the name of its package if that is not an exit code."""
     if isinstance(returned, int):
         return returned
     from lumen.project.broken_features import faulty

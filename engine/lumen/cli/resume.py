@@ -44,7 +44,7 @@ def _resume(options: argparse.Namespace) -> int:
 
 
 def _here(since: object) -> str:
-    """Return a time in the local time zone; a text that is no time is returned unchanged."""
+    """Return a time in the local time zone; return any other text unchanged."""
     try:
         return local_time(time_of(str(since)))
     except ValueError:

@@ -14,7 +14,7 @@ from lumen.run.setup import Setup, robot_options, set_up
 
 
 def chosen_story(project: Project, name: str | None) -> Story | None:
-    """Return the story of this name, None without a name. Raises UsageError if no story or several match."""
+    """Return the story of this name, None if the name is empty. Raises UsageError if no story or several match."""
     if name is None:
         return None
     found = list(stories_of(project, name))
@@ -26,9 +26,9 @@ def chosen_story(project: Project, name: str | None) -> Story | None:
 
 
 def period_of(text: str | None) -> float | None:
-    """Return the length of a run [s] from a text such as `2min`, None without one.
+    """Return the length of a run [s] from a text such as `2min`, None if there is no text.
 
-    Raises UsageError if it is no duration.
+    Raises UsageError if it is not a duration.
     """
     if text is None:
         return None
@@ -39,7 +39,7 @@ def period_of(text: str | None) -> float | None:
 
 
 def language_of(project: Project, language: str | None) -> str:
-    """Return the language, empty without one. Raises UsageError if the project does not have it."""
+    """Return the language that was given, empty if none was. Raises UsageError if the project does not have it."""
     if language is not None and language not in project.languages:
         hint = did_you_mean(language, project.languages, "it has")
         raise UsageError(f"the project has no language `{language}`: {hint}")

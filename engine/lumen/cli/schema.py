@@ -100,7 +100,7 @@ def settings(root: Path) -> dict[str, Any]:
 
 
 def _added(file: Path, ours: dict[str, Any]) -> str:
-    """Return the content of a settings file with ours added and its comments kept.
+    """Return the content of a settings file with Lumen's settings added and its comments kept.
 
     Raises UsageError if it can't be read.
     """

@@ -33,8 +33,8 @@ def typed_visitor(services: Services) -> "TypedVisitorPart | None":
 class TypedVisitorPart(Part):
     """Reads lines on its own thread and makes the visitor say or do them; at the end of input the visitor leaves.
 
-    If standard input is no terminal and yields no line, the visitor stays and the exhibition continues. `greeting` is
-    printed first; `wake` is called, on any thread, with each line.
+    If standard input is not a terminal and yields no line, the visitor stays and the exhibition continues. `greeting`
+    is printed first; `wake` is called, on any thread, with each line.
     """
 
     patient = True

@@ -17,7 +17,7 @@ Ability = TypeVar("Ability")
 class CheckedClock:
     """A wrapper that passes everything on to `clock`; `fault` makes an error of words such as "returned None from …".
 
-    Raises that error if the clock can't tell the time, or if its `speed` is no number.
+    Raises that error if the clock does not return a time, or if its `speed` is not a number.
     """
 
     def __init__(self, clock: Clock, fault: Callable[[str], LumenError]) -> None:

@@ -38,7 +38,7 @@ _INSTEAD = {
 def function_of(
     node: FunctionCall, around: Declarations, findings: ExpressionFindings
 ) -> Function | OwnFunction | None:
-    """Return the called function, or None without a function of that name; report a wrong number of arguments."""
+    """Return the called function, or None if there is no function of that name; report a wrong number of arguments."""
     function: Function | OwnFunction | None = all_functions().get(node.function)
     if function is None and node.function in around.functions:
         function = around.functions[node.function]

@@ -53,7 +53,7 @@ def expanded(source: str, functions: KnownFunctions) -> str:
     """Return the source with each call of these functions replaced; without a call, the same source.
 
     Raises BrokenFunctionError for a call of a broken function, ExpressionError if the result is longer or deeper than
-    an expression may be. The source must be sound: each call has the right number of arguments.
+    an expression may be. The source must be valid: each call has the right number of arguments.
     """
     if not any(name in source for name in functions) or not (calls := called(parse_expression(source), functions)):
         return source

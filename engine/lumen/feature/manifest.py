@@ -112,7 +112,7 @@ class BusRow(NamedTuple):
 
 
 class ModuleRow(NamedTuple):
-    """A module: a program on the bus beside the behaviour, such as the eyes.
+    """A module: a program on the bus that runs alongside the behaviour, such as the eyes.
 
     `module` is the import string of a subclass of `lumen.run.module.Module`. `description` and `options` (a JSON
     Schema for each option) describe the module's settings in lumen.yaml; schemas/lumen.schema.json has those of
@@ -302,8 +302,9 @@ class PartRow(NamedTuple):
     It returns a part, several, or none. Rows of one phase come by name, or `after` another one. The conditions in
     `when` have to hold: `whole` (one process has everything), `brain` (the behaviour runs in this process), `follows`
     (it does not), `role:NAME` (this is that process of several), `option:NAME` (the plan has that option),
-    `section:NAME` (lumen.yaml has that section), `file:NAME` (the project has that file beside lumen.yaml). A `claimed`
-    part is made after the process has claimed the robot on the bus: it opens what another process may have open.
+    `section:NAME` (lumen.yaml has that section), `file:NAME` (the project has that file next to lumen.yaml). A
+    `claimed` part is made after the process has claimed the robot on the bus: it opens what another process may have
+    open.
     """
 
     name: str
@@ -359,7 +360,7 @@ class Feature(NamedTuple):
     sections: Mapping[str, Section] = {}
     """Sections of lumen.yaml by their keys; `modules.show` is the key `show` under `modules`."""
     files: Mapping[str, str] = {}
-    """For a YAML file beside lumen.yaml, the function that builds its settings from its data, as `fleet.yaml`.
+    """For a YAML file next to lumen.yaml, the function that builds its settings from its data, as `fleet.yaml`.
 
     The function gets the data, a report, and the file's `name` without its ending; schemas/NAME.schema.json describes
     the data. `ProjectDraft.beside` has what it returned, by the name of the file.
@@ -394,7 +395,7 @@ class Feature(NamedTuple):
     before_start: tuple[str, ...] = ()
     """Functions that get the folder of a project before a run reads its files: they finish what was interrupted."""
     failures: tuple[str, ...] = ()
-    """Functions that tell people of a `RunFailure` (`lumen.run.run_start`), an error that ends a run.
+    """Functions that inform people of a `RunFailure` (`lumen.run.run_start`), an error that ends a run.
 
     They return a function that waits until people have it, or None.
     """

@@ -1,4 +1,4 @@
-"""One file of the journal of inputs: a line that says what it is, then frames of entries, a line of JSON each.
+"""One file of the journal of inputs: a header line, then frames of entries, each of which is a line of JSON.
 
 A frame is its length and the CRC-32 of its content (4 bytes each, little-endian), and the content: a piece of one
 deflate stream that spans all frames, flushed at the end of each. So text that occurred before is short later,
@@ -99,7 +99,7 @@ class JournalContent(NamedTuple):
 
 
 def read_header(line: bytes, name: str) -> JournalHeader:
-    """Return the header in a line. Raises JournalError, with what to do, if it is none or of another Lumen."""
+    """Return the header in a line. Raises JournalError, with a remedy, for other text or another version of Lumen."""
     try:
         data = json.loads(line)
         version = data.pop("lumen-journal")
@@ -132,12 +132,12 @@ def header_of(file: Path) -> JournalHeader:
 
 
 def read_journal(file: Path) -> JournalContent:
-    """Return the content of a file as far as it is readable. Raises JournalError if it is no journal."""
+    """Return the content of a file as far as it is readable. Raises JournalError if it is not a journal."""
     return read_content(_bytes(file), file.name)
 
 
 def read_lines(file: Path) -> list[bytes]:
-    """Return the lines of its entries, the first at the header's position. Raises JournalError if it is no journal."""
+    """Return the lines of its entries, the first at the header's position. Raises JournalError for any other file."""
     data = _bytes(file)
     end = _header_end(data)
     read_header(data[:end], file.name)
@@ -145,7 +145,7 @@ def read_lines(file: Path) -> list[bytes]:
 
 
 def read_content(data: bytes, name: str) -> JournalContent:
-    """Return the content of these bytes of a file. Raises JournalError if they are no journal."""
+    """Return the content of these bytes of a file. Raises JournalError if they are not a journal."""
     end = _header_end(data)
     header = read_header(data[:end], name)
     entries, read = list[RecordedEntry](), end
@@ -162,7 +162,7 @@ def read_content(data: bytes, name: str) -> JournalContent:
 def each_entry(file: Path) -> Iterator[RecordedEntry]:
     """Yield the entries of `read_journal` one by one: a file of a busy day is large once it is unpacked.
 
-    Raises JournalError if it is no journal.
+    Raises JournalError if it is not a journal.
     """
     data = _bytes(file)
     end = _header_end(data)
@@ -175,7 +175,7 @@ def each_entry(file: Path) -> Iterator[RecordedEntry]:
 
 
 def line_of(entry: RecordedEntry) -> bytes:
-    """Return an entry as a line of a frame. Raises TypeError, ValueError or RecursionError if it is no JSON data."""
+    """Return an entry as a line of a frame. Raises TypeError, ValueError or RecursionError if it is not JSON data."""
     return encode(entry_data(entry)).encode("utf-8", "surrogatepass") + b"\n"
 
 

@@ -115,7 +115,7 @@ class Diagnostic:
 class Code(str):
     """A kind of finding. As a text it is its name; it also has its family, its severity and a one-line summary.
 
-    Each is declared once, as a value beside the check that raises it. `lumen.lint.codes` collects them, and
+    Each is declared once, as a value next to the check that reports it. `lumen.lint.codes` collects them, and
     `lint/pages/CODE.md` explains why it matters and shows a wrong and a right example.
     """
 

@@ -40,6 +40,6 @@ class FunctionDefinition:
         return f"{self.name}({', '.join(self.parameters)})"
 
     def described(self, language: str) -> str:
-        """Return the description in a language, else in English or the first one; empty without texts."""
+        """Return the description in a language, else in English or the first one; empty if there are no texts."""
         texts = self.description
         return texts.get(language) or texts.get("") or texts.get("en") or next(iter(texts.values()), "")

@@ -11,7 +11,7 @@ STILL = "still"
 
 NAOQI_SPEECH, NAOQI_BREATHING, NAOQI_BLINKING, OWN_LEGS = "speech", "breathing", "blinking", "legs"
 NAOQI_PARTS = (NAOQI_SPEECH, NAOQI_BREATHING, NAOQI_BLINKING, OWN_LEGS)
-"""The parts of life that a style can leave to NAOqi on a real NAO; OWN_LEGS lets our sways also move its legs."""
+"""The parts of life that a style can leave to NAOqi on a real NAO; OWN_LEGS lets Lumen's sways also move its legs."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""A motion file as values, flattened: the keys of each joint over time, and the cues beside them."""
+"""A motion file as values, flattened: the keys of each joint over time, and the cues that accompany them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -43,7 +43,7 @@ class Keyframe:
 
 @dataclass(frozen=True, slots=True)
 class Cue:
-    """An action beside the joints of a motion."""
+    """An action that accompanies the movement of a motion."""
 
     time: float
     """The time from the beginning [s]."""
@@ -69,7 +69,7 @@ def skill_of(kind: object, value: object) -> Do | None:
 
 @dataclass(frozen=True)
 class MotionDefinition:
-    """A motion: the keys over time of each joint that it moves, and the cues beside them.
+    """A motion: the keys over time of each joint that it moves, and the cues that accompany them.
 
     Keys of one track have increasing times above 0: the angle of a joint at time 0 is known only when the motion is
     played.

@@ -55,9 +55,9 @@ class Base:
     kind: str = FIXED
     """The name of a row `bases` of a feature."""
     left: str = ""
-    """The joint of the left driven wheel in the MJCF; empty without wheels."""
+    """The joint of the left driven wheel in the MJCF; empty if the base has no wheels."""
     right: str = ""
-    """The joint of the right driven wheel in the MJCF; empty without wheels."""
+    """The joint of the right driven wheel in the MJCF; empty if the base has no wheels."""
     speed: float = 0.0
     """The maximum speed [m/s]."""
     turn: float = 0.0

@@ -1,9 +1,9 @@
 """The verbs of the YAML that are commands: a row for each, with its fields and how it reads in transcripts and diffs.
 
-All that is generic uses these rows: `project/actions.py` reads a command with them, `project/formats/behavior_data.py`
-writes it, the language server completes its names, and the transcript and the diff of bundles describe it. The rest
-that a robot needs to know of each is in `robot/command_table.py`. `tests/seams/test_verbs.py` goes through both
-tables and the schemas.
+All generic code uses these rows: `project/actions.py` reads a command with them, `project/formats/behavior_data.py`
+writes it, the language server completes its names, and the transcript and the diff of bundles describe it. The other
+properties that a robot needs of each are in `robot/command_table.py`. `tests/seams/test_verbs.py` checks both tables
+and the schemas.
 """
 
 from collections.abc import Callable, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""All codes of findings, collected from the modules that declare them beside their checks.
+"""All codes of findings, collected from the modules that declare them next to their checks.
 
 `grep -rn '"cut-short"' engine` finds a code's severity, summary and check; `pages/cut-short.md` explains it.
 """

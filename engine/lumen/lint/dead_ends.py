@@ -94,7 +94,7 @@ class _Graph:
         self.before.setdefault(other, []).append(one)
 
     def go(self, source: str, target: str) -> None:
-        """Add a transition: it also leaves the regions beside its source, and enters those beside its target."""
+        """Add a transition: it also leaves the regions next to its source, and enters those next to its target."""
         self.join(("in", source), ("to", target))
         for path in self.above(source):
             if self.machine.states[path].kind is StateKind.PARALLEL and not within(target, path):

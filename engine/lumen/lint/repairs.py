@@ -76,7 +76,7 @@ def applied(files: ProjectFiles, repairs: Iterable[Repair]) -> dict[str, bytes]:
 
 
 def _better(before: Sequence[Diagnostic], after: Sequence[Diagnostic], step: Sequence[Repair]) -> bool:
-    """Return whether the findings of a step have gone, and only findings that it may have hidden have come."""
+    """Return whether a step's findings have disappeared, and each new finding may have been hidden by them before."""
     then, now = Counter(map(_what, before)), Counter(map(_what, after))
     if any(now[_what(r.diagnostic)] >= then[_what(r.diagnostic)] for r in step):
         return False

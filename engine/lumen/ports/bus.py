@@ -63,7 +63,7 @@ class Bus(Protocol):
     """
 
     def ability(self, kind: type[Ability]) -> Ability | None:
-        """Return this bus as one with that ability; None if it lacks it. A wrapper delegates to the bus inside it."""
+        """Return this bus if it has that ability, else None. A wrapper delegates to the bus inside it."""
         return self if isinstance(self, kind) else None
 
     @abstractmethod

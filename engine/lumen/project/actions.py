@@ -77,7 +77,7 @@ class Actions:
         return self._verb(verb, body, (*where, verb))
 
     def duration(self, text: Any, where: NodePath, *, key: bool = False) -> float | None:
-        """Return the duration [s] in a text such as `20s`; if it is no duration, report that and return None."""
+        """Return the duration [s] in a text such as `20s`; if it is not a duration, report that and return None."""
         if (length := seconds(text)) is None:
             self.report(BAD_DURATION, where, f"`{text}` is not a duration", hint=duration_hint(text), key=key)
         return length
@@ -225,4 +225,4 @@ COMPUTED_READERS: Mapping[str, Callable[[Actions, Any, NodePath], Action | None]
     "parallel": Actions._parallel,
     "ask": Actions._ask,
 }
-"""The readers of the verbs that a step evaluates, by verb. `if` is not among them: it has other keys beside it."""
+"""The readers of the verbs that a step evaluates, by verb. `if` is not among them: it has other keys next to it."""

@@ -18,7 +18,7 @@ from lumen.language.verbs import is_built_in
 
 @cache
 def usable_verbs() -> Mapping[str, VerbRow]:
-    """Return the verbs of features that the YAML can use: a faulty row would make its schema unsound."""
+    """Return the verbs of features that the YAML can use: a faulty row would make its schema invalid."""
     return {name: row for name, row in added_verbs().items() if not _fault(name, row)}
 
 

@@ -45,7 +45,7 @@ class BindingFault(NamedTuple):
 
 
 def signal_fault(spec: str | Mapping[str, Any]) -> BindingFault | None:
-    """Return the fault of an output's binding; None if it is sound."""
+    """Return the fault of an output's binding; None if it is valid."""
     if isinstance(spec, str):
         return None
     deeds = [deed for deed in DEEDS if deed in spec]

@@ -1,4 +1,4 @@
-"""Findings about features that were installed beside Lumen and can't be used."""
+"""Findings about features of other installed packages that can't be used."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

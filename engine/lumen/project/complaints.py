@@ -161,7 +161,7 @@ _ALSO = {
     "after": "wait", "go": "walk", "drive": "walk", "place": "to", "destination": "to",
     "time": "at", "angles": "joints", "pin": "key", "topic": "key", "exchange": "key",
 }  # fmt: skip
-"""The names that other tools, or other words of Lumen, use for our keys. The first that is allowed is suggested."""
+"""The names that other tools, or other words of Lumen, use for Lumen's keys. The first that is allowed is suggested."""
 
 
 def _owner(key: str, root: Any) -> str:
@@ -176,7 +176,7 @@ _LANGUAGES = {
     "indonesian": "id", "indonesisch": "id", "indonesia": "id", "french": "fr", "spanish": "es", "italian": "it",
     "dutch": "nl", "polish": "pl", "turkish": "tr", "chinese": "zh", "japanese": "ja", "korean": "ko",
 }  # fmt: skip
-"""Language codes of ISO 639 by the names that people write in their place."""
+"""Language codes of ISO 639 by the names that people write instead."""
 
 
 def _bad_key(error: Error, path: NodePath) -> Complaint:

@@ -9,7 +9,7 @@ from lumen.statechart.type_checks import fits, refusal, type_checks
 
 
 def check_memory(machine: MachineDefinition, report: DocumentReport) -> list[tuple[str, str]]:
-    """Report faults under `context:`, `types:` and `events:`; return the part and key of each unsound schema."""
+    """Report faults under `context:`, `types:` and `events:`; return the part and key of each invalid schema."""
     unsound = [
         (part, key)
         for part, schemas in (("types", machine.types), ("events", machine.events))

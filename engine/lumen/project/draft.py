@@ -52,7 +52,7 @@ class ProjectDraft:
     stories: dict[str, Story] = field(default_factory=dict)
     sayings: dict[str, SayingSet] = field(default_factory=dict)
     functions: dict[str, FunctionDefinition] = field(default_factory=dict)
-    """The project's sound functions."""
+    """The project's functions that have no faults."""
     known_functions: KnownFunctions = field(default_factory=dict)
     """All functions of the project, as expressions see them."""
     messages: dict[str, Mapping[str, Any]] = field(default_factory=dict)
@@ -65,7 +65,7 @@ class ProjectDraft:
     missing: set[str] = field(default_factory=set)
     """The folders that were reported as missing."""
     unsound: set[tuple[str, str, str]] = field(default_factory=set)
-    """The JSON Schemas in behaviours that were reported as broken: behaviour, `types` or `events`, name."""
+    """The JSON Schemas in behaviours that were reported as invalid: behaviour, `types` or `events`, name."""
     root: Path | None = None
     """The project's folder, for checks of files that are not read here."""
     own_motions: frozenset[str] = frozenset()

@@ -167,7 +167,7 @@ class Expressions:
 def expanded_here(
     expand: Expand, source: str, functions: KnownFunctions, report: DocumentReport, where: NodePath, written: str = ""
 ) -> str | None:
-    """Return the sound expression or text at a path with the project's functions put in.
+    """Return the valid expression or text at a path with calls of the project's functions expanded.
 
     If one of them is broken, or the result is too large, return None; the latter is reported. `written` is how the
     author wrote the source, if that differs.

@@ -49,7 +49,7 @@ class FunctionFile:
 
 
 def build_function(data: Any, report: DocumentReport, *, name: str) -> FunctionFile | None:
-    """Return the function in the data of `functions/NAME.yaml`, or None without an expression."""
+    """Return the function in the data of `functions/NAME.yaml`, or None if it has no expression."""
     if not isinstance(data, Mapping) or not isinstance(data.get("expression"), str):
         return None
     _check_name(name, report)
@@ -76,7 +76,7 @@ def build_function(data: Any, report: DocumentReport, *, name: str) -> FunctionF
 def joined(
     files: Mapping[str, BuiltFile[FunctionFile]], names: frozenset[str]
 ) -> tuple[dict[str, FunctionDefinition], dict[str, OwnFunction | None]]:
-    """Return the sound functions, and all of them as expressions see them.
+    """Return the functions without faults, and all functions as expressions see them.
 
     Faults are reported in the function's file. `names` are all files, also those that can't be read.
     """

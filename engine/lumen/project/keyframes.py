@@ -41,7 +41,7 @@ _SOON = 1e-9
 
 @dataclass(frozen=True)
 class KeyframeReader:
-    """Reads the keyframes of one file. `beat` is the length of a beat [s], None without a tempo.
+    """Reads the keyframes of one file. `beat` is the length of a beat [s], None if the file has no tempo.
 
     `motions` are those that `play` may name. The faults of those in `broken` were reported in their own files. `verbs`
     are the skills that a keyframe may begin.

@@ -59,7 +59,7 @@ def build_message(file: str, content: bytes) -> tuple[Mapping[str, Any] | None, 
 
 
 def _plainly_sound(data: Any, content: bytes) -> bool:
-    """Return True if a schema has no fault, so that it need not be parsed with places, which is slow."""
+    """Return True if a schema certainly has no fault, so that it need not be parsed with places, which is slow."""
     try:
         json.loads(content, object_pairs_hook=_each_once)
         if not isinstance(data, dict):
@@ -78,7 +78,7 @@ def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def examine(schema: Any, report: DocumentReport, where: NodePath = ()) -> bool:
-    """Return True if the JSON Schema at `where` in the report's document is sound; report its faults."""
+    """Return True if the JSON Schema at `where` in the report's document is valid; report its faults."""
     before = len(report.diagnostics)
     for found in schema_faults(schema):
         report(found.code, (*where, *found.path), found.message, hint=found.hint, key=found.key)

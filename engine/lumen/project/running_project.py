@@ -25,8 +25,8 @@ _PASSED_OVER = ("node_modules", "__pycache__", "site-packages")
 def own_project(path: str | Path | None = None) -> Path:
     """Return the folder of a project: `path`, else the working directory or the nearest parent with a lumen.yaml.
 
-    Raises UsageError if no project is found; the message lists those below. A given folder without any is returned
-    nevertheless, and the code that reads its files reports the missing lumen.yaml.
+    Raises UsageError if no project is found; the message lists those below. A given folder that contains no project is
+    returned nevertheless, and the code that reads its files reports the missing lumen.yaml.
     """
     folder = project_above(Path.cwd()) if path is None else find_project(path)
     if folder and ((folder / MAIN_FILE).is_file() or (path is not None and not any(projects_below(folder)))):
@@ -71,7 +71,7 @@ def _instead(folder: Path) -> str:
 
 
 def _named(folder: Path) -> str:
-    """Return a folder's path relative to the working directory, as one would type it."""
+    """Return a folder's path relative to the working directory, as a user would type it."""
     return Path(os.path.relpath(folder)).as_posix()
 
 

@@ -143,7 +143,7 @@ def _did(verbs: Mapping[str, VerbRow]) -> dict[str, Any]:
 
 
 def faults(data: Any, schema: Mapping[str, Any]) -> list[Complaint]:
-    """Return what is wrong with data by a schema, which must be sound itself."""
+    """Return what is wrong with data by a schema, which must be valid itself."""
     return _faults(JsonSchema(schema), data)
 
 

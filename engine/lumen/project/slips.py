@@ -274,7 +274,7 @@ _TRANSLATION = re.compile(
     r"""(?<=[{,])\s*(?:[a-z]{2}|any): +"""
     r"""(?P<value>[^"'\[\]{},: ][^"'\[\]{},:]*(?<! [a-z]{2})(?<! any): [^"'\[\]{},]*[^"'\[\]{}, ])"""
 )
-"""A text with a colon in it under a language, after a word that is no language itself."""
+"""A text with a colon in it under a language, after a word that is not a language itself."""
 
 
 def flows(text: str, index: int) -> Iterator[Slip]:

@@ -1,9 +1,9 @@
 """Commands as JSON: those of the modules of 2015, misspellings included, and those that Lumen added.
 
 A body is `{"type": …, "method": …, "parameter": {…}}`; the C# modules wrote `Method`. Names of keys and methods compare
-case-insensitively. A method is found by its name, whatever its type. A name that is no method is that of a motion, or
-the name that a motion had in 2015. Methods come first, so a motion called `rest` does not keep the robot from resting.
-Lumen added `stop`, `look` and `perform`, which contains its motion.
+case-insensitively. A method is found by its name, whatever its type. Any other name is that of a motion, or the name
+that a motion had in 2015. Methods come first, so a motion called `rest` does not keep the robot from resting. Lumen
+added `stop`, `look` and `perform`, which contains its motion.
 """
 
 from collections.abc import Callable, Mapping

@@ -74,7 +74,7 @@ class CommandParameters:
 
 
 def lowered(data: Any, what: str) -> dict[str, Any]:
-    """Return an object with its keys in lower case. Raises BadCommandError if it is no object."""
+    """Return an object with its keys in lower case. Raises BadCommandError if it is not an object."""
     if not isinstance(data, Mapping):
         raise BadCommandError(f"{what} must be an object with names and values")
     return {str(key).lower(): value for key, value in data.items()}
@@ -86,7 +86,7 @@ def shown(text: str) -> str:
 
 
 def number(value: Any, what: str) -> float:
-    """Return a number as a float. Raises BadCommandError if it is none, or beyond MAX_MAGNITUDE."""
+    """Return a number as a float. Raises BadCommandError if it is not a number, or beyond MAX_MAGNITUDE."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= MAX_MAGNITUDE:
         raise BadCommandError(f"{what} must be a number")
     return float(value)

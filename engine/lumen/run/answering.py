@@ -47,7 +47,7 @@ def answer(steps: Sequence[RecordedStep], question: str, what: str, at: str | No
 
 
 def moment_of(text: str) -> float:
-    """Return an ISO 8601 text as a time [s since 1970]. Raises UsageError if it is no such text."""
+    """Return an ISO 8601 text as a time [s since 1970]. Raises UsageError for any other text."""
     try:
         return time_of(text)
     except ValueError:

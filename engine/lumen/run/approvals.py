@@ -91,7 +91,7 @@ class Approvals:
     def holds(self, machine: MachineDefinition, snapshot: Snapshot, event: Event) -> bool:
         """Return whether an event must wait for GO, and keep it if so.
 
-        Never hold commands' answers and delayed events of the behaviour, or an event that a person has just let go.
+        Never hold commands' answers and delayed events of the behaviour, or an event that a person has just approved.
         """
         if self.autonomy == "alone" or event.sendid or ".command." in event.name:
             return False
@@ -118,7 +118,7 @@ class Approvals:
         self.waiting = tuple(kept)
 
     def decide(self, id: str, by: str, *, go: bool) -> bool:
-        """Let the event with an id go or stay (the oldest for an empty id); return False without such an event."""
+        """Let the event with an id go or stay (the oldest for an empty id); return False if there is no such event."""
         held = next((held for held in self.waiting if id in ("", held.id)), None)
         if held is None:
             return False

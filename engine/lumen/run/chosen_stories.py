@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 
 def project_of(words: Iterable[str]) -> str | None:
-    """Return the project of the first file in a `behaviors/stories/` or `sayings/` folder, None without one."""
+    """Return the project of the first file in a `behaviors/stories/` or `sayings/` folder, None if there is none."""
     for word in words:
         file = Path(os.path.abspath(word))
         if _is_file(word) and len(file.parents) > 2 and (file.parents[2] / MAIN_FILE).is_file():
@@ -32,7 +32,7 @@ def project_of(words: Iterable[str]) -> str | None:
 def stories_of(project: Project, word: str) -> Iterator[Story]:
     """Yield the stories of a project that a word names: `shy`, `shy.yaml`, a path to that file, or `safety_*`.
 
-    Raises UsageError if it names none: a file outside the project is no story of it, whatever its name.
+    Raises UsageError if it names none: a file outside the project is not one of its stories, whatever its name.
     """
     found = _named(project, word, FOLDER, project.stories)
     if not found:

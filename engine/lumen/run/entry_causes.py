@@ -8,7 +8,7 @@ from lumen.statechart import Step
 
 
 def innermost(machine: MachineDefinition, names: Iterable[str]) -> list[str]:
-    """Return those of these states that are no parent of another of them."""
+    """Return those of these states that are not the parent of another of them."""
     listed = list(names)
     states = {state.name: state for state in machine.states.values()}
     parents = {states[name].parent for name in listed if name in states}

@@ -51,7 +51,7 @@ class Exhibition:
 
     @property
     def player(self) -> StoryPlayer | None:
-        """The player of its story, None without one."""
+        """The player of its story, None if it has none."""
         visitor = self.services.get(VisitorPart)
         return visitor.player if visitor else None
 
@@ -77,7 +77,7 @@ class Exhibition:
 
     @property
     def reloader(self) -> Reloader | None:
-        """The reloader of saved files, None without one."""
+        """The reloader of saved files, None if saved files are ignored."""
         return self.services.get(Reloader)
 
     @property

@@ -52,7 +52,7 @@ def write_passage(
 
 
 def check_language(language: str) -> None:
-    """Raise UsageError if a text is no language code."""
+    """Raise UsageError if a text is not a language code."""
     if not is_language_tag(language):
         raise UsageError("`language` must be a code such as `en`")
 

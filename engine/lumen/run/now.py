@@ -43,7 +43,7 @@ class PresentMoment(NamedTuple):
     autonomy: Autonomy
     """`ask` or `alone`."""
     model: str | None
-    """Whether the language model is `on` or `off`, None without a model."""
+    """Whether the language model is `on` or `off`, None if there is no model."""
     events: int
     """Events that wait for the next tick."""
     commands: int

@@ -24,7 +24,7 @@ class Regulated(NamedTuple):
 class Regulation:
     """The regulators that are on, with their inputs from the bus and the behaviour's context.
 
-    It runs beside the behaviour, in one process or several: a controller changes a context by an event, which is
+    It is separate from the behaviour, in one process or several: a controller changes a context by an event, which is
     processed, observed and recorded like any other.
     """
 

@@ -40,7 +40,7 @@ class Verdict:
     wanted: float = 0.0
     """Least coverage [%]."""
     explored: Explored | None = None
-    """Result of the exploration, None without one."""
+    """Result of the exploration, None if there was none."""
     took: float = 0.0
     """Duration of the whole test [s]."""
     trials: tuple[QuestionTrial, ...] = ()

@@ -262,7 +262,7 @@ class Interpreter(Generic[C]):
                 self._take(taken)
 
     def next_due(self) -> float | None:
-        """Return when the next timer ends [s]; None without timers."""
+        """Return when the next timer ends [s]; None if there are no timers."""
         event = due(self._snapshot) if self._snapshot else None
         return event.at if event else None
 

@@ -17,7 +17,7 @@ def begin_computed(context: ExecutionContext, node: StateNode) -> None:
 
 
 def computed_delay(context: ExecutionContext, node: StateNode, after: ComputedAfter) -> int | None:
-    """Return the delay as computed now [ns]; if it is no duration, raise error.execution and return None."""
+    """Return the delay as computed now [ns]; if it is not a duration, raise error.execution and return None."""
     context.evaluate_in(node)
     try:
         return nanoseconds(after.length(context))

@@ -27,7 +27,8 @@ class Candidates(tuple[Group, ...]):
     """The transitions that an event selects: a group for each active atomic state, the innermost first.
 
     `later` are rows of `hears` of the same states, in two passes: rows whose phrase consists of slots only, then
-    `else`. A pass is for states that have not reacted, unless a state has reacted with a row. It is empty without rows.
+    `else`. A pass is for states that have not reacted, unless a state has reacted with a row. It is empty if there are
+    no rows.
     """
 
     later: tuple[tuple[Group, ...], ...] = ()

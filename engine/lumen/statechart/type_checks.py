@@ -73,7 +73,7 @@ class TypeCheck:
         return f"can't {verb} {shown[:40]}: {self._faults(value)[0]}"
 
     def _faults(self, value: Any) -> list[str]:
-        """Return the schema's errors for the value; empty if the schema itself is unsound, which lint reports."""
+        """Return the schema's errors for the value; empty if the schema itself is invalid, which lint reports."""
         try:
             return [error.message[:100] for error in self._schema.errors(value)] if self._schema else []
         except RecursionError:

@@ -91,7 +91,7 @@ def _pieces(word: str) -> Iterator[str]:
 
 @lru_cache(maxsize=512)
 def padded(text: str) -> str:
-    """Return the compared words between blanks, so that `" no " in " i know "` is false; empty without any word."""
+    """Return the compared words between blanks, so that `" no " in " i know "` is false; empty for no words."""
     found = folded(text)
     return f" {' '.join(found)} " if found else ""
 

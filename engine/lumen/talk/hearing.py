@@ -110,8 +110,7 @@ class Hearing:
         return found
 
     def nearest(self, number: int, text: str, context: Mapping[str, Any]) -> tuple[Find, Dropped] | None:
-        """Return the best find for the row of this number, even one that does not count, and why not; None without
-        any."""
+        """Return the best find for that row, even one that does not count, and why not; None if nothing was found."""
         reading, row, asked = self.read(text), self.rows[number], asked_in(self.blocks[number])
         find = self.best(reading, row, asked, context) or self.best(reading, row, asked, context, counting=False)
         if find is None:

@@ -113,8 +113,8 @@ class Speech:
         return tuple(found)
 
     def number(self, words: Sequence[str], start: int) -> tuple[int, int]:
-        """Return the number that begins at the index `start`, and the index of its end: `start` if there is no
-        number."""
+        """Return the number that begins at the index `start`, and the index after it; without a number, that is
+        `start`."""
         total = part = 0
         position = start
         while position < len(words):

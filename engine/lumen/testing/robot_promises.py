@@ -293,7 +293,7 @@ def test_what_began_is_told_once(trial: RobotTrial) -> None:
 
 
 def test_senses_are_readings_of_its_body(trial: RobotTrial) -> None:
-    """`read` returns the reading of a sense in SI units, or None without that sense."""
+    """`read` returns the reading of a sense in SI units, or None if the robot does not have it."""
     trial.live(0.2)
     body = trial.project.body
     for sense in Sense:

@@ -49,7 +49,7 @@ class RobotTrial:
             self._robot.cancel(id)
 
     def read(self, sense: Sense) -> Reading | None:
-        """Return the reading of a sense, None without that sense."""
+        """Return the reading of a sense, None if the robot does not have it."""
         with self._calling("read"):
             return self._robot.read(sense)
 

@@ -9,7 +9,7 @@ from lumen.errors import UsageError
 
 
 def need(value: Any, kind: type | tuple[type, ...], what: str, meant: str) -> None:
-    """Raise UsageError if a value is not of the right type; a bool is no number."""
+    """Raise UsageError if a value is not of the right type; a bool is not a number."""
     if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
         raise UsageError(f"{what} must be {meant}, not {_shown(value)}")
 
@@ -36,14 +36,14 @@ def need_map(value: Any, what: str) -> None:
 
 
 def need_text(value: Any, what: str, *, empty: bool = False) -> None:
-    """Raise UsageError if a value is no string, or an empty one unless `empty` allows that."""
+    """Raise UsageError if a value is not a string, or is empty although `empty` is False."""
     need(value, str, what, "a string")
     if not value and not empty:
         raise UsageError(f"{what} is empty")
 
 
 def need_number(value: Any, what: str, *, finite: bool = True) -> None:
-    """Raise UsageError if a value is no number; with `finite` also if it is infinite."""
+    """Raise UsageError if a value is not a number; with `finite` also if it is infinite."""
     try:
         sound = not isinstance(value, str | bytes | bool) and not isnan(value) and (not finite or isfinite(value))
     except (TypeError, ValueError, OverflowError):
@@ -53,14 +53,14 @@ def need_number(value: Any, what: str, *, finite: bool = True) -> None:
 
 
 def need_numbers(values: Any, what: str) -> None:
-    """Raise UsageError if a value is no map of numbers."""
+    """Raise UsageError if a value is not a map of numbers."""
     need_map(values, what)
     for key, value in values.items():
         need_number(value, f"`{key}` of {what}")
 
 
 def need_path(value: Any) -> Path:
-    """Return a value as the path of a file. Raises UsageError if it is no path."""
+    """Return a value as the path of a file. Raises UsageError if it is not a path."""
     need(value, (str, Path), "the path of a file", "a string or a Path")
     if "\0" in str(value):
         raise UsageError("the path of a file contains a character that is not allowed in paths")

@@ -1,4 +1,4 @@
-"""A user's program beside an exhibition: started, restarted with pauses, and ended with everything it started.
+"""A user's program for an exhibition: started, restarted with pauses, and ended with everything it started.
 
 The program is in its own process group, together with a shell that waits for the end of a pipe from this process. If
 this process is gone, however it ended, the shell kills the group.

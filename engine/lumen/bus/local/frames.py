@@ -21,7 +21,7 @@ _LENGTH = struct.Struct(">I")
 
 
 class BadFrameError(Exception):
-    """Received data is no frame, or not a valid one at this point; the connection ends."""
+    """Received data is not a frame, or not one that is valid at this point; the connection ends."""
 
 
 def frame(*words: Any) -> bytes:

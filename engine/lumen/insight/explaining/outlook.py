@@ -42,7 +42,7 @@ class WayOut(NamedTuple):
     why: str
     """The condition that prevents it or that it waits for, in words."""
     due: float | None = None
-    """When its timer ends [s]; None without one."""
+    """When its timer ends [s]; None if it has none."""
 
 
 class Running(NamedTuple):

@@ -56,7 +56,7 @@ class ExplainedRow(NamedTuple):
     found: FoundPhrase | None = None
     """The phrase that counts most, else one that does not count; None if none was found."""
     guard: bool | None = None
-    """Whether the guard holds; None without a guard, or if it is not evaluated."""
+    """Whether the guard holds; None if there is no guard, or it is not evaluated."""
     error: str = ""
     """Why the guard has no value; empty if it has one."""
     taken: bool = False

@@ -191,8 +191,8 @@ def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[
 def _said(heard: tuple[HeardTransition, ...]) -> Iterator[str]:
     """Yield a text for each name of each row of `hears`, and one for no row.
 
-    If there are texts for which the row is the best of its state, only those are used: "no no problems" is no example
-    of `not fine`.
+    If there are texts for which the row is the best of its state, only those are used: "no no problems" is not an
+    example of `not fine`.
     """
     for machine, transition, context in heard:
         if row := transition.hears:

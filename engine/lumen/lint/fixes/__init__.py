@@ -1,6 +1,6 @@
 """Repairs that need no decision: from findings to edits of the text that leave comments and layout alone.
 
-A fix is a proposal: its user lints again, and keeps it only if the finding has gone and no other has come
+A fix is a proposal: its user lints again, and keeps it only if the finding has disappeared and no other has appeared
 (`lint.repairs`).
 """
 

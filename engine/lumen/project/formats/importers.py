@@ -15,7 +15,7 @@ from lumen.project.formats.motion_writer import MotionWriter
 
 
 class FileReader(Protocol):
-    """Converts a file to the data of one of our YAML files, and lists what can't be converted.
+    """Converts a file to the data of one of Lumen's YAML files, and lists what can't be converted.
 
     `title` is for formats whose files contain no name. Raises ForeignFileError.
     """

@@ -17,7 +17,7 @@ class Findings:
     files: Mapping[str, bytes]
     """Contents of the project's files."""
     root: str = ""
-    """Folder of the project, empty without a project."""
+    """Folder of the project, empty if there is no project."""
     asked: Collection[str] = ()
     """Files that the user named; empty for the whole project."""
     elsewhere: int = 0

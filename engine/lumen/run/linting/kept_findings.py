@@ -1,7 +1,7 @@
 """Earlier findings of lint, reused for files that are the same byte for byte, by the same engine.
 
 They are in the user's cache, under a hash of the project's files, their place, the day (a fact may be past), the
-engine's own files and Python. With them is kept what lint looked at beside the files: sounds, models, time zones, the
+engine's own files and Python. Kept with them is a record of what else lint looked at: sounds, models, time zones, the
 imported libraries. If one of these differs now, the files are checked again; if one changed just before lint looked at
 it, nothing is kept.
 """

@@ -23,7 +23,7 @@ class AddedPart(Part, Observer):
     """A wrapper that passes every call on to `own`, a part made by a row of a package.
 
     After a fault that part is closed and gets no more calls. `stopped` is then called once with the part's name and its
-    package, and with a sentence about the fault. Raises TypeError if `own` is no part.
+    package, and with a sentence about the fault. Raises TypeError if `own` is not a part.
     """
 
     def __init__(self, own: Part, feature: Feature, row: PartRow, stopped: Callable[[str, str], None]) -> None:

@@ -82,7 +82,7 @@ class BrainPart(Part):
         self._narrator.line("robot", f"rests, because no person could stop it any more: {reason}")
 
     def rest(self, by: str) -> None:
-        """Make the robot rest at the wish of `by`, and raise `stop` in the behaviour."""
+        """Make the robot rest on behalf of `by`, and raise `stop` in the behaviour."""
         if self._hold:
             self._hold.stop(by)
         else:

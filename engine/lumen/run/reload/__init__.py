@@ -1,1 +1,1 @@
-"""Reload of saved files by a running exhibition: checked beside it, staged, and activated between two steps."""
+"""Reload of saved files by a running exhibition: checked separately, staged, and activated between two steps."""

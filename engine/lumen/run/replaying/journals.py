@@ -116,7 +116,7 @@ def until(entries: Iterable[RecordedEntry], text: str) -> Iterator[RecordedEntry
 
 
 def requested_time(text: str) -> time:
-    """Return the time of day that a person wrote. Raises UsageError if it is no such time."""
+    """Return the time of day that a person wrote. Raises UsageError if it is not such a time."""
     try:
         return time_of_day(text)
     except ValueError:

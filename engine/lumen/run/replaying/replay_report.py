@@ -100,9 +100,9 @@ class TakenAgain(NamedTuple):
     differs: bool = False
     """Whether the replayed step differs from the recorded one."""
     was: str = ""
-    """The recorded step in words, empty without a difference."""
+    """The recorded step in words, empty if there is no difference."""
     now: str = ""
-    """The replayed step in words, empty without a difference."""
+    """The replayed step in words, empty if there is no difference."""
 
     @classmethod
     def of(cls, row: ReplayedStep) -> "TakenAgain":

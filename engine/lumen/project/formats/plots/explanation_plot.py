@@ -6,7 +6,7 @@ from lumen.project.formats.plots.controller_plot import axis, memberships
 from lumen.project.formats.plots.sheet import PlotAxis, PlotBars, PlotLine, PlotMark, PlotPanel, PlotSheet
 
 MAX_RULE_LENGTH = 60
-"""The maximum number of characters of a rule beside its bar."""
+"""The maximum number of characters of a rule next to its bar."""
 
 
 def explained_sheet(controller: ControllerDefinition, said: Explanation) -> PlotSheet:
