@@ -30,5 +30,5 @@ def demand(extra: str, what: str, *modules: str, instead: str = "") -> None:
 def _is_installed(module: str) -> bool:
     try:
         return find_spec(module) is not None
-    except ValueError:  # somebody has put None, or a module without a spec, into sys.modules
+    except ValueError:  # a program has put None, or a module without a spec, into sys.modules
         return sys.modules.get(module) is not None

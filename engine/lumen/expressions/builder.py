@@ -89,7 +89,7 @@ class CodeBuilder:
         return self.call("bounded", built) if _builds(self.tree) else built
 
     def node(self, node: ExpressionNode) -> ast.expr:
-        """Return the Python node of a node, with its place."""
+        """Return the Python node for a node of the expression, with its place."""
         built = self.build(node)
         return self.place(built, node)
 
@@ -104,7 +104,7 @@ class CodeBuilder:
         return ast.Call(_load(name), list(arguments), [])
 
     def condition(self, node: ExpressionNode) -> ast.expr:
-        """Return the Python node of a node, with a check that its value is a boolean."""
+        """Return the Python node for a node of the expression, with a check that its value is a boolean."""
         built = self.node(node)
         if is_condition(node):
             return built
@@ -127,7 +127,7 @@ class CodeBuilder:
         )
 
     def build(self, node: ExpressionNode) -> ast.expr:
-        """Return the Python node of a node, without its place."""
+        """Return the Python node for a node of the expression, without its place."""
         match node:
             case Literal(value=value):
                 return ast.Constant(value)

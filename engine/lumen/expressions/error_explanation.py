@@ -26,7 +26,7 @@ UNKNOWN_VALUE = object()
 
 
 def explain(error: Exception, source: str, tree: ExpressionNode, scope: Scope) -> ExpressionError:
-    """Return the error as its author should read it, from any exception of the evaluation."""
+    """Return the error in words for the author of the expression, from any exception of the evaluation."""
     node = _failing(error.__traceback__, tree)
     match error:
         case ExpressionError(message=message, hint=hint):

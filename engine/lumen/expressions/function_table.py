@@ -65,7 +65,7 @@ def fault_of(name: str) -> str:
         fault = "" if name not in rows or callable(resolve(rows[name].call)) else "it is not a function"
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # of code that is not ours: even SystemExit
+    except BaseException as error:  # of code that is not Lumen's: even SystemExit
         fault = described(error)
     return fault and f"{fault}{_package(name)}"
 

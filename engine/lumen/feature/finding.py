@@ -51,7 +51,7 @@ class FeatureFault(NamedTuple):
 
 
 class Found(NamedTuple):
-    """All features, the distributions of those that do not come with Lumen by the feature's name, and what is wrong."""
+    """All features; by their names, the distributions of those that do not come with Lumen; and the faults found."""
 
     features: tuple[Feature, ...]
     installed: Mapping[str, Distribution]
@@ -137,7 +137,7 @@ def _manifest(distribution: Distribution) -> tuple[Feature | None, str]:
         return feature, next(wrong_rows(feature), "")
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # of code that is not ours: even SystemExit
+    except BaseException as error:  # of code that is not Lumen's: even SystemExit
         return None, f"its manifest `{distribution.manifest}` raised {described(error)}"
 
 

@@ -33,7 +33,7 @@ class RobotOption(NamedTuple):
 
     @property
     def destination(self) -> str:
-        """The name of the value among those of a command line."""
+        """The name of the option's value among the parsed options of a command line."""
         return self.name if self.short else f"robot_{self.name}"
 
 

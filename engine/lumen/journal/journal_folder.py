@@ -80,7 +80,7 @@ def named_bundles(home: Path) -> set[str]:
 
 
 def headers(folder: Path) -> Iterator[tuple[Path, JournalHeader]]:
-    """Yield the files of a journal, with those of rehearsals in its folder, and their headers; skip unreadable ones."""
+    """Yield each file of a journal, rehearsals in its subfolder included, with its header; skip unreadable files."""
     for file in sorted(folder.rglob(f"*{JOURNAL_SUFFIX}")):
         with suppress(JournalError):
             yield file, header_of(file)

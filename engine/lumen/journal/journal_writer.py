@@ -104,7 +104,7 @@ class JournalWriter:
     def flush(self, patience: float = 5.0) -> bool:
         """Wait up to `patience` [s] until all that is queued is written; return True if it is."""
         written = threading.Event()
-        self._waiting.append(written)  # in the queue, so that it is set after all that was told before, and not earlier
+        self._waiting.append(written)  # queued, so that it is set only after everything queued before it
         self._wake.set()
         return written.wait(patience)
 
@@ -116,7 +116,7 @@ class JournalWriter:
             self._thread.join(patience)
 
     def _run(self) -> None:
-        self._end_file()  # after a fault of ours a new one begins with where the behaviour stands
+        self._end_file()  # after a fault of Lumen, a new file begins with a keyframe
         if not self.begun.is_set():
             self.tail.begin(self.folder.next_position() if self.folder else 0)
             self.begun.set()

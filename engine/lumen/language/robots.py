@@ -49,7 +49,7 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Ultrasound:
-    """The range of the sonars: echoes from `minimum` to `maximum` [m] inside a cone of that full angle [rad]."""
+    """The range of the sonars: echoes from `minimum` to `maximum` [m] inside a cone of the full angle `cone` [rad]."""
 
     minimum: float
     maximum: float

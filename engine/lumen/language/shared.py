@@ -27,7 +27,7 @@ class SharedKeys:
 
 
 def shared_schema(keys: Mapping[str, SharedKey]) -> dict[str, Any]:
-    """Return the JSON Schema of all of them together."""
+    """Return the JSON Schema of all shared values together."""
     properties = {name: {"type": key.type} for name, key in keys.items()}
     return {"type": "object", "properties": properties, "required": list(keys), "additionalProperties": False}
 

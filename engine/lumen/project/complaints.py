@@ -203,7 +203,7 @@ def _verbs(error: Error, path: NodePath) -> Complaint:
     keys = list(error.instance)
     if len(keys) > 1:
         within, hint = "one item", f"begin a new item: `- {keys[1]}: …`"
-        if "minProperties" not in error.schema:  # a key that allows no other beside it
+        if "minProperties" not in error.schema:  # a key that allows no other next to it
             within, hint = node(path), "keep one of the two"
         message = f"`{keys[0]}` and `{keys[1]}` are both in {within}, but only one of them is allowed"
         return Complaint(ONE_VERB, (*path, keys[1]), message, hint, path, _spared(path), True)

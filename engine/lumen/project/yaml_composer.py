@@ -21,7 +21,7 @@ PLAIN_TAGS = frozenset((_TEXT, _LIST, _MAP))
 
 
 class TooLargeError(Exception):
-    """Raised if the file is too large from this mark on; the message says in which respect."""
+    """Raised if the file is too large; `mark` is the place at which it exceeds a limit, which the message names."""
 
     def __init__(self, what: str, mark: Any) -> None:
         super().__init__(what)

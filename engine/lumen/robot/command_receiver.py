@@ -341,8 +341,7 @@ class CommandReceiver:
         return motion
 
     def _check_backlog(self, record: CommandRecord, command: RobotCommand) -> None:
-        """Raise RobotRefusedError for a text that is too long, or a command that would wait too long for earlier
-        ones."""
+        """Raise RobotRefusedError for a text that is too long, or a command that would wait too long."""
         takes = row_of(command).duration(command)
         record.parts, record.takes = parts_of(command, self._project.body), takes if isfinite(takes) else 0.0
         if isinstance(command, Say) and takes > MAX_SPEECH:

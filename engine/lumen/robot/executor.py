@@ -53,7 +53,7 @@ class Yields(Protocol):
 
     @property
     def result(self) -> Mapping[str, Any]:
-        """JSON data; empty if it has nothing to report."""
+        """The result as JSON data; empty if there is nothing to report."""
         ...
 
 

@@ -60,7 +60,7 @@ class SkillRunner:
         return call
 
     def close(self) -> None:
-        """Cancel all calls; they end by themselves."""
+        """Cancel all calls, without waiting for their ends."""
         for call in self._calls:
             call.end()
         self._begun.put(None)

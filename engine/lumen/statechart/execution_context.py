@@ -58,16 +58,16 @@ class InvocationHandler(Protocol):
         """End the behaviours that a left state has invoked (`cancelInvoke`)."""
 
     def forward(self, context: "ExecutionContext", event: Event) -> None:
-        """Deliver an event to all of them."""
+        """Deliver an event to all invoked behaviours."""
 
     def deliver(self, context: "ExecutionContext", id: str, event: Event) -> None:
-        """Deliver an event to one of them."""
+        """Deliver an event to the invoked behaviour of that id."""
 
     def post(self, context: "ExecutionContext") -> None:
         """Deliver the events that the machine has sent to them."""
 
     def listens(self, context: "ExecutionContext", name: str) -> bool:
-        """Return True if one of them has a transition for an event of that name now."""
+        """Return True if an invoked behaviour has a transition for an event of that name now."""
 
 
 @dataclass(slots=True, eq=False)

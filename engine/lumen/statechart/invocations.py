@@ -59,7 +59,7 @@ class Invocations:
         context.internal_queue = deque(event for event in context.internal_queue if event.name not in gone)
 
     def forward(self, context: ExecutionContext, event: Event) -> None:
-        """Deliver an event to all of them, in the order in which they were started."""
+        """Deliver an event to all invoked behaviours, in the order in which they were started."""
         for id in tuple(self.children):
             self.deliver(context, id, event)
 
@@ -75,11 +75,11 @@ class Invocations:
                 context.returned(id, event)
 
     def listens(self, context: ExecutionContext, name: str) -> bool:
-        """Return True if one of them has a transition for an event of that name now; `*` does not count."""
+        """Return True if an invoked behaviour has a transition for an event of that name now; `*` does not count."""
         return _listen(context.machine, self.children, name)
 
     def end(self, context: ExecutionContext, id: str) -> None:
-        """End one of them: it exits all its states."""
+        """End the invoked behaviour of that id: it exits all its states."""
         child = self._open(context, id, None)
         if child.configuration.names and not child.configuration.finished:
             self._follow(context, id, exit_machine(child))
@@ -94,7 +94,7 @@ class Invocations:
             self._finish(context, id, child.snapshot.output)
 
     def deliver(self, context: ExecutionContext, id: str, event: Event | None) -> None:
-        """Deliver an event to one of them, or start it (None), and merge the resulting step."""
+        """Deliver an event to the behaviour of that id, or start it if the event is None; merge the resulting step."""
         state, _, commands = self.children[id]
         child = self._open(context, id, event)
         share = int(INVOKED_MICROSTEP_SHARE * (MAX_MICROSTEPS - context.microsteps))
@@ -120,7 +120,7 @@ class Invocations:
         context.raise_event(Event(f"done.invoke.{id}", output, context.at))
 
     def _open(self, context: ExecutionContext, id: str, event: Event | None) -> ExecutionContext:
-        """Return the context of one of them, with the language, counters and generator of the host."""
+        """Return the context of the behaviour of that id, with the language, counters and generator of the host."""
         state, before, _ = self.children[id]
         lent = before._replace(
             language=context.language, counters=context.counters, generator=context.generator, epoch=context.epoch,

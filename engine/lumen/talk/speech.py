@@ -113,8 +113,7 @@ class Speech:
         return tuple(found)
 
     def number(self, words: Sequence[str], start: int) -> tuple[int, int]:
-        """Return the number that begins at the index `start`, and the index after it; without a number, that is
-        `start`."""
+        """Return the number that begins at the index `start`, and the index of its end: `start` without a number."""
         total = part = 0
         position = start
         while position < len(words):

@@ -35,8 +35,8 @@ class WatchedThread:
 
     def __init__(self, name: str, work: Callable[[], None], *, vital: bool = False) -> None:
         self.name, self.vital, self.lost = name, vital, ""
-        """Why the thread was given up, empty if it was not."""
-        """Whether the robot must rest if the thread is given up, because no person could reach it any more."""
+        """`lost` is why the thread was given up, empty if it was not."""
+        """`vital` is whether the robot must rest if the thread is given up, because no person could reach it then."""
         self._work = work
         self._ending = threading.Event()
         self._faults: deque[float] = deque(maxlen=MAX_FAULTS)

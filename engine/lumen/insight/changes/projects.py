@@ -91,8 +91,7 @@ def _changes(old: Project, new: Project) -> Iterator[Change]:
 
 
 def _manifests(project: Project) -> dict[str, VerbRow]:
-    """Return the verbs that a project's files declare, without their folder and robot, which are not part of their
-    meaning."""
+    """Return the verbs that a project's files declare, without folder and robot, which have no meaning for them."""
     return {name: row._replace(root="", robot="") for name, row in project.verbs.items()}
 
 

@@ -234,9 +234,7 @@ def _known_of_events(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[Ex
 
 
 def _compared(tree: ExpressionNode, loops: frozenset[str]) -> Iterator[ExpressionNode]:
-    """Yield the smallest parts of an expression that depend on the event's data and on context other than entries of
-    `for`.
-    """
+    """Yield the smallest parts of an expression that need the event's data and context other than `for` entries."""
     within = [node for child in children(tree) for node in _compared(child, loops)]
     yield from within
     compares = tree.sign in COMPARISONS if isinstance(tree, Binary) else isinstance(tree, FunctionCall)

@@ -120,9 +120,7 @@ class _Placing:
         return None if found and found.kind is StateKind.HISTORY else found
 
     def _keep(self, leaf: StateNode) -> None:
-        """Keep a leaf and those of its old ancestors that are still around it; if it is gone, those around its old
-        position.
-        """
+        """Keep a leaf and its old ancestors that still surround it; if it is gone, those around its old position."""
         chain = [node for node in (leaf, *leaf.ancestors) if node in self.images]
         anchor = next(image for node in chain if (image := self.images[node]) is not None)
         around = {anchor, *anchor.ancestors}

@@ -148,7 +148,7 @@ class OtherPlay:
 
     @property
     def at(self) -> float:
-        """The time up to which the play has come, by the exhibition's clock [s]."""
+        """The time that the play has reached, by the exhibition's clock [s]."""
         return self._stands.at if self._stands else self._began
 
     @property

@@ -66,7 +66,7 @@ def _one_slip(a: str, b: str) -> bool:
 
 
 def straight_quotes(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Return a fix that writes straight quotes around a text in curly ones, if it contains no others."""
+    """Return a fix that replaces curly quotes around a text by straight ones; none if it has quotes or backslashes."""
     there = source.at(diagnostic.place)
     if len(there) < 2 or there[0] not in "“”„‟" or there[-1] not in "“”‟" or any(c in '"\\' for c in there):
         return []

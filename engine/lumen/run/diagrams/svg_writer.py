@@ -56,7 +56,7 @@ def svg(diagram: Diagram) -> str:
 
 
 def _frames(placed: PlacedBox, depth: int) -> Iterator[str]:
-    """Yield the frames around others, which are below everything."""
+    """Yield the frames of boxes that contain others; everything else is drawn above them."""
     if not placed.within:
         return
     x, y, width, height = *placed.corner, *placed.size

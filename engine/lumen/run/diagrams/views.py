@@ -17,7 +17,7 @@ MAX_ARROWS_IN = 5
 
 
 def overview(machine: MachineDefinition) -> Diagram:
-    """Return the whole behaviour, with the invoked behaviours as rows."""
+    """Return the picture of the whole behaviour, with the invoked behaviours as rows."""
     root = machine.root
     rows = len(machine.states) <= MAX_STATES_WITH_ROWS
     box = _box(machine, root, _led_here(machine), rows=rows)
@@ -25,14 +25,14 @@ def overview(machine: MachineDefinition) -> Diagram:
 
 
 def region(machine: MachineDefinition, name: str) -> Diagram:
-    """Return the content of one state, with its transitions. Raises UsageError if the state does not exist."""
+    """Return the picture of a state's content and transitions. Raises UsageError if the state does not exist."""
     state = _named(machine, name, lambda state: bool(state.children))
     box = _box(machine, state, _led_here(machine), rows=True)
     return Diagram(f"{machine.id}: {state.name}", (box,), _arrows(machine, state.path))
 
 
 def neighbourhood(machine: MachineDefinition, name: str) -> Diagram:
-    """Return one state, and the states before and after it. Raises UsageError if it does not exist."""
+    """Return the picture of a state with those before and after it. Raises UsageError if it does not exist."""
     state = _named(machine, name, lambda _: True)
     around = [state, *(machine.states[path] for path in _above(machine, state))]
     out = {target for each in around for t in each.transitions for target in t.targets}
