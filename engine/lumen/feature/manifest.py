@@ -16,16 +16,16 @@ VALUE_KINDS = ("null", "boolean", "number", "text", "list", "map", "any")
 
 
 class RobotOption(NamedTuple):
-    """An option of `lumen run` that only some robots take, whose value is a text: `--robot-NAME`, `short` for `--NAME`.
-
-    One of `several` robots in one process applies to all of them; the others work with one robot alone.
-    """
+    """An option of `lumen run` that only some robots take; its value is a text."""
 
     name: str
     metavar: str
+    """The placeholder of its value in `--help`."""
     help: str
     short: bool = False
+    """Whether it is `--NAME`; else it is `--robot-NAME`."""
     several: bool = False
+    """Whether it applies to all of several robots in one process; else it works with one robot only."""
 
     @property
     def flag(self) -> str:
@@ -38,38 +38,47 @@ class RobotOption(NamedTuple):
 
 
 class RobotRow(NamedTuple):
-    """A robot that performs an exhibition: `lumen run --robot NAME`, `lumen.open(robot="NAME")`.
-
-    `set_up` is the import string of a function from a `RobotRequest` to a `Setup` (both in `lumen.run.setup`); empty if
-    the robot is in a process of its own. `set_up_house` is for several robots at once: from a mapping of requests by
-    the robots' names to one of setups; if it is empty, `set_up` is called for each. `real_time`: its time can't be
-    hurried. `bounded`: it keeps within the limits and speeds of its body itself; Lumen does that for others.
-    `examine` is the import string of a function for `lumen doctor --robot NAME`: from the given options by name to
-    triples of a name, `ok`, `note`, `warning` or `error`, and a text.
-    """
+    """A robot that performs an exhibition: `lumen run --robot NAME`, `lumen.open(robot="NAME")`."""
 
     set_up: str = ""
+    """An import string of a function from a `RobotRequest` to a `Setup` (both in `lumen.run.setup`).
+
+    Empty if the robot is in a process of its own.
+    """
     set_up_house: str = ""
+    """An import string of a function from a mapping of requests, by the robots' names, to one of setups.
+
+    It sets up several robots at once; if it is empty, `set_up` is called for each.
+    """
     real_time: bool = False
+    """Whether its time can't run faster than real time."""
     bounded: bool = False
+    """Whether it keeps within the limits and speeds of its body itself; Lumen does that for other robots."""
     options: tuple[RobotOption, ...] = ()
+    """The options of `lumen run` that it takes."""
     examine: str = ""
+    """An import string of a function for `lumen doctor --robot NAME`.
+
+    From the given options by name, it returns triples of a name, `ok`, `note`, `warning` or `error`, and a text.
+    """
 
 
 class BaseRow(NamedTuple):
     """A kind of base, which carries a body and moves it about: `roles: {base: {kind: NAME}}` in models/NAME.yaml.
 
-    `simulate` is the import string of a function from a `BaseRequest` to a `RobotBase`, both in
-    `lumen.features.simulation.base`. `title` is how messages name such a body, such as `a biped`. One with `legs` walks
-    as its gait and its joints allow; one that `drives` has the greatest `speed` and `turn` in its YAML. The driven
-    `wheels` are the joints `left` and `right` there. A base with neither legs nor speeds stays in its place.
+    A base with neither legs nor speeds stays in its place.
     """
 
     simulate: str
+    """An import string of a function from a `BaseRequest` to a `RobotBase` (`lumen.features.simulation.base`)."""
     title: str
+    """The name of such a body in messages, such as `a biped`."""
     legs: bool = False
+    """Whether it walks, as its gait and its joints allow."""
     drives: bool = False
+    """Whether it drives, at most at the `speed` and `turn` in its YAML."""
     wheels: bool = False
+    """Whether its YAML names the joints of its driven wheels, `left` and `right`."""
 
     @property
     def moves(self) -> bool:
@@ -80,97 +89,112 @@ class BaseRow(NamedTuple):
 class SenseRow(NamedTuple):
     """A sense of robots. A route of the project with its name, or `of` it, carries its readings.
 
-    `encode` is the import string of a function from a reading to the body of a message; `decode` of one from a body and
-    the names of the robot's joints to a reading, or to None if the body is of another robot. `decode` may raise
-    KeyError, TypeError or ValueError for a body that has no reading. A sense without them is of images.
+    A sense without functions is one of images.
     """
 
     meaning: str
+    """What its route is for."""
     encode: str = ""
+    """An import string of a function from a reading to the body of a message."""
     decode: str = ""
+    """An import string of a function from a body and the names of the robot's joints to a reading.
+
+    It returns None if the body is of another robot, and may raise KeyError, TypeError or ValueError for a body that has
+    no reading.
+    """
 
 
 class BusRow(NamedTuple):
     """A kind of bus, by the scheme of its addresses.
 
-    `open` is the import string of a function from an address and the name of a sender to a `lumen.ports.Bus`. `forms`
-    are shown if an address is wrong, `example` in `--help`. A bus `within_process` has no other processes on it.
-
-    If the bus has a broker, `probe` is the import string of a function from an address to a `Probe`, by which
-    `lumen doctor` examines it, and `stream` of one from an address, a name and an offset to a `Stream`, or to None if
-    there is no such stream (both in `lumen.bus.brokers`). `side_queues` names the queues of unusable
-    messages.
+    The last three fields are for a bus with a broker; their classes are in `lumen.bus.brokers`.
     """
 
     open: str
+    """An import string of a function from an address and the name of a sender to a `lumen.ports.Bus`."""
     forms: tuple[str, ...]
+    """The forms of its addresses, shown if an address is wrong."""
     example: str = ""
+    """An address, shown in `--help`."""
     within_process: bool = False
+    """Whether no other process can be on it."""
     probe: str = ""
+    """An import string of a function from an address to a `Probe`, with which `lumen doctor` examines the broker."""
     stream: str = ""
+    """An import string of a function from an address, a name and an offset to a `Stream`.
+
+    It returns None if there is no such stream.
+    """
     side_queues: str = ""
+    """The names of the queues of unusable messages."""
 
 
 class ModuleRow(NamedTuple):
     """A module: a program on the bus that runs alongside the behaviour, such as the eyes.
 
-    `module` is the import string of a subclass of `lumen.run.module.Module`. `description` and `options` (a JSON
-    Schema for each option) describe the module's settings in lumen.yaml; schemas/lumen.schema.json has those of
-    Lumen's own modules.
+    The settings of Lumen's own modules are described in schemas/lumen.schema.json.
     """
 
     module: str
+    """An import string of a subclass of `lumen.run.module.Module`."""
     description: str = ""
+    """A description of the module's settings in lumen.yaml."""
     options: Mapping[str, Mapping[str, Any]] = {}
+    """The JSON Schema of each option in these settings."""
 
 
 class FunctionRow(NamedTuple):
-    """A function of the expression language. It is pure: the same arguments give the same value.
-
-    `call` is its import string; the first line of its docstring is shown in editors. `parameters` are the kinds that
-    each argument may have, and `returns` those of its value: `text`, several as `text|list`, or `any`. `example` shows
-    how the arguments are written. A `scoped` function gets the `Scope` before its arguments; `clock` means that it
-    reads the time of day, `draws` that it draws random values. An `exact` function checks its arguments itself and
-    returns JSON data within Lumen's bounds; Lumen checks both for others.
-    """
+    """A function of the expression language. It is pure: the same arguments give the same value."""
 
     call: str
+    """The import string of the function; editors show the first paragraph of its docstring."""
     parameters: tuple[str, ...]
+    """The kinds that each argument may have: `text`, several as `text|list`, or `any`."""
     returns: str
+    """The kinds that its value may have."""
     example: str = ""
+    """How the arguments are written."""
     scoped: bool = False
+    """Whether it gets the `Scope` before its arguments."""
     clock: bool = False
+    """Whether it reads the time of day."""
     draws: bool = False
+    """Whether it draws random values."""
     exact: bool = False
+    """Whether it checks its arguments itself and returns JSON data within Lumen's bounds; Lumen checks others."""
 
 
 class VerbRow(NamedTuple):
-    """A verb of the YAML that the robot performs by code of a feature.
-
-    `performer` is the import string of a `SkillPerformer` (`lumen.ports`), which reads a section of lumen.yaml with
-    `call.section`. `arguments` is the JSON Schema of an object
-    without `$ref`s; if it has one required property, that can be written short: `blink: 3`. Properties that the YAML
-    leaves out get their `default`. `result` is the JSON Schema of what the performer returns. `takes` is how long it
-    takes, a duration that can contain expressions of the arguments: `{{ times * 0.4 }}s`. `parts` are those of the body
-    that it needs to itself (`lumen.language.body_parts`). One that `moves` the robot is refused while the robot rests.
-    If not `cancel`, the performer continues after a stop or after its state was left; in either case the robot does not
-    wait for it.
-
-    A verb that a file of a project declares has in `details` what that file says to its performer. Of a loaded project
-    it also has the project's folder, `root`, and the name of its `robot`.
-    """
+    """A verb of the YAML that the robot performs by code of a feature."""
 
     performer: str
+    """An import string of a `SkillPerformer` (`lumen.ports`), which reads lumen.yaml with `call.section`."""
     description: str = ""
     arguments: Mapping[str, Any] = {}
+    """The JSON Schema of an object, without `$ref`s.
+
+    If it has one required property, that can be written short: `blink: 3`. Properties that the YAML leaves out get
+    their `default`.
+    """
     result: Mapping[str, Any] = {}
+    """The JSON Schema of what the performer returns."""
     takes: str = "0s"
+    """How long it takes: a duration that can contain expressions of the arguments, `{{ times * 0.4 }}s`."""
     parts: tuple[str, ...] = ()
+    """The parts of the body that it needs to itself (`lumen.language.body_parts`)."""
     moves: bool = False
+    """Whether it moves the robot; then it is refused while the robot rests."""
     cancel: bool = True
+    """Whether the performer ends early after a stop, or after its state was left.
+
+    Otherwise it continues. In either case the robot does not wait for it.
+    """
     details: object = None
+    """For a verb that a file of a project declares: what the file says to its performer."""
     root: str = ""
+    """The project's folder, for such a verb of a loaded project."""
     robot: str = ""
+    """The robot's name, for such a verb of a loaded project."""
 
 
 RiskName = Literal["cosmetic", "behavior", "motion", "wiring", "restart"]
