@@ -238,14 +238,17 @@ class Section(NamedTuple):
 
 
 class Subcommand(NamedTuple):
-    """A subcommand of `lumen`. `after` is the one after which `lumen --help` lists it, of this or an earlier feature.
-
-    `module` has `configure`, which adds arguments to an `ArgumentParser`, and `run`, which returns the exit code.
-    """
+    """A subcommand of `lumen`."""
 
     summary: str
+    """Its description in `lumen --help`."""
     module: str
+    """A module with two functions.
+
+    `configure` adds arguments to an `ArgumentParser`; `run` returns the exit code.
+    """
     after: str = ""
+    """The subcommand after which `lumen --help` lists it, of this or an earlier feature."""
 
 
 class EditorRow(NamedTuple):
@@ -321,22 +324,27 @@ PART_CONDITIONS = dict.fromkeys(("whole", "brain", "follows"), False) | dict.fro
 
 
 class PartRow(NamedTuple):
-    """A part of an exhibition: `make` is an import string of a function that takes the services made so far.
-
-    It returns a part, several, or none. Rows of one phase come by name, or `after` another one. The conditions in
-    `when` have to hold: `whole` (one process has everything), `brain` (the behaviour runs in this process), `follows`
-    (it does not), `role:NAME` (this is that process of several), `option:NAME` (the plan has that option),
-    `section:NAME` (lumen.yaml has that section), `file:NAME` (the project has that file next to lumen.yaml). A
-    `claimed` part is made after the process has claimed the robot on the bus: it opens what another process may have
-    open.
-    """
+    """A part of an exhibition."""
 
     name: str
     phase: Phase
+    """When it is made and ticked. In a phase, parts are in the order of their names, except for `after`."""
     make: str
+    """An import string of a function from the services made so far to a part, several, or none."""
     when: str = ""
+    """The conditions that have to hold.
+
+    `whole` (one process has everything), `brain` (the behaviour runs in this process), `follows` (it does not),
+    `role:NAME` (this is that process of several), `option:NAME` (the plan has that option), `section:NAME` (lumen.yaml
+    has that section), `file:NAME` (the project has that file next to lumen.yaml).
+    """
     after: str = ""
+    """The part of the same phase after which it comes."""
     claimed: bool = False
+    """Whether it is made after the process has claimed the robot on the bus.
+
+    Such a part opens what another process may have open.
+    """
 
 
 class Feature(NamedTuple):
