@@ -15,15 +15,16 @@ KindSet = frozenset[str]
 
 
 class Function(NamedTuple):
-    """A function of the language; `parameters` has the kinds that each argument may have.
-
-    A `scoped` function gets the Scope before its arguments.
-    """
+    """A function of the language."""
 
     parameters: tuple[KindSet, ...]
+    """The kinds that each argument may have."""
     returns: KindSet
+    """The kinds that its value may have."""
     call: Callable[..., Any]
+    """The function itself."""
     scoped: bool = False
+    """Whether it gets the Scope before its arguments."""
 
 
 @cache

@@ -37,12 +37,16 @@ _HINTS = {
 
 
 class Token(NamedTuple):
-    """A token: `kind` is int, float, text, name, sign or end; `text` is the source; `value` that of a literal."""
+    """A token of an expression."""
 
     kind: str
+    """One of int, float, text, name, sign and end."""
     text: str
+    """Its source."""
     offset: int
+    """Its offset in the source of the expression."""
     value: int | float | str | None = None
+    """The value of a literal, None for other kinds."""
 
     @property
     def end(self) -> int:

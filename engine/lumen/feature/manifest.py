@@ -332,7 +332,7 @@ class PartRow(NamedTuple):
     make: str
     """An import string of a function from the services made so far to a part, several, or none."""
     when: str = ""
-    """The conditions that have to hold.
+    """The conditions that have to hold, separated by spaces.
 
     `whole` (one process has everything), `brain` (the behaviour runs in this process), `follows` (it does not),
     `role:NAME` (this is that process of several), `option:NAME` (the plan has that option), `section:NAME` (lumen.yaml

@@ -41,19 +41,19 @@ _SOON = 1e-9
 
 @dataclass(frozen=True)
 class KeyframeReader:
-    """Reads the keyframes of one file. `beat` is the length of a beat [s], None if the file has no tempo.
-
-    `motions` are those that `play` may name. The faults of those in `broken` were reported in their own files. `verbs`
-    are the skills that a keyframe may begin.
-    """
+    """Reads the keyframes of one file."""
 
     report: DocumentReport
     name: str
     poses: PoseReader
     beat: float | None
+    """The length of a beat [s], None if the file has no tempo."""
     motions: Mapping[str, MotionDefinition]
+    """The motions that `play` may name."""
     broken: Collection[str] = ()
+    """Names of motions whose faults were reported in their own files."""
     verbs: OwnVerbs = NO_VERBS
+    """The skills that a keyframe may begin."""
 
     def read(self, items: list[Any], path: NodePath, interpolation: Interpolation) -> MotionDefinition:
         """Return the motion of a list of keyframes and blocks; its times count from the beginning of the list [s]."""

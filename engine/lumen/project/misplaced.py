@@ -69,15 +69,16 @@ MISPLACED_FILE = Code("misplaced-file", "text", ERROR, "a file is in the folder 
 
 
 class _Kind(NamedTuple):
-    """The name of a kind of file, and the keys that identify it: all of `marks`, or `alone`.
-
-    If a kind has only keys that others have too, a file is of that kind if it has no keys but `only`.
-    """
+    """A kind of file, and the keys that identify it."""
 
     name: str
+    """The name of the kind."""
     marks: frozenset[str]
+    """Keys that identify a file if it has all of them."""
     alone: str = ""
+    """A key that identifies a file by itself; empty if there is none."""
     only: frozenset[str] = frozenset()
+    """Keys that identify a file if it has no others, for a kind that has no keys of its own."""
 
     @property
     def keys(self) -> frozenset[str]:

@@ -20,26 +20,30 @@ _log = logging.getLogger(__name__)
 
 @dataclass
 class PublishCounts:
-    """Counts of a sense's readings: `dropped` for a newer one, `refused` by the bus; `off` is why the sense is off."""
+    """Counts of a sense's readings."""
 
     published: int = 0
     dropped: int = 0
+    """Readings that a newer one replaced."""
     refused: int = 0
+    """Readings that could not be encoded or that the bus refused."""
     off: str = ""
+    """Why the sense is off; empty while it is on."""
 
 
 @dataclass(eq=False)
 class PendingReading:
-    """A reading that waits to be published, after the one handed over before it if there is one to wait for.
-
-    `begun` is set when its publishing begins, at `began` [s, monotonic], and `done` when that has ended.
-    """
+    """A reading that waits to be published."""
 
     reading: OtherReading
     after: "PendingReading | None" = None
+    """The reading that must be published before it, None if there is none to wait for."""
     began: float = 0.0
+    """When its publishing began [s, monotonic]."""
     begun: threading.Event = field(default_factory=threading.Event)
+    """Set when its publishing begins."""
     done: threading.Event = field(default_factory=threading.Event)
+    """Set when its publishing has ended."""
 
     def begin(self) -> None:
         self.began = time.monotonic()

@@ -72,12 +72,16 @@ class ParallelActions:
 
 @dataclass(frozen=True, slots=True)
 class AskedQuestion:
-    """An `ask`; ends when its answer is said, or with `otherwise`, which starts without an answer `within` [s]."""
+    """An `ask`; it ends when its answer has been said, or with `otherwise`."""
 
     make: CommandFactory
+    """Makes the command that asks the question."""
     say: Callable[[ActionContext, Sentence], BodyCommand]
+    """Makes the command that says a sentence of the answer."""
     within: float
+    """The time limit for the answer [s]."""
     otherwise: "tuple[CompiledAction, ...]"
+    """The actions that run if no answer comes in time."""
     where: NodePath
 
 

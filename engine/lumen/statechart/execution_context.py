@@ -24,15 +24,15 @@ _new = tuple.__new__  # a third of the cost of Scope(…), Snapshot(…), Step(�
 
 
 class Beginning(NamedTuple):
-    """Invocations and `do` of an entered state, which begin after the macrostep (SCXML 6.4: `statesToInvoke`).
-
-    `halted` is the stored position of that `do`, if a history state restores the state.
-    """
+    """The activities of an entered state, which begin after the macrostep (SCXML 6.4: `statesToInvoke`)."""
 
     node: StateNode
     invokes: tuple[CompiledInvoke, ...]
+    """The behaviours to invoke."""
     do: bool
+    """Whether its `do` begins."""
     halted: Halted | None = None
+    """The stored position of that `do`, if a history state restores the state."""
 
 
 def place_after(before: str, event: Event | None) -> str:

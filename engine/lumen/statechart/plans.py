@@ -43,20 +43,26 @@ NO_CANDIDATES = Candidates()
 
 
 class MicrostepPlan(NamedTuple):
-    """A microstep: the states to exit and enter, and the transitions to run. `exits` and `entries` omit idle states.
-
-    `between` are the names that are active while the actions of the transitions run.
-    """
+    """A microstep: the states to exit and enter, and the transitions to run."""
 
     taken: tuple[CompiledTransition, ...]
+    """The transitions that it takes, compiled."""
     transitions: tuple[Transition, ...]
+    """The same transitions as in the definition."""
     exits: tuple[StateChange, ...]
+    """The states to exit, in exit order; idle states, which have nothing to execute, are omitted."""
     between: frozenset[str]
+    """The names that are active while the actions of the transitions run."""
     entries: tuple[StateChange, ...]
+    """The states to enter, in entry order, without idle states."""
     exited: tuple[str, ...]
+    """The names of all states that it exits, in exit order."""
     entered: tuple[str, ...]
+    """The names of all states that it enters, in entry order."""
     history: History
+    """The memory of history states afterwards."""
     target: "Configuration"
+    """The configuration afterwards."""
 
 
 class Configuration:

@@ -31,29 +31,35 @@ _PARTICLES = frozenset(
 
 
 class Entry(NamedTuple):
-    """A form in the trie: its name, its strength, and the rules that apply to it.
-
-    `row` is the row of a table of answers. `strength` is the number of its words that are not fillers. A form that is
-    `alone` must be a whole clause; a `negative` or `question` form contains a negation or a question word itself.
-    """
+    """A form in the trie: its name, its strength, and the rules that apply to it."""
 
     name: str
     row: int
+    """The row of a table of answers to which it belongs."""
     strength: int
+    """The number of its words that are not fillers."""
     alone: bool
+    """Whether it must be a whole clause."""
     negative: bool
+    """Whether it contains a negation itself."""
     question: bool
+    """Whether it contains a question word itself."""
     anyhow: bool
+    """Whether it is found even if it is negated."""
 
 
 class Find(NamedTuple):
-    """A form found in a text: the words from `start` to before `end`, and what its slots caught."""
+    """A form that was found in a text."""
 
     entry: Entry
     start: int
+    """The index of its first word."""
     end: int
+    """The index after its last word."""
     caught: tuple[tuple[str, Any], ...]
+    """What its slots caught, by their names."""
     strength: int
+    """The strength of its form, and the words that count of what its slots caught."""
 
 
 class ReadSentence:

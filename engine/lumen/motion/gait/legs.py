@@ -55,7 +55,9 @@ class LegGeometry:
     hip_down: float
     """Distance of the hips below the torso's origin [m]."""
     thigh: float
+    """Distance from hip to knee [m]."""
     tibia: float
+    """Distance from knee to ankle [m]."""
     foot: float
     """Height of the ankle above the sole [m]."""
     inclination: float
@@ -63,11 +65,15 @@ class LegGeometry:
     shared: bool
     """True if both yaws share one motor."""
     sole_size: SoleSize
+    """Extent of a sole."""
     speed: float
     """Speed of the slowest pitch joint [rad/s]."""
     names: Mapping[Side, tuple[str, ...]]
+    """The robot's own names of the joints, in the order of `LEG_ROLES`."""
     signs: Mapping[Side, tuple[float, ...]]
+    """1 or -1 for each joint: the sign of its own angle, relative to the leg angle."""
     offsets: Mapping[Side, tuple[float, ...]]
+    """The leg angle at which each joint is at 0 [rad]."""
 
     @property
     def length(self) -> float:

@@ -13,16 +13,18 @@ from lumen.motion.gait.swing import Swing
 
 @dataclass(slots=True)
 class GaitPhase:
-    """A step, or the settling after the last one: the bearing point at each tick, and the moving foot.
-
-    The foot leaves the ground at tick `lifts`. After the `last` step the weight is between the feet.
-    """
+    """A step, or the settling after the last one."""
 
     zmp: list[complex]
+    """The bearing point at each tick, x + iy [m]."""
     swing: Swing | None = None
+    """The path of the moving foot; None while both feet stay."""
     lifts: int = 0
+    """The tick at which the foot leaves the ground."""
     last: bool = False
+    """Whether it is the last step, after which the weight is between the feet."""
     tick: int = 0
+    """The number of ticks that have passed."""
 
     @property
     def over(self) -> bool:

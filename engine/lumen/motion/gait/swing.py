@@ -21,18 +21,20 @@ _LEAVES, _ARRIVES = 0.05, 0.95
 
 @dataclass(slots=True)
 class Swing:
-    """The path of a foot to its next pose: a cosine in height, a minimum-jerk curve across the ground.
-
-    If the goal was changed on the way, `turned` is the part of the time at which that happened, and `old` the former
-    goal.
-    """
+    """The path of a foot to its next pose: a cosine in height, a minimum-jerk curve across the ground."""
 
     side: Side
+    """The foot."""
     start: Pose
+    """The pose that it leaves."""
     goal: Pose
+    """The pose at which it lands."""
     lift: float
+    """The greatest height of the sole [m]."""
     old: Pose | None = None
+    """The former goal, if the goal was changed on the way."""
     turned: float = 0.0
+    """The part of the time (0..1) after which the goal was changed."""
 
     def at(self, part: float) -> Placed:
         """Return the pose and height of the foot after `part` (0..1) of its time."""

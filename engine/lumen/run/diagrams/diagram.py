@@ -6,19 +6,22 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class StateBox:
-    """A state as a box; `rows` describe its transitions, `marked` is whether the picture is about it.
-
-    `first` is whether the enclosing state begins with it. The boxes in a `parallel` one are side by side.
-    """
+    """A state as a box."""
 
     id: str
     title: str
     rows: tuple[str, ...] = ()
+    """Descriptions of its transitions."""
     within: tuple["StateBox", ...] = ()
+    """The boxes inside."""
     parallel: bool = False
+    """Whether the boxes inside are side by side."""
     final: bool = False
+    """Whether it is a final state."""
     first: bool = False
+    """Whether the enclosing state begins with it."""
     marked: bool = False
+    """Whether the picture is about it."""
 
 
 @dataclass(frozen=True)

@@ -14,24 +14,30 @@ class PlotAxis:
 
 @dataclass(frozen=True, slots=True)
 class PlotLine:
-    """A curve; NaN is a gap in it. `style` numbers line styles that differ also in grey; `points` draws only dots."""
+    """A curve."""
 
     xs: tuple[float, ...]
     ys: tuple[float, ...]
+    """The values; NaN is a gap in the curve."""
     label: str = ""
     style: int = 0
+    """The number of the line style; styles differ also in grey."""
     filled: bool = False
     points: bool = False
+    """Whether to draw only dots."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlotMark:
-    """A thin line across the panel at `at`: upright, or horizontal if `level`; `strong` marks a result."""
+    """A thin line across the panel."""
 
     at: float
+    """Its coordinate on the axis that it crosses."""
     label: str = ""
     level: bool = False
+    """Whether it is horizontal; else it is upright."""
     strong: bool = False
+    """Whether it marks a result."""
 
 
 @dataclass(frozen=True, slots=True)
