@@ -227,7 +227,7 @@ class Executor:
         return self._skill(command, now)
 
     def _before(self, task: _Task) -> _Task | None:
-        """Return the `Move` under way that this one replaces without a stop in between; None if there is none."""
+        """Return the `Move` under way that this one replaces without a stop in between; else None."""
         moving = isinstance(task.command, Move)
         return next((t for t in self._tasks if moving and isinstance(t.command, Move) and t.going), None)
 

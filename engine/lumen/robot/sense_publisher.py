@@ -37,7 +37,7 @@ class PendingReading:
 
     reading: OtherReading
     after: "PendingReading | None" = None
-    """The reading that must be published before it, None if there is none to wait for."""
+    """The reading that must be published before it; None if it need not wait."""
     began: float = 0.0
     """When its publishing began [s, monotonic]."""
     begun: threading.Event = field(default_factory=threading.Event)

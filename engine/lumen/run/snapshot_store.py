@@ -116,7 +116,7 @@ class SnapshotStore:
             return None
 
     def of_another_version(self) -> tuple[str, bool]:
-        """Return the version of a snapshot by another Lumen, empty if there is none, and whether the robot rests."""
+        """Return the version of another Lumen's snapshot, empty if it is this one's, and whether the robot rests."""
         data = self._home.read_json(SNAPSHOT_FILE)
         said = data.get("version", SNAPSHOT_VERSION) if isinstance(data, Mapping) else SNAPSHOT_VERSION
         return ("", False) if said == SNAPSHOT_VERSION else (str(said)[:20], data.get("rests") is True)

@@ -57,7 +57,7 @@ class Find(NamedTuple):
     end: int
     """The index after its last word."""
     caught: tuple[tuple[str, Any], ...]
-    """What its slots caught, by their names."""
+    """The values that its slots caught, each after the slot's name."""
     strength: int
     """The strength of its form, and the words that count of what its slots caught."""
 

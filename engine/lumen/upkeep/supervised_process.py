@@ -94,7 +94,7 @@ class SupervisedProcess:
             _kill(self._process)
 
     def close(self) -> None:
-        """End it and everything it started: SIGTERM, and SIGKILL after END_TIMEOUT. Harmless when repeated."""
+        """End the program and everything it started: SIGTERM, and SIGKILL after END_TIMEOUT. Harmless when repeated."""
         self._closed = True
         if (process := self._process) is None:
             return

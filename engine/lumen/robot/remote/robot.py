@@ -63,7 +63,7 @@ class _Pending:
     heard: bool = False
     """Whether the robot has reported on it."""
     cancelled: bool = False
-    """Whether it is to be cancelled."""
+    """Whether the brain has cancelled it."""
     held: bool = False
     """Whether it waits until the robot has a command that stops it."""
 

@@ -137,7 +137,7 @@ def _narrow(ranks: Mapping[N, int], sizes: Mapping[N, Extent], widest: float) ->
 def _with_ways(
     ranks: Mapping[N, int], room: dict[N, Extent], edges: Sequence[Edge[N]]
 ) -> tuple[list[list[object]], dict[tuple[object, object], list[object]], dict[object, Extent]]:
-    """Return the layers with a narrow node where an edge passes, each edge as the nodes along it, and all sizes."""
+    """Return the layers, with a narrow node for each edge that passes; each edge as its nodes; and all sizes."""
     layers: list[list[object]] = [[] for _ in range(max(ranks.values(), default=-1) + 1)]
     for n, rank in ranks.items():
         layers[rank].append(n)
