@@ -17,8 +17,10 @@ KEYFRAME_PERIOD = 60.0
 """The time between two keyframes [s of the exhibition]; a return to the waiting state also writes one."""
 
 LARGE = 50_000
-"""A keyframe larger than this [bytes] is written only after entries of the same size: so a behaviour with much memory
-that returns to its waiting state with each step does not fill the disk."""
+"""A keyframe larger than this [bytes] is written only after entries of the same size.
+
+So a behaviour with much memory that returns to its waiting state with each step does not fill the disk.
+"""
 
 NO_JSON = (TypeError, ValueError, RecursionError)
 """The errors raised for data that JSON cannot represent."""

@@ -156,8 +156,9 @@ class State:
     """The data of `done.state.*` for a final state."""
     on_reload: str = ""
     resume: Resume = ""
-    """How `do` continues after a history or a restart of the engine: with the same step (`again`), the one `after` it,
-    or `never`; empty to begin anew.
+    """How `do` continues after a history or a restart of the engine; empty to begin anew.
+
+    `again` begins with the same step, `after` with the next one; `never` does not continue.
     """
     life: str = ""
     """The style of life meanwhile; empty to keep that of the surrounding state."""

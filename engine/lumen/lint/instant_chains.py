@@ -207,9 +207,7 @@ class InstantChain:
                 self.internal += (f"done.do.{state.name}",)
 
     def _end(self, final: State) -> None:
-        """Raise the events of the states that end with a final one: its parent, and parallel states that end with
-        it.
-        """
+        """Raise the events of the states that end with a final one: its parent, and the parallel states around it."""
         path = final.parent or ""
         while self.machine.states[path].kind is not StateKind.PARALLEL or self._is_final(path):
             state = self.machine.states[path]

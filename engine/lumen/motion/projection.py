@@ -45,7 +45,7 @@ def centring(point: Vector3, camera: Camera) -> tuple[float, float]:
     """Return the yaw and pitch that centre a point of the torso frame in the image, ignoring joint limits.
 
     It is exact for a camera in the head's plane of symmetry, as in NAO; the point must be farther from the neck than
-    it.
+    the camera.
     """
     neck = camera.neck
     x, y, z = point[0] - neck[0], point[1] - neck[1], point[2] - neck[2]

@@ -32,7 +32,7 @@ class CommandBounds:
     def fit(self, command: RobotCommand) -> RobotCommand: ...
 
     def fit(self, command: RobotCommand) -> RobotCommand:
-        """Return the nearest command that the body can perform. Raises BadCommandError if no robot of it can."""
+        """Return the nearest command that the body can perform. Raises BadCommandError if there is no such command."""
         check_command(command, self._body)
         if isinstance(command, Do):
             return command
@@ -43,7 +43,7 @@ class CommandBounds:
     def aim(self, aim: Aim, here: Mapping[str, float] = NOWHERE) -> Aim | None:
         """Return the nearest aim that the body can perform from `here` [rad], the joints' angles that are known.
 
-        Log a warning and return None if no robot of it can.
+        Log a warning and return None if the body can't perform any such aim.
         """
         try:
             check_command(aim, self._body)

@@ -127,7 +127,10 @@ class Executor:
         self._begun: deque[str] = deque(maxlen=MAX_UNREAD_STARTS)
 
     def start(self, id: str, command: RobotCommand) -> None:
-        """Queue a command; it begins at the next `advance` for which its parts are free."""
+        """Queue a command; it begins at the next `advance` for which its parts are free.
+
+        A `Stop` or `Rest` cancels other commands at once.
+        """
         task = _Task(id, command, self._parts(command))
         if isinstance(command, Stop):
             what = command.what

@@ -159,9 +159,7 @@ class ActionText(StepText):
         return self.constant(action)
 
     def begin(self, action: Action, node: StateNode, known: Certain) -> str:
-        """Write the start of an action of a `do` (`Advance.begin`); return its position as text, `None` if it ends at
-        once.
-        """
+        """Write the start of an action of a `do` (`Advance.begin`); return its position as text, else `None`."""
         sight = Sight(known.event, node, known.configuration.known)
         match action:
             case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText():

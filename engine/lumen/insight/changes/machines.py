@@ -103,8 +103,9 @@ class _Comparison:
             yield self.change("state", title, f"{title} now returns different data")
 
     def buttons(self, old: State, new: State, title: str) -> Iterator[Change]:
-        """Yield the buttons that were added, removed or changed, matched by their labels: nothing else identifies a
-        button.
+        """Yield the buttons that were added, removed or changed.
+
+        They are matched by their labels, because nothing else identifies a button.
         """
         before, after = ({next(iter(b.label.values())): b for b in one.buttons} for one in (old, new))
         for label in dict.fromkeys((*before, *after)):

@@ -98,8 +98,9 @@ def _by_trigger(transitions: list[Transition]) -> dict[str, list[Transition]]:
 
 
 def _comparable(value: Any) -> Any:
-    """Return a value with its expressions as written: compiled ones contain the number of a row, which other rows
-    change.
+    """Return a value with its expressions as written.
+
+    Compiled ones contain the number of a row of `hears`, which changes with the rows before it.
     """
     match value:
         case Expression(source):

@@ -31,9 +31,11 @@ class WhyAnswer:
     links: tuple[Link, ...]
     """The chain of causes: the effect first, its cause last."""
     needs: tuple[Link, ...] = ()
-    """Earlier steps without which it would not have happened, besides those of the chain: steps that entered the states
-    that were active, or set the values that were read. Only these, and those that they need in turn, made a
-    difference."""
+    """Earlier steps, besides those of the chain, without which it would not have happened.
+
+    They entered the states that were active, or set the values that were read. Only these steps, and those that they
+    need in turn, made a difference.
+    """
 
     def to_json(self) -> dict[str, Any]:
         """Return the object that `lumen why --format json` prints."""

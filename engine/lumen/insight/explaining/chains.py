@@ -28,9 +28,7 @@ SHOWN_FIRST, SHOWN_LAST = 60, 20
 
 
 def chain(history: StepHistory, effect: Effect) -> list[Link]:
-    """Return the links, the effect first and the cause last; a link that counts the rest replaces the middle of a long
-    chain.
-    """
+    """Return the links, from the effect to the cause; in a long chain one link counts those left out in the middle."""
     found: list[Link] = []
     ways: list[partial[LinkWalk]] = [partial(Chain(history).of, effect)]
     while ways and len(found) < MAX_LINKS:

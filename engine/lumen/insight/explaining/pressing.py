@@ -49,9 +49,7 @@ def shown_buttons(machine: MachineDefinition, snapshot: Snapshot, at: float) -> 
 
 
 def pressed(machine: MachineDefinition, snapshot: Snapshot, label: str, at: float, by: str) -> Event | str:
-    """Return the event of the button with that label, in any language, pressed by `by`; a message if it can't be
-    pressed.
-    """
+    """Return the event of pressing the button with a label, in any language; a message if it can't be pressed."""
     shown = shown_buttons(machine, snapshot, at)
     found = sorted((one for one in shown if one.button.named(label)), key=lambda one: not one.enabled)
     if not found:

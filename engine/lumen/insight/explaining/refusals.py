@@ -45,8 +45,9 @@ class Reason:
     false: GuardPart | None = None
     """The first part of the guard that was not true."""
     change: ProposedChange | None = None
-    """The smallest change found after which it would have happened, proved by taking the step again; None if none was
-    found.
+    """The smallest change found after which it would have happened; None if none was found.
+
+    It is proved by taking the step again.
     """
     note: str = ""
     """Why there is no change; empty if there is one."""
@@ -130,9 +131,7 @@ class TransitionRefusals:
         return Reason("preempted", f"{after}, {who}", at, place, None, change, note, number)
 
     def _rival(self, number: int, moment: Moment, found: CompiledTransition) -> Transition | None:
-        """Return the transition that was taken instead: of an inner state, earlier in the same state, or in another
-        region.
-        """
+        """Return the transition taken instead: of an inner state, earlier in the same state, or in another region."""
         taken_then = [t for s in self.history.trace(number).microsteps if s.moment is moment for t in s.transitions]
         group = next((group for group in moment.groups if found in group), ())
         own = [t.definition for t in group]
@@ -220,9 +219,7 @@ def _names(machine: MachineDefinition, descriptor: str) -> Iterator[str]:
 def _standing_in(
     machine: MachineDefinition, snapshot: Snapshot, state: str, wanted: Transition, goal: str
 ) -> Snapshot | bool:
-    """Return the snapshot after entering that state; True if the entry alone reaches the goal, False if it is
-    impossible.
-    """
+    """Return the snapshot after entering that state; True if that reaches the goal, False if it is impossible."""
     try:
         step = entered_directly(machine, snapshot, state, Event(OPERATOR_GOTO, {"state": state}, snapshot.at))
     except LumenError:

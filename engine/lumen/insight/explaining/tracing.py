@@ -45,9 +45,7 @@ class Moment(NamedTuple):
 
     @property
     def candidates(self) -> Candidates:
-        """The transitions that were considered, for each active atomic state the innermost first; late ones are
-        separate.
-        """
+        """The transitions that were considered, for each active atomic state innermost first; late ones apart."""
         if self.eventless or self.event is None:
             return self.configuration.eventless
         if timed := self.configuration.timed(self.event.name):
@@ -105,9 +103,7 @@ class Trace:
     step: Step | None = None
 
     def entering(self, owner: str, state: str, until: TracedMicrostep | None = None) -> TracedMicrostep | None:
-        """Return the last microstep that entered the state of that name, None if none did; `until` is the last one
-        considered.
-        """
+        """Return the last microstep up to `until` that entered the state of that name; None if none did."""
         steps = self.microsteps[: self.microsteps.index(until) + 1] if until else self.microsteps
         found = (one for one in reversed(steps) if one.moment.owner == owner and state in one.entered)
         return next(found, None)

@@ -20,9 +20,7 @@ from lumen.statechart.values import Snapshot, awaited
 
 
 class Way(NamedTuple):
-    """A transition of the behaviour that runs under `owner`, and the action that it leads to; None if a state is
-    sought.
-    """
+    """A transition of the behaviour under `owner`, and the action that it leads to; None if a state is sought."""
 
     owner: str
     machine: MachineDefinition

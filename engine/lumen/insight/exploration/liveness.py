@@ -94,9 +94,7 @@ class Liveness:
         self._without_history: dict[frozenset[str], frozenset[str]] = {}
 
     def of(self, configuration: frozenset[str], history: Mapping[str, tuple[str, ...]]) -> frozenset[str]:
-        """Return the keys that can still matter in a configuration; `history` has the paths that each history
-        remembers.
-        """
+        """Return the keys that can still matter in a configuration; `history` has what each history remembers."""
         live = self._without_history.get(configuration)
         if live is None:
             live = frozenset().union(*(self._by_name[name] for name in configuration))
@@ -114,9 +112,7 @@ class Liveness:
         return assigned_on_entry(state.entry).difference(*(self._reads[path] for path in self._around(state.path)))
 
     def _solve(self, leaves: list[str]) -> Mapping[str, frozenset[str]]:
-        """Return the keys that matter in each leaf: read there or around it, or after one of its transitions (a fixed
-        point).
-        """
+        """Return the keys that matter in each leaf, a fixed point: read in or around it, or after a transition."""
         live = {leaf: frozenset().union(*(self._reads[path] for path in self._around(leaf))) for leaf in leaves}
         changed = True
         while changed:
@@ -128,9 +124,7 @@ class Liveness:
         return live
 
     def _successors(self, leaf: str) -> Iterator[tuple[str, frozenset[str]]]:
-        """Yield the leaves that transitions of a leaf or of states around it may enter, each with the keys overwritten
-        then.
-        """
+        """Yield the leaves that transitions from a leaf or around it may enter, each with the keys overwritten then."""
         for transition in (tr for path in self._around(leaf) for tr in self._machine.states[path].transitions):
             killed, domain = assigned_by(transition, self._caught(transition)), self._domain(transition)
             for target in transition.targets:

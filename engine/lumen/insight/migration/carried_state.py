@@ -64,9 +64,7 @@ def carried_shared(new: Chart, values: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def context(old: Chart, new: Chart, values: Mapping[str, Any], identity: Identity) -> CarriedContext:
-    """Return the new context: each key that still exists keeps its value if it has the key's type, else its initial
-    value.
-    """
+    """Return the new context: a key that still exists keeps its value if the type fits, else the initial value."""
     first, names = new.definition.context, identity.keys()
     kept = {key: values[was] for key, was in names.items() if was in values and fits(values[was], new.checks[key])}
     if new.definition.shared and isinstance(common := values.get(SHARED), Mapping):

@@ -59,9 +59,7 @@ class _Migration:
         self.after, self.notes = self._translated()
 
     def plan(self, behavior: str) -> MigrationVerdict:
-        """Return the plan: exits of the old machine, the translated state, entries of the new machine, and what
-        follows.
-        """
+        """Return the plan: old exits, the translated state, new entries, and what follows from them."""
         before, after = self.before, self.after
         leaving = before.commands
         for id, child in before.invocations.children.items():

@@ -76,8 +76,7 @@ class Placement(NamedTuple):
 
 
 class Unplaced(NamedTuple):
-    """A state in which nothing can be active: its active child `gone` was removed, and no `onReload` names another
-    state.
+    """A state in which nothing can be active: its child `gone` was removed, and no `onReload` names another state.
 
     If several children are active that can't be active together, they are `rivals`. `state` is new, `gone` the
     innermost old state.

@@ -36,11 +36,10 @@ class MigrationPlan(NamedTuple):
 
 
 class MigrationDelay(NamedTuple):
-    """The behaviour can't change yet: the `do` of a state, or an invoked behaviour, is under way and is gone or
-    changed.
+    """The behaviour can't change yet: the `do` of a state, or an invoked behaviour, is under way and has changed.
 
-    `what` is the name of the state or behaviour. Try again after the next step, or with `now`, which cancels what is
-    under way.
+    `what` is the name of the state or behaviour, which may also have been removed. Try again after the next step, or
+    with `now`, which cancels what is under way.
     """
 
     reason: str

@@ -174,9 +174,7 @@ class OtherPlay:
             self.trouble = str(error)
 
     def place(self, number: int) -> Place | None:
-        """Return the place in the files of the action behind the command of that index in `done`; None if it is
-        unknown.
-        """
+        """Return the place of the action that issued the command of that index in `done`; None if it is unknown."""
         if number < 0:
             return None
         before, event, command = self._asked[number]

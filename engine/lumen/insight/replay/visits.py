@@ -33,8 +33,9 @@ class RecordedVisit(NamedTuple):
     ended: float
     """When it ended [s since 1970, in UTC]."""
     home: JournalJump | None = None
-    """The jump before it, with the behaviour at home, or where a run began elsewhere (as in a museum that is already
-    open); None if the journal lacks it.
+    """The jump before it, with the behaviour at home; None if the journal lacks it.
+
+    It may also be where a run began elsewhere, as in a museum that is already open.
     """
     inputs: tuple[JournalInput, ...] = ()
     """The events from `home` on."""

@@ -48,7 +48,7 @@ def neighbourhood(machine: MachineDefinition, name: str) -> Diagram:
 
 
 def _box(machine: MachineDefinition, state: State, led: Counter[str], *, rows: bool, first: bool = False) -> StateBox:
-    """Return a state with its content; `led` is the number of other states that lead to each."""
+    """Return the box of a state with its content; `led` is the number of other states that lead to each."""
     children = [machine.states[path] for path in state.children]
     within = [child for child in children if child.kind is not StateKind.HISTORY and not made(child.where)]
     begins = [within[0].path] if state.for_each else state.initial
