@@ -216,7 +216,7 @@ def _processes(
 
 
 def _summed_up(node: Node, lived: float, *, judged: bool) -> RunVerdict:
-    """Print how the run of these parts went, and return its verdict; `judged` if a story has judged the behaviour."""
+    """Print how the run of these parts went, and return its verdict; `judged`: whether a story judged the behaviour."""
     of_parts, troubles = node.summary(), troubles_of(node, judged=judged)
     with_trouble = "Ended with trouble" if troubles else "Ended"
     print(f"\n{'The story failed' if node.failed else with_trouble}: {clock_time(lived)}.")

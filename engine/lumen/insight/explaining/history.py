@@ -64,7 +64,7 @@ class StepHistory:
         self._traces: dict[int, Trace] = {}
 
     def trace(self, number: int) -> Trace:
-        """Return what happened within the step of that number; empty if the machine did not decide it."""
+        """Return the trace of the step of that number; empty if the machine did not decide the step."""
         if number not in self._traces:
             one = self.steps[number]
             before = one.before or _before_the_first(one)

@@ -81,7 +81,7 @@ class Situation:
         self.placement = place(self.new.chart, self.start.nodes, self.identity, history)
 
     def refusal(self, unplaced: Unplaced, behavior: str) -> Refusal:
-        """Return the refusal for a state without a place, with a hint how to fix the file."""
+        """Return the refusal for a state without a place, with a hint on how to fix the file."""
         state, gone, rivals = unplaced
         title = f"`{state.name or behavior}`"
         if len(rivals) > 1:

@@ -52,7 +52,7 @@ class Refusal(NamedTuple):
     reason: str
     """Why it can't."""
     hint: str = ""
-    """A hint how to fix it."""
+    """A hint on how to fix it."""
     state: str = ""
     """The name of the active state that is gone."""
     behavior: str = ""
