@@ -13,6 +13,7 @@ from lumen.run.reload import known_projects
 from lumen.run.reload.idle_process import end_idle
 from lumen.run.reload.validation_worker import ValidationWorker, load_apart
 from lumen.upkeep import judge_process, own_folders
+from tests.features.skills.changing import project_in
 from tests.live.conftest import trimmed
 from tests.tour.conftest import copied
 
@@ -78,6 +79,15 @@ def test_the_same_files_elsewhere_are_the_same_project_there(kept: Path, monkeyp
     found, _ = load_apart(kept, read_files(kept))
     assert found
     assert found.root == str(kept)
+
+
+def test_the_same_files_elsewhere_have_their_skills_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before, after = project_in(tmp_path / "before"), project_in(tmp_path / "after")
+    load_apart(before, read_files(before))
+    alone(monkeypatch)
+    found, _ = load_apart(after, read_files(after))
+    assert found
+    assert found.verbs["spray"].root == found.root == str(after)
 
 
 @pytest.mark.parametrize("what", ["a file", "a file of a model that is not read", "the engine"])

@@ -115,6 +115,11 @@ class Project:
         """Return the project with other settings in the section of that key."""
         return replace(self, sections={**self.sections, key: settings})
 
+    def at(self, root: str) -> "Project":
+        """Return the project in another folder, which its verbs are performed from, too."""
+        verbs = {name: row._replace(root=root) for name, row in self.verbs.items()}
+        return replace(self, root=root, verbs=verbs)
+
     def key_of(self, route: str) -> str:
         """Return the routing key of a route, which the project need not list if it is one of Lumen's own."""
         row = self.routes.get(route)

@@ -9,7 +9,6 @@ import pickle
 import sys
 import zlib
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 
 from lumen.language.projects import Project
@@ -30,7 +29,8 @@ def recall(root: Path, files: Mapping[str, bytes]) -> Project | None:
     if packed is None:
         return None
     try:
-        return replace(DeltaDecoder().unpack(pickle.loads(zlib.decompress(packed))), root=str(root.absolute()))
+        project: Project = DeltaDecoder().unpack(pickle.loads(zlib.decompress(packed)))
+        return project.at(str(root.absolute()))
     except Exception:  # the file may contain anything: the project is made again
         return None
 
