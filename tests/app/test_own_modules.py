@@ -11,6 +11,7 @@ import pytest
 
 from lumen.bus import Bus, connect, join
 from lumen.bus.memory import MemoryBus
+from lumen.cli.main import main
 from lumen.language.events import Event
 from lumen.language.modules import ModuleSettings
 from lumen.language.projects import Project
@@ -18,6 +19,7 @@ from lumen.project import load
 from lumen.run.parts.own_module import OwnModulePart
 from lumen.upkeep.supervised_process import FIRST_PAUSE, MAX_LINES, SupervisedProcess
 from tests import ROOT
+from tests.copying import copied_project
 from tests.guarded import PIPE, STDOUT, Guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import until
@@ -305,6 +307,24 @@ def test_an_exhibition_starts_its_module_and_hears_of_its_loss(tmp_path: Path) -
     assert "mood ValueError: a bad mood" in shown
     assert "mood ended with exit code 1: ValueError: a bad mood; the next attempt is in 1 s" in shown
     assert "mood is found again, after" in shown
+
+
+@pytest.mark.parametrize(
+    ("only", "here", "said"),
+    [
+        ("mod", "", "there is no part `mod`: did you mean `mood`?"),
+        ("mood", ", here: true", "the process of the brain starts `mood` already"),
+    ],
+)
+def test_only_a_program_that_no_other_process_starts_can_be_a_part(
+    only: str, here: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "hall")
+    (root / "mood.py").write_text("")
+    with (root / "lumen.yaml").open("a") as file:
+        file.write(f"modules: {{mood: {{command: [python3, mood.py]{here}}}}}\n")
+    assert main(["run", str(root), "--only", only]) == 2
+    assert said in capsys.readouterr().err
 
 
 def test_a_program_on_another_machine_shows_that_it_lives_over_a_broker(

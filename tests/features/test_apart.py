@@ -1,6 +1,7 @@
 """Modules as processes of their own on RabbitMQ: announced, one of each, missed when they are gone, replaceable."""
 
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -12,6 +13,7 @@ from lumen.bus import Bus, connect
 from lumen.language.projects import Project
 from lumen.run.presence import Peer, Presence
 from tests import ROOT
+from tests.copying import copied_project
 from tests.guarded import DEVNULL, PIPE, STDOUT, Guarded, run_guarded
 from tests.rabbitmq import RabbitMQ
 from tests.waiting import HANG, Collector, until
@@ -112,6 +114,32 @@ def _again(bus: Bus, answers: Collector) -> bool:
     answers.messages.clear()
     bus.publish(FACT, {"method": "list"}, reply_to="lumen.answers")
     return False
+
+
+@pytest.mark.slow
+def test_a_program_of_lumen_yaml_is_started_restarted_and_ended_by_a_process_of_its_own(
+    bus: Bus, start: Started, tmp_path: Path
+) -> None:
+    brain = Presence(bus, "NAO", ("brain",), key="lumen.NAO.presence")
+    brain.settle()
+    copy = copied_project(ROOT / "examples/minimal", tmp_path / "project")
+    with (copy / "lumen.yaml").open("a") as file:
+        file.write("modules: {mood: {command: [python3, mood.py], health: 60s}}\n")
+    program = "from lumen.bus import join\nwith join() as module:\n    print('joined as', module.name)\n"
+    (copy / "mood.py").write_text(f"{program}    while module.wait(1.0): pass\n")
+    host = start("-m", "lumen", "run", str(copy), "--only", "mood")
+    first = here(brain, "mood").said["process"]
+    assert first != host.pid
+    os.kill(first, signal.SIGKILL)
+    until(lambda: here(brain, "mood").said["process"] != first)
+    host.terminate()
+    until(lambda: (brain.tick(), brain.left("mood"))[1])
+    assert host.stdout
+    said = host.stdout.read()
+    assert "My exhibition: mood of NAO, on " in said
+    assert said.count("  joined as mood") == 2
+    assert "was ended by SIGKILL" in said
+    brain.close()
 
 
 @pytest.mark.once

@@ -25,6 +25,7 @@ from lumen.journal.journal_folder import JOURNAL_FOLDER
 from lumen.language.stories import Story
 from lumen.ports import Clock
 from lumen.project.broken_features import broken_features
+from lumen.project.building import main_settings
 from lumen.project.home import home_of as home_of_run
 from lumen.project.running_project import is_substituted, project_to_run
 from lumen.robot.bounded_robot import ability
@@ -76,7 +77,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add(
         "--only",
         metavar="PARTS",
-        help=f"run only these parts, separated by commas: {', '.join(all_parts())}",
+        help=f"run only these parts, separated by commas: {', '.join(all_parts())}, or a module of your own",
     )
     for option in robot_options():
         add(option.flag, metavar=option.metavar, help=option.help)
@@ -139,7 +140,9 @@ def run(options: argparse.Namespace) -> int:
             f" {journal}. `lumen new DIR` makes a project of your own."
         )
     options.robot = robot_kind(options.robot, root)
-    parts, robots = parts_of(options.only, options.robot), robots_of(root, options.robot_name)
+    settings = main_settings(root) if options.only else None
+    modules = settings.modules if settings else {}
+    parts, robots = parts_of(options.only, options.robot, modules), robots_of(root, options.robot_name)
     for extra in run_extras():
         extra.check(options, parts, len(robots))
     if len(robots) > 1:

@@ -28,7 +28,7 @@ FEATURE = Feature(
             "own modules",
             Phase.MODULES,
             f"{MAKING}.modules:own_modules",
-            "brain option:modules",
+            "option:modules",
             after="modules",
             claimed=True,
         ),

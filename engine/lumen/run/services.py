@@ -7,6 +7,7 @@ from typing import Any, TypeVar
 from lumen.bus import connect
 from lumen.bus.validated import validated
 from lumen.language.events import Event
+from lumen.language.modules import own_modules
 from lumen.language.projects import Project
 from lumen.run.claiming import presence_of
 from lumen.run.live_behavior import LiveBehavior
@@ -135,8 +136,9 @@ class Services:
     def _presence(self) -> Presence:
         plan = self.plan
         here = tuple(name for name, said in plan.project.modules.items() if said.here and not said.own)
-        roles = plan.roles or (ROBOT_PART, BRAIN, MOTION, *here)
-        return presence_of(plan.project, self.bus, roles, self._said)
+        own = own_modules(plan.project.modules)  # a program is announced only while it runs
+        parts = [role for role in plan.roles if role not in own] if plan.roles else [ROBOT_PART, BRAIN, MOTION, *here]
+        return presence_of(plan.project, self.bus, tuple(parts), self._said)
 
     def _said(self) -> dict[str, Any]:
         """Return the fields of the presence that others get from this process."""

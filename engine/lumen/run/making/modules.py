@@ -7,6 +7,7 @@ from lumen.bus.addresses import within_process
 from lumen.errors import LumenError
 from lumen.language.modules import EYES, module_names
 from lumen.language.modules import own_modules as own_modules_of
+from lumen.run.live_behavior import LiveBehavior
 from lumen.run.parts.module import ModulePart
 from lumen.run.parts.module_troubles import ModuleTroublesPart
 from lumen.run.parts.own_module import OwnModulePart
@@ -37,10 +38,13 @@ def modules(services: Services) -> list[Part]:
 
 
 def own_modules(services: Services) -> list[OwnModulePart]:
-    """Make the parts that watch the project's own programs; a story has none."""
-    if services.plan.story is not None:
-        return []
-    return [_own_module(services, name) for name in own_modules_of(services.project.modules)]
+    """Make the parts that watch the project's own programs: all for a behaviour, else those that this process starts.
+
+    A story has none.
+    """
+    plan = services.plan
+    names = [name for name in own_modules_of(services.project.modules) if plan.brain or name in plan.roles]
+    return [] if plan.story is not None else [_own_module(services, name) for name in names]
 
 
 def troubles(services: Services) -> ModuleTroublesPart:
@@ -51,8 +55,16 @@ def troubles(services: Services) -> ModuleTroublesPart:
 
 def _own_module(services: Services, name: str) -> OwnModulePart:
     url = "" if within_process(services.plan.url) else services.plan.url
-    tell, happen = services.narrator.line, services.behavior.loop.happen
-    return OwnModulePart(name, services.project, services.bus, tell, happen, bus_url=url)
+    behavior = services.get(LiveBehavior)
+    return OwnModulePart(
+        name,
+        services.project,
+        services.bus,
+        services.narrator.line,
+        behavior.loop.happen if behavior else lambda event: None,
+        bus_url=url,
+        starts=name in services.plan.roles,
+    )
 
 
 def _module(services: Services, name: str) -> Part | None:

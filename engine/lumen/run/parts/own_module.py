@@ -35,7 +35,8 @@ ROBOT_VARIABLE, MODULE_VARIABLE = "LUMEN_ROBOT", "LUMEN_MODULE"
 class OwnModulePart(Part):
     """The part that watches one program; `happen` gets `NAME.lost` and `NAME.found`.
 
-    `bus_url` is the address of the bus, empty if only this machine can reach it. `clock` returns real time [s].
+    It starts the program if lumen.yaml has `here: true`, or if it `starts`. `bus_url` is the address of the bus, empty
+    if only this machine can reach it. `clock` returns real time [s].
     """
 
     def __init__(
@@ -47,6 +48,7 @@ class OwnModulePart(Part):
         happen: Callable[[Event], None],
         *,
         bus_url: str = "",
+        starts: bool = False,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self.name, self._robot, self._bus, self._clock = name, project.robot, bus, clock
@@ -57,10 +59,10 @@ class OwnModulePart(Part):
         self._received: deque[Message] = deque(maxlen=MAX_PENDING_PRESENCES)
         self._undo = bus.subscribe(self._key, self._received.append)
         self._process: SupervisedProcess | None = None
-        if self._settings.here:
+        if starts or self._settings.here:
             folder, words = Path(project.root).absolute(), self._settings.command
             self._process = SupervisedProcess(name, words, folder, self._environment(folder, bus_url), clock=clock)
-        self._heard, self._gone, self._known = -1.0, False, self._settings.here
+        self._heard, self._gone, self._known = -1.0, False, self._process is not None
         self._lost_at: float | None = None
         self._alive_at, self._since, self._next_presence = clock(), time.time(), 0.0
         self._reason = ""
