@@ -55,7 +55,7 @@ class NodeReader:
         self.dropped: set[str] = set()
 
     def read(self, node: yaml.Node, path: NodePath, key: yaml.Node | None, depth: int) -> Any:
-        self.spans[path] = NodeSpan(self.place(key) if key else None, self.place(node))
+        self.spans[path] = _new(NodeSpan, (self.place(key) if key else None, self.place(node)))
         if depth > MAX_NODE_DEPTH or len(self.spans) > MAX_NODES:
             self.overflow(node, depth)
             return None
@@ -157,24 +157,31 @@ class NodeReader:
 
     def place(self, node: yaml.Node) -> Place:
         start, end = node.start_mark, node.end_mark
-        return Place(self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
+        return _new(Place, (self.file, start.line + 1, start.column + 1, end.line + 1, end.column + 1))
+
+
+_new = tuple.__new__
+"""Makes a named tuple of its fields in half the time: each node of each file has a place."""
 
 
 def _decimal(before: yaml.Node, key: yaml.Node, value: yaml.Node) -> str:
     """Return the number that a value and an empty key after its comma were meant to be; empty if they are none."""
-    near = key.start_mark.index == before.end_mark.index + 1 and value.start_mark.index == value.end_mark.index
-    plain = near and all(isinstance(node, yaml.ScalarNode) and not node.style for node in (before, key, value))
+    if key.start_mark.index != before.end_mark.index + 1 or value.start_mark.index != value.end_mark.index:
+        return ""
+    plain = all(isinstance(node, yaml.ScalarNode) and not node.style for node in (before, key, value))
     whole, decimals = typed(before.value if plain else ""), typed(key.value if plain else "")
     return f"{whole}.{decimals}" if _WHOLE.fullmatch(whole) and _DECIMALS.fullmatch(decimals) else ""
 
 
 def _begun_anew(node: yaml.Node) -> tuple[yaml.Node, yaml.Node] | None:
     """Return an empty key after which the keys of a map repeat, and the first of those; None if no keys repeat."""
+    empty = [isinstance(value, yaml.ScalarNode) and not value.style and not value.value for _, value in node.value]
+    if True not in empty:
+        return None
     keys = [key.value if isinstance(key, yaml.ScalarNode) else "" for key, _ in node.value]
     before: set[str] = set()
-    for i, (key, value) in enumerate(node.value[:-1]):
-        empty = isinstance(value, yaml.ScalarNode) and not value.style and not value.value
-        if empty and keys[i + 1] in before and keys[i] not in before:
+    for i, (key, _) in enumerate(node.value[:-1]):
+        if empty[i] and keys[i + 1] in before and keys[i] not in before:
             again = [name for name in keys[i + 1 :] if name and name in before]
             if len(again) > 1:
                 return key, node.value[i + 1][0]

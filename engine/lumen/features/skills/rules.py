@@ -1,5 +1,6 @@
 """The programs of skills: whether they are in the project, and whether Python code fits its manifest."""
 
+import os
 from pathlib import PurePosixPath
 
 from lumen.features.skills.manifest import Skill
@@ -48,8 +49,7 @@ def _python(draft: ProjectDraft, name: str, file: str) -> None:
 def _is_there(draft: ProjectDraft, file: str) -> bool:
     assert draft.root is not None
     path = draft.root / file
-    draft.looks.at(path)
-    return path.is_file()
+    return os.path.isfile(draft.looks.at(path) or path)
 
 
 def _missing(draft: ProjectDraft, name: str, file: str, where: tuple[str | int, ...]) -> None:
