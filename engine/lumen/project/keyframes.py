@@ -31,7 +31,7 @@ MAX_MOTION_KEYS = 200_000
 """The maximum number of keys of all joints, unrolled; as many as an hour of dancing with every joint on every beat."""
 
 _CUES = ("say", "sound", "leds", "hold")
-_OWN_KEYS = (
+KEYFRAME_KEYS = (
     *("at", "beat", "posture", "pose", "roles", "joints", "hands", "interpolation", "handles", "keyframes", "play"),
     *("repeat", "speed", "mirror", *_CUES),
 )
@@ -110,7 +110,7 @@ class KeyframeReader:
 
     def _skills_in(self, item: Mapping[str, Any]) -> list[str]:
         """Return the keys of a keyframe that are skills."""
-        return [name for name in item if name not in _OWN_KEYS and name in self.verbs.all]
+        return [name for name in item if name not in KEYFRAME_KEYS and name in self.verbs.all]
 
     def _skill(self, name: str, data: Any, where: NodePath) -> Cue:
         """Return the cue that begins a skill. Its texts are used as they are: a motion has no expressions."""

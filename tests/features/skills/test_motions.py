@@ -54,6 +54,17 @@ def test_a_motion_begins_a_skill_and_its_story_sees_that_it_was_done(tmp_path: P
     assert begun.value == {"skill": "spray", "arguments": {"duration": "500ms", "nozzle": "right"}}
 
 
+def test_a_key_of_keyframes_wins_over_a_skill_of_its_name_and_the_skill_is_reported(tmp_path: Path) -> None:
+    root = waving(tmp_path / "hall", "hold: head")
+    text = (root / MANIFEST).read_text("utf-8")
+    (root / "skills/hold.yaml").write_text(text.replace("spray.py", "hold.py"), "utf-8")
+    (root / "skills/hold.py").write_text((root / "skills/spray.py").read_text("utf-8").replace("def spray", "def hold"))
+    [finding] = [line for line in found(root) if "skill-keyframe" in line]
+    message = "`hold` is a key of keyframes in motions, so no motion can begin this skill"
+    assert finding == f"skills/hold.yaml:1:1 skill-keyframe | {message} | give the file another name"
+    assert [cue.kind for cue in load(root).motions["wave"].cues] == ["hold"]
+
+
 @pytest.mark.rest
 def test_a_run_with_it_is_replayed_without_the_code(tmp_path: Path) -> None:
     root = waving(tmp_path / "hall", "spray: 500ms")

@@ -7,19 +7,27 @@ from lumen.features.skills.manifest import Skill
 from lumen.features.skills.python_file import code_faults
 from lumen.language.diagnostics import WARNING, Code, Diagnostic, Place, did_you_mean
 from lumen.project.draft import ProjectDraft
+from lumen.project.keyframes import KEYFRAME_KEYS
 from lumen.upkeep.regular_files import MEGABYTE
 
 SKILL_CODE = Code("skill-code", "skills", WARNING, "the Python code of a skill does not fit its manifest")
 SKILL_PROGRAM = Code("skill-program", "skills", WARNING, "a file of a skill's program is missing, or can't be read")
+SKILL_KEYFRAME = Code("skill-keyframe", "skills", WARNING, "no motion can begin a skill, because of its name")
 
 MAX_CODE_BYTES = 4 * MEGABYTE
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report skills whose program is missing, and Python code that does not fit its manifest; no code is run."""
+    """Report names that motions can't use, missing programs, and Python code that does not fit its manifest.
+
+    No code is run.
+    """
     if draft.root is None:
         return
     for name, row in draft.verbs.rows.items():
+        if name in KEYFRAME_KEYS and row.details:
+            message = f"`{name}` is a key of keyframes in motions, so no motion can begin this skill"
+            draft.report("skills", name)(SKILL_KEYFRAME, (), message, "give the file another name")
         match row.details:
             case Skill("python", (file,)):
                 _python(draft, name, file)
