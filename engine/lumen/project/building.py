@@ -14,6 +14,7 @@ from lumen.language.added_verbs import UNUSABLE
 from lumen.language.diagnostics import ERROR, WARNING, Code, Severity, did_you_mean, has_errors
 from lumen.language.folders import FUNCTIONS_FOLDER, KNOWLEDGE_FOLDER, QUESTIONS_FOLDER, SAYINGS_FOLDER
 from lumen.language.json_paths import values_in
+from lumen.language.life import LifeStyle
 from lumen.language.machines import MachineDefinition
 from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
@@ -53,6 +54,7 @@ from lumen.project.project_folders import (
     endings_in,
     is_robots_own,
     kind_in,
+    life_of,
 )
 from lumen.project.settings import Settings, build_settings, other_vocabulary
 from lumen.project.stories import build_sayings, build_story
@@ -391,7 +393,7 @@ def _motions(found: ProjectDraft, folder: str) -> dict[str, MotionDefinition]:
 def _strangers(found: ProjectDraft) -> None:
     """Report subfolders of motions/ that are named after no robot model: their motions are never played."""
     known = {*found.names[MODELS], *shipped_models()}
-    inside = {PurePosixPath(file).parent for file in found.files}
+    inside = {PurePosixPath(*PurePosixPath(file).parent.parts[:2]) for file in found.files}
     folders = {str(path): path.name for path in inside if str(path.parent) == MOTIONS}
     for folder, name in folders.items():
         if is_robots_own(folder) and name not in known:
@@ -403,11 +405,24 @@ def _strangers(found: ProjectDraft) -> None:
 def _accompany(found: ProjectDraft) -> None:
     """Build the styles of life and the gestures of speech; without a body, only check the shape of the files."""
     if body := found.body:
-        found.life = _built(_each(found, LIFE_FOLDER, partial(build_life, body=body), around=body))
+        found.life = _life(found, body)
         found.gestures = _built(_each(found, GESTURES_FOLDER, partial(build_gestures, body=body), around=body))
     else:
         for folder in (LIFE_FOLDER, GESTURES_FOLDER):
             _each(found, folder, lambda data, report, name: None)
+
+
+def _life(found: ProjectDraft, body: Body) -> dict[str, LifeStyle]:
+    """Return the styles of life: those of the robot's own folder, and those for all robots that it does not replace."""
+    build = partial(build_life, body=body)
+    own = _built(_each(found, life_of(found.settings.model), build, around=body)) if found.settings else {}
+    found.own_life = frozenset(own)
+    replaced = {file: found.files[file] for name in own if (file := f"{LIFE_FOLDER}/{name}.yaml") in found.files}
+    left = {file: content for file, content in found.files.items() if file not in replaced}
+    _each(found, LIFE_FOLDER, lambda data, report, name: None, replaced)
+    shared = _built(_each(found, LIFE_FOLDER, build, left, around=body))
+    found.names[LIFE_FOLDER] = found.names[LIFE_FOLDER] | own.keys()
+    return {**shared, **own}
 
 
 def _messages(found: ProjectDraft) -> None:

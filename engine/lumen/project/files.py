@@ -11,7 +11,7 @@ from lumen.project.chosen_model import choice
 from lumen.project.chosen_robot import CHOSEN_ROBOT, as_robot
 from lumen.project.common_words import with_common_words
 from lumen.project.kept_contents import KeptContents
-from lumen.project.project_folders import FLEET_FILE, KINDS, MAIN_FILE, MOTIONS, endings_in
+from lumen.project.project_folders import FLEET_FILE, KINDS, MAIN_FILE, MOTIONS, endings_in, is_robots_own, life_of
 from lumen.upkeep.regular_files import MEGABYTE
 
 MAX_FILE_BYTES = 4_000_000
@@ -108,13 +108,18 @@ def fingerprint(files: Mapping[str, bytes]) -> str:
 
 
 def _robots_own(root: Path) -> list[str]:
-    """Return the folders in motions/, each of which holds the motions of one robot, except `life` and `gestures`."""
+    """Return the folders in motions/, each with the motions of one robot, and those in them with its styles of life."""
     try:
         listed = sorted(os.listdir(root / MOTIONS))
     except OSError:
         return []
     names = [name for name in listed if "." not in name and os.path.isdir(root / MOTIONS / name)]
-    return [f"{MOTIONS}/{os.fsencode(name).decode('utf-8', 'replace')}" for name in names][:MAX_FOLDER_FILES]
+    shown = [os.fsencode(name).decode("utf-8", "replace") for name in names][:MAX_FOLDER_FILES]
+    own = [name for name in shown if is_robots_own(f"{MOTIONS}/{name}")]
+    return [
+        *(f"{MOTIONS}/{name}" for name in shown),
+        *(life_of(name) for name in own if os.path.isdir(root / life_of(name))),
+    ]
 
 
 def _within(folder: str) -> Iterator[str]:

@@ -62,7 +62,7 @@ _ENDINGS: Mapping[str, tuple[str, ...]] = {folder.path: folder.endings for folde
 
 def endings_in(folder: str) -> tuple[str, ...]:
     """Return the endings of files that belong to a project in one of its folders; a folder in motions/ is a robot's."""
-    return _ENDINGS.get(MOTIONS if is_robots_own(folder) else folder, ())
+    return _ENDINGS.get(_shared(folder), ())
 
 
 def is_robots_own(folder: str) -> bool:
@@ -71,9 +71,22 @@ def is_robots_own(folder: str) -> bool:
     return above == MOTIONS and bool(name) and folder not in KINDS and not {"/", "."} & set(name)
 
 
+def life_of(model: str) -> str:
+    """Return the folder with the styles of life of one robot, by the name of its model."""
+    return f"{MOTIONS}/{model}/{PurePosixPath(LIFE_FOLDER).name}"
+
+
 def kind_in(folder: str) -> str:
     """Return the kind of file in a folder of a project; empty for a folder of no kind."""
-    return KINDS.get(MOTIONS if is_robots_own(folder) else folder, "")
+    return KINDS.get(_shared(folder), "")
+
+
+def _shared(folder: str) -> str:
+    """Return the folder for all robots whose files are of the same kind as those of a robot's own folder."""
+    above = folder.rpartition("/")[0]
+    if is_robots_own(above) and folder == life_of(PurePosixPath(above).name):
+        return LIFE_FOLDER
+    return MOTIONS if is_robots_own(folder) else folder
 
 
 def kind_of(file: str) -> str:

@@ -279,7 +279,7 @@ def watched_folders(root: Path) -> dict[Path, tuple[int, int]]:
 
     If the project's folder is a link, the folder that contains the link is watched too.
     """
-    robots = sorted((root / MOTIONS).glob("*/"))
+    robots = [*sorted((root / MOTIONS).glob("*/")), *sorted((root / MOTIONS).glob("*/life/"))]
     wanted = [root, *(root / name for name in sorted(ALL_FOLDERS)), *robots]
     if root.is_symlink():
         wanted.append(root.absolute().parent)

@@ -1,5 +1,6 @@
 """The shipped tour, the example and new projects with the body of Reachy Mini, without a robot."""
 
+from math import radians
 from pathlib import Path
 
 import pytest
@@ -8,10 +9,12 @@ import lumen
 from lumen.cli.main import main
 from lumen.features.reachy.pose import JOINTS
 from lumen.features.reachy.reach import shortfall
+from lumen.language.body_parts import WHOLE_BODY
 from lumen.language.diagnostics import has_errors
 from lumen.language.motions import Keyframe, MotionDefinition
 from lumen.language.projects import Project
 from lumen.project.chosen_model import MODEL_VARIABLE
+from lumen.robot.life_layer import LifeLayer
 from lumen.run.rehearsal import rehearse
 from tests import ROOT
 from tests.copying import copied_project
@@ -30,6 +33,34 @@ def test_the_shipped_tour_lints_and_guides_a_visitor(monkeypatch: pytest.MonkeyP
     assert all(message.startswith("Reachy Mini has no touch sensors") for message in touched)
     project = lumen.load(ROOT)
     assert not rehearse(project, project.stories["visitor"]).failed
+
+
+@pytest.mark.parametrize("style", ["calm", "lively", "listening"])
+def test_on_the_shipped_tour_its_head_breathes_and_leans(style: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(MODEL_VARIABLE, "reachy_mini")
+    project = lumen.load(ROOT)
+    layer = LifeLayer(project.body)
+    layer.style = project.life[style]
+    offsets = [dict(layer.advance(tick / 50, 1 / 50, WHOLE_BODY, lambda _part: 1.0)) for tick in range(1_000)]
+    heave, roll = ([each.get(joint, 0.0) for each in offsets] for joint in ("head_z", "head_roll"))
+    assert 0.006 < max(heave) - min(heave) < 0.0105
+    assert max(roll) - min(roll) > radians(4)
+    assert not [d for d in lumen.check(ROOT) if "life/" in d.place.file]
+
+
+def test_the_styles_of_a_robot_are_not_those_of_another(tmp_path: Path) -> None:
+    folder = copied_project(EXAMPLE, tmp_path / "host")
+    (folder / "motions/reachy_mini/life").mkdir(parents=True)
+    calm = (folder / "motions/life/calm.yaml").read_text()
+    own = folder / "motions/reachy_mini/life/calm.yaml"
+    own.write_text(calm.replace("period: 4.2s", "period: 2s", 1))
+    assert lumen.load(folder).life["calm"].sways[0].period == 2.0
+    own.write_text(calm.replace("sways:", "sway:", 1))
+    assert own.relative_to(folder).as_posix() in {d.place.file for d in lumen.check(folder)}
+    own.parent.rename(folder / "motions/reachy_mini/other")
+    own.parent.parent.rename(folder / "motions/pepper")
+    (folder / "motions/pepper/other").rename(folder / "motions/pepper/life")
+    assert lumen.load(folder).life["calm"].sways[0].period == 4.2
 
 
 def test_the_example_is_sound_and_its_story_passes() -> None:

@@ -11,7 +11,7 @@ from lumen.language.motions import MotionDefinition
 from lumen.language.projects import Project
 from lumen.motion.postures import standing
 from lumen.ports import Live, Perform, RobotCommand
-from lumen.project.project_folders import LIFE_FOLDER, MOTIONS, PASSAGES, is_robots_own
+from lumen.project.project_folders import KINDS, LIFE_FOLDER, MOTIONS, PASSAGES, kind_in
 
 FIRST_POSTURE = "Stand"
 """The posture in which a robot begins."""
@@ -47,7 +47,7 @@ class Case:
     @property
     def living(self) -> bool:
         """Whether it is a style of life instead of a motion."""
-        return self.folder == LIFE_FOLDER
+        return kind_in(self.folder) == KINDS[LIFE_FOLDER]
 
     @property
     def way(self) -> str:
@@ -77,7 +77,7 @@ def cases(project: Project) -> list[Case]:
             for name in ways.keys() & set(_played(step)):
                 last = next((end for s in block[:i][::-1] if (end := _end(motions, s.action)) is not None), None)
                 ways[name] += anywhere if last is None else [last]
-    folders = _own(project)
+    folders, lives = _own(project, MOTIONS), _own(project, LIFE_FOLDER)
     found = [
         Case(folders.get(name, MOTIONS), motion, before, Perform(motion))
         for name, motion in motions.items()
@@ -87,14 +87,18 @@ def cases(project: Project) -> list[Case]:
         before = Posture(passage.start, 1.0)
         found.append(Case(PASSAGES, passage, (before,), Posture(passage.end, 1.0)))
     for name, style in project.life.items():
-        found.append(Case(LIFE_FOLDER, MotionDefinition(name, LIVED, {}), (), Live(style)))
+        found.append(Case(lives.get(name, LIFE_FOLDER), MotionDefinition(name, LIVED, {}), (), Live(style)))
     return list({(case.file, case.way): case for case in found}.values())
 
 
-def _own(project: Project) -> dict[str, str]:
-    """Return the folder of each motion of this robot's own folders; no other robot's folder was read."""
+def _own(project: Project, shared: str) -> dict[str, str]:
+    """Return the folder of each file that this robot has in place of those of a `shared` folder.
+
+    No other robot's files were read.
+    """
     files = [PurePosixPath(file) for file in project.documents]
-    return {file.stem: str(file.parent) for file in files if is_robots_own(str(file.parent))}
+    own = {file.stem: str(file.parent) for file in files if str(file.parent) != shared}
+    return {name: folder for name, folder in own.items() if kind_in(folder) == KINDS[shared] and folder not in KINDS}
 
 
 def _to(posture: str) -> Before:
