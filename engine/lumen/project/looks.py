@@ -83,12 +83,13 @@ def _seen(path: Path, folders: dict[str, str]) -> Seen:
 
 def _real(path: Path, folders: dict[str, str]) -> str:
     """Return the resolved path. A path that is not a link is checked with one call instead of one for each folder."""
-    if not path.is_absolute() or ".." in path.parts or not path.name:
-        return os.path.realpath(path)
-    folder = str(path.parent)
+    text = str(path)
+    folder, name = os.path.split(text)
+    if not os.path.isabs(text) or ".." in text.split(os.sep) or not name:
+        return os.path.realpath(text)
     if folder not in folders:
         folders[folder] = os.path.realpath(folder)
-    real = os.path.join(folders[folder], path.name)
+    real = os.path.join(folders[folder], name)
     try:
         linked = stat.S_ISLNK(os.lstat(real).st_mode)
     except OSError:  # nothing is there

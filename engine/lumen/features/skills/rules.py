@@ -39,11 +39,13 @@ def check(draft: ProjectDraft) -> None:
 
 def _python(draft: ProjectDraft, name: str, file: str) -> None:
     assert draft.root is not None
-    if not _is_there(draft, file):
+    path = draft.root / file
+    real = draft.looks.at(path)
+    if not os.path.isfile(real):
         _missing(draft, name, file, ("performed-by", "python"))
         return
     try:
-        with open(draft.root / file, "rb") as opened:
+        with open(real, "rb") as opened:
             content = opened.read(MAX_CODE_BYTES)
     except OSError as error:
         message = f"`{file}` can't be read: {(error.strerror or 'the system refuses').lower()}"
@@ -56,8 +58,7 @@ def _python(draft: ProjectDraft, name: str, file: str) -> None:
 
 def _is_there(draft: ProjectDraft, file: str) -> bool:
     assert draft.root is not None
-    path = draft.root / file
-    return os.path.isfile(draft.looks.at(path) or path)
+    return os.path.isfile(draft.looks.at(draft.root / file))
 
 
 def _missing(draft: ProjectDraft, name: str, file: str, where: tuple[str | int, ...]) -> None:
