@@ -1,4 +1,4 @@
-"""What all tests may ask for, how they are marked and measured, and which examples hypothesis draws: the same ones."""
+"""Fixtures for all tests, their marks and measurements, and the fixed seed of hypothesis' examples."""
 
 import os
 import signal
@@ -23,7 +23,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as in the background of
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 os.environ["XDG_CACHE_HOME"] = str(ROOT / ".cache/xdg")
-"""What starts keep for the next one is kept here, for all tests of this and later runs."""
+"""The cache that one start keeps for the next, shared by all tests of this and later runs."""
 
 settings.register_profile(
     "seeded",

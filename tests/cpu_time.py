@@ -1,4 +1,4 @@
-"""How much of the processor tests take: `--cpu-limit SECONDS` tells of those that take more, and of the sum.
+"""The processor time of tests: `--cpu-limit SECONDS` lists those that exceed it, and prints the sum.
 
 Processor time, since a crowded machine lets any test wait. Counted are a test's setup and teardown, and the processes
 that it has waited for; what it shares with others is counted for whoever comes first.

@@ -1,6 +1,6 @@
 """Where Erlang finds what a RabbitMQ of the tests is made of: in few folders, since each module is looked for in all.
 
-With the folders as they are installed a start looks into 43,000 files that are not there, which takes a third of its
+With the installed folders, a start looks for 43,000 files that do not exist, which costs a third of its
 processor time.
 """
 
@@ -13,13 +13,13 @@ NEEDLESS = re.compile(
 )
 """Plugins that no broker here enables, and what only those need."""
 NEEDED = ("amqp10_client",)
-"""What rabbitmq_shovel needs."""
+"""The plugins that rabbitmq_shovel needs."""
 
 
 def link_modules(folder: Path, erlang: Path, rabbitmq: Path, plugins: Sequence[str] = ()) -> None:
     """Fill `links` in the folder with the plugins that may be enabled, and `modules` with the modules of all there is.
 
-    `erlang` and `rabbitmq` are where these two are installed; `plugins` are enabled besides, with what they need.
+    `erlang` and `rabbitmq` are their installation folders; `plugins` are enabled too, with their dependencies.
     """
     links, modules = folder / "links", folder / "modules"
     if modules.exists():

@@ -1,4 +1,4 @@
-"""What the tests ask others with, fetched by whichever test needs it first: see scripts/fetched.txt."""
+"""Programs of others to compare with, fetched by the first test that needs them: see scripts/fetched.txt."""
 
 import sys
 from functools import cache
@@ -15,7 +15,7 @@ from tests.provided import not_provided
 def fetched(name: str) -> Path:
     """The folder `.cache/NAME` with all that the table has under it.
 
-    Fails the test where it can't be had; leaves it out where this machine has no npm and could not be given one.
+    Fails the test if fetching fails; skips it if this machine has no npm and could not be given one.
     """
     folder = f".cache/{name}"
     done = run_guarded([sys.executable, ROOT / "scripts/fetch.py", folder], capture_output=True, text=True)

@@ -1,7 +1,7 @@
-"""No garbage is searched for while tests are collected, and none in what was collected: that was a quarter of the time.
+"""No garbage collection while tests are collected, and none of collected objects: it cost a quarter of the time.
 
-What modules and tests hold stays until the end; a full search through it takes 0.2 s, each time. What tests remember of
-the projects that they read stays as well, and grows to 1.7 million objects: full searches are rare: they were a
+Objects of modules and tests live until the end; a full collection takes 0.2 s each time. The cache of the
+projects that tests have read lives as long, and grows to 1.7 million objects. So full collections are rare: they were a
 sixth of the time of tests/lint.
 """
 

@@ -3,12 +3,12 @@
 `atexit` and fixtures end what a test started as long as the test's own process ends in order; under `kill -9`, and in a
 worker that xdist gives up, neither runs. So each process that starts a program here has a guardian beside it: a process
 that holds the reading end of a pipe, hears of every process group and temporary folder, and, when the pipe closes,
-kills the groups and deletes the folders. The system closes the pipe for whoever dies, so nothing has to be done for it.
+kills the groups and deletes the folders. The system closes the pipe of any process that dies, so cleanup is automatic.
 
     with Guarded([sys.executable, "-m", "lumen", "run"], stdout=PIPE, text=True) as process: ...
 
 A program is in a session of its own (Ctrl-C reaches only pytest), of which all that it starts is part, but for what
-makes a session for itself; that has to end by itself when its parent does.
+makes a session for itself; that must end by itself when its parent does.
 """
 
 import atexit
@@ -40,9 +40,9 @@ __all__ = [
 ]
 
 PRUNE_INTERVAL = 1.0
-"""How often the guardian forgets groups that have ended, before their number is given to others [s]."""
+"""The interval at which the guardian forgets ended groups, before the system reuses their numbers [s]."""
 KILL_TIMEOUT = 3.0
-"""How long it waits until killed processes are gone and write nothing more; some systems collect zombies late [s]."""
+"""The time to wait until killed processes are gone and write nothing more; some systems collect zombies late [s]."""
 
 
 class Guarded(subprocess.Popen[AnyStr]):
@@ -57,7 +57,7 @@ class Guarded(subprocess.Popen[AnyStr]):
 def run_guarded(
     command: Sequence[object], *, input: Any = None, timeout: float | None = None, check: bool = False, **options: Any
 ) -> CompletedProcess[Any]:
-    """What `subprocess.run` does, with a program that ends with this process."""
+    """Run a command as `subprocess.run` does, in a program that ends with this process."""
     if options.pop("capture_output", False):
         options |= {"stdout": PIPE, "stderr": PIPE}
     if input is not None:
@@ -74,7 +74,7 @@ def run_guarded(
 
 
 def temporary_folder(prefix: str) -> Path:
-    """A new folder that is deleted when this process has ended, if nobody did so before."""
+    """Return a new folder that is deleted when this process has ended, unless it is deleted before."""
     guardian = _guardian()
     folder = tempfile.mkdtemp(prefix=prefix)
     _tell(guardian, f"folder {folder}")
@@ -138,7 +138,7 @@ def _lives(group: int) -> bool:
         os.killpg(group, 0)
     except ProcessLookupError:
         return False
-    except PermissionError:  # macOS says so of a group of zombies
+    except PermissionError:  # macOS raises this for a group of zombies
         return True
     return True
 

@@ -87,7 +87,7 @@ def test_modules_hear_what_waits_and_what_became_of_it(exhibition: Exhibition, a
     assert (waits["source"], waits["targets"], waits["file"]) == ("hall", ["stage"], "behaviors/mine.yaml")
     assert (waits["line"], waits["else"]) == (8, "go")
     assert waits["until"] == pytest.approx(waits["since"] + 20.0)
-    exhibition.behavior.trace.standing(exhibition.loop.runtime.snapshot)  # somebody has come
+    exhibition.behavior.trace.standing(exhibition.loop.runtime.snapshot)  # a visitor has come
     assert told() == [waits]
     ask("approve", id="a1", go=True, by="Aisyah")
     assert [(one["became"], one["why"]) for one in told()] == [("goes", "Aisyah")]
@@ -205,7 +205,7 @@ steps:
 
 
 def played(folder: Path, story: str) -> str:
-    """Why it failed; empty where it did not."""
+    """Return why the story failed, or an empty string if it passed."""
     with lumen.open(folder, story=story) as exhibition:
         exhibition.run(60.0)
         player = exhibition.player

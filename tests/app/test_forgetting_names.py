@@ -57,7 +57,7 @@ class Waiting:
 
 
 def forgotten(folder: Path, monkeypatch: pytest.MonkeyPatch, work: Callable[[], object]) -> tuple[Forgetting, Waiting]:
-    """What comes of forgetting Ani while another process has the home, and the clock of those who waited."""
+    """Return the result of forgetting Ani while another process holds the home, and the clock of the wait."""
     running, waiting, found = Home(folder), Waiting(work), Forgetting()
     assert running.hold()
     monkeypatch.setattr(files, "time", waiting)

@@ -1,4 +1,4 @@
-"""What a long run has freed is given back to the system."""
+"""Memory that a long run has freed is given back to the system."""
 
 import platform
 import sys

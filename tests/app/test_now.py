@@ -1,4 +1,4 @@
-"""What the brain says of this moment, and an event that a person lets happen."""
+"""The brain's report of the present moment, and an event that a person triggers."""
 
 import json
 from collections.abc import Callable

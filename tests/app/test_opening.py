@@ -1,4 +1,4 @@
-"""An exhibition in somebody else's program: opened, stepped, observed, reloaded, asked to stop, and closed."""
+"""An exhibition in another program: opened, stepped, observed, reloaded, asked to stop, and closed."""
 
 import sys
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from tests.guarded import run_guarded
 
 
 class Parrot:
-    """A robot of somebody else: it does everything at once, and remembers what it said."""
+    """A robot from outside Lumen: it completes each command at once and remembers the texts it spoke."""
 
     def __init__(self) -> None:
         self.said: list[str] = []

@@ -1,4 +1,4 @@
-"""A fault costs what met it; a thread that ends by one is begun again; where it can't be, the robot rests."""
+"""A fault affects only the part it hits; its thread is restarted; if that is impossible, the robot rests."""
 
 import logging
 import threading

@@ -1,4 +1,4 @@
-"""What only some buses can do is asked of a bus by its protocol, however often the bus is wrapped."""
+"""Abilities that only some buses have are found by protocol, however often the bus is wrapped."""
 
 from collections.abc import Callable, Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""Each cause for which a bus can't be used, or does not take a message, has its class: one may catch it alone."""
+"""Each reason why a bus is unusable or rejects a message has its own class, so it can be caught alone."""
 
 import socket
 from collections.abc import Callable, Iterator

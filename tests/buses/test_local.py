@@ -1,4 +1,4 @@
-"""The server of an embedded bus: who may connect, and that nobody who does can hold up the exhibition."""
+"""The server of an embedded bus: who may connect, and that no client can hold up the exhibition."""
 
 import json
 import socket

@@ -1,4 +1,4 @@
-"""What only the embedded bus promises: no thread, and done when `publish` returns."""
+"""Promises of the embedded bus only: it has no thread, and delivery is complete when `publish` returns."""
 
 import threading
 from collections.abc import Callable

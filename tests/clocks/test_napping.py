@@ -1,4 +1,4 @@
-"""An exhibition in which nothing is due sleeps, and whatever comes wakes it: of naps of an hour nobody notices any."""
+"""An idle exhibition sleeps, and any input wakes it: even naps of an hour cause no delay."""
 
 import threading
 from collections.abc import Iterator, Sequence
@@ -69,7 +69,7 @@ def project(root: Path, robot: str = "robot: {name: NAO, model: nao}") -> Path:
 
 @pytest.fixture
 def long(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Naps that last an hour if nobody wakes it."""
+    """Naps that last an hour unless the exhibition is woken."""
     monkeypatch.setattr(naps, "NAP", 3600.0)
 
 

@@ -1,4 +1,4 @@
-"""Time that can't keep up says so; what runs beside it lives in the same time."""
+"""A clock that can't keep up reports it; processes beside it use the same time."""
 
 from random import Random
 
@@ -156,7 +156,7 @@ def test_the_clock_of_another_process_follows_the_robots(speed: float, pace: flo
 
 
 def test_the_processes_of_an_exhibition_live_in_the_robots_time() -> None:
-    """The robot's process says what time it is; all others go by that."""
+    """The robot's process publishes the time; all other processes follow it."""
     exhibit, outside = project(), Outside()
     robots = World(outside, 1 / 0.8)
     robot = RecordingRobot(exhibit.body)
@@ -215,7 +215,7 @@ def test_somebodys_clock_and_the_world_that_lives_by_it_never_part() -> None:
 
         def advance(self, dt: float) -> None:
             self.lived += dt
-            outside.now += 0.015  # it takes a while to compute that
+            outside.now += 0.015  # computing a step needs 15 ms of real time
 
     robot, began = Robot(), outside.now
     clock = set_up_with(robot, Clock()).clock  # type: ignore[arg-type]

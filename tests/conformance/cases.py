@@ -25,7 +25,7 @@ TABLE = Path(__file__).parent / "unsupported.yaml"
 
 @dataclass(frozen=True)
 class Case:
-    """`name` is `parallel/test1`; `driver` is None where there is none."""
+    """`name` is for example `parallel/test1`; `driver` is None if the case has no driver."""
 
     name: str
     chart: Path
@@ -33,7 +33,7 @@ class Case:
 
     @property
     def suite(self) -> str:
-        """Whose test it is: `W3C` or `SCION`."""
+        """The origin of the test: `W3C` or `SCION`."""
         return "W3C" if self.name.startswith("w3c") else "SCION"
 
     def read(self) -> tuple[dict[str, Any] | None, list[Diagnostic]]:
@@ -41,7 +41,7 @@ class Case:
         return _read(self.chart)
 
     def complaints(self) -> list[str]:
-        """What can't be carried over of the chart, and of those in other files that it invokes."""
+        """The errors of importing the chart and the charts in other files that it invokes."""
         found = [d.message for d in self.read()[1] if d.severity is Severity.ERROR]
         for invoked in self.invoked().values():
             found += invoked.complaints()
@@ -53,7 +53,7 @@ class Case:
         return {name: _case(chart) for name in names for chart in sorted(self.chart.parent.glob(f"{name}.*scxml"))}
 
     def behaviors(self) -> dict[str, dict[str, Any]]:
-        """What it invokes, as the importer makes it."""
+        """The imported behaviours that the chart invokes, by name."""
         return {name: data for name, case in self.invoked().items() if (data := case.read()[0])}
 
 
@@ -88,7 +88,7 @@ def _invokes(state: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
 
 @cache
 def table() -> Mapping[str, Any]:
-    """What is known of the cases that do not pass."""
+    """The table of the cases that do not pass, with the reasons."""
     document, diagnostics = parse(TABLE.name, TABLE.read_bytes())
     assert document is not None
     assert not diagnostics

@@ -72,7 +72,7 @@ def xstate_changes_nothing(case: Case, machine: Callable[[], Machine]) -> None:
 
 
 def it_is_unsupported_still(case: Case) -> None:
-    """The importer says why; once it no longer does, the case belongs to those that pass."""
+    """The importer reports the reason; once it no longer does, the case belongs to those that pass."""
     reason = REASONS[case.name]
     assert any(reason in complaint for complaint in case.complaints())
 

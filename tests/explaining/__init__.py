@@ -1,1 +1,1 @@
-"""Why, and why not: asked of what was recorded, and checked by doing without what was named."""
+"""Why, and why not: answers from recorded steps, checked by removing the named causes."""

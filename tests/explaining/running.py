@@ -15,7 +15,7 @@ from lumen.statechart import due, initial, step
 from tests.statechart.oracle.generating import EVENTS
 
 ANSWERED_AFTER = 0.17
-"""How long the robot takes for each command [s]."""
+"""The time that the robot needs for each command [s]."""
 
 inputs: st.SearchStrategy[list[tuple[str, Any]]] = st.lists(
     st.tuples(st.sampled_from(EVENTS), st.sampled_from([None, {"k": 1}, {"k": 3}, {"k": "text"}])),
@@ -34,7 +34,7 @@ def timed(happenings: list[tuple[str, Any]]) -> list[Event]:
 
 
 def live(machine: MachineDefinition, events: list[Event], end: float) -> list[RecordedStep]:
-    """What happens until `end` [s], or until the machine does not come to rest."""
+    """Return the steps until `end` [s], or until the machine fails to come to rest."""
     steps, answers, left = list[RecordedStep](), list[Event](), list(events)
     with suppress(LumenError):
         steps.append(RecordedStep(machine, None, initial(machine)))
@@ -66,7 +66,7 @@ class Outcome(NamedTuple):
 
 
 def outcomes(one: RecordedStep) -> list[Outcome]:
-    """What a step has entered and done; of what is drawn it does not matter what it is."""
+    """Return the states entered and the commands of a step; for drawn commands only the kind counts."""
     done = [_kind(command) for command in one.step.commands]
     return [Outcome(one.at, what) for what in (*one.step.entered, *filter(None, done))]
 

@@ -337,7 +337,7 @@ def test_the_log_tells_of_a_sentence_that_changed_nothing(
     ],
 )  # fmt: skip
 def test_the_outlook_calls_no_row_sure(hears: dict[str, Any], keys: dict[str, Any], ways: list[str]) -> None:
-    """Whether a row goes is for the sentence to say, so it takes no other's place; what comes before it may."""
+    """Only the sentence decides whether a row fires, so such a row blocks no other; an earlier row may."""
     machine = Machine.from_dict(chart(hears, **keys))
     now = initial(machine).snapshot
     found = [

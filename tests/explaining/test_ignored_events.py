@@ -34,7 +34,7 @@ GUIDE: dict[str, Any] = {
 
 
 def told(*said: tuple[str, Any], at: float = 10.0) -> str:
-    """What is told of the last of these events."""
+    """Return the explanation of the last of these events."""
     machine, how, line = Machine.from_dict(GUIDE, "guide"), IgnoredEvents(), ""
     now = initial(machine).snapshot
     for number, (name, data) in enumerate(said):

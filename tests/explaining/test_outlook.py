@@ -1,4 +1,4 @@
-"""Ways out of a state: what is called closed is not taken, and where nothing is taken nothing was surely open."""
+"""Ways out of a state: a way marked closed does not fire, and if nothing fires, no way was surely open."""
 
 from collections import Counter
 from contextlib import suppress

@@ -119,7 +119,7 @@ def test_what_only_else_took_was_not_understood(text: str, is_understood: bool) 
     ],
 )  # fmt: skip
 def test_what_differs_is_told_row_by_row(before: dict[str, Any], after: dict[str, Any], told: list[str]) -> None:
-    """Whatever number a row has: that depends on the rows above it."""
+    """Changes ignore the number of a row, since it depends on the rows above it."""
     found = [change.sentence for change in machine_changes("m", machine(before), machine(after))]
     assert found == [f"state `offer` {sentence}" for sentence in told]
 

@@ -39,7 +39,7 @@ def all_of(steps: list[RecordedStep]) -> set[Outcome]:
 
 
 def check(data: Data, events: list[Event], tally: Counter[str]) -> None:
-    """Flip each input, and compare what comes of it with what was said."""
+    """Flip each input, and compare the outcome with the explanation."""
     machine = Machine.from_dict(data)
     history = StepHistory(live(machine, events, last(events)))
     without = {

@@ -1,4 +1,4 @@
-"""`why_not` proposes what works: with the change that it names the thing happens; where it names none it says why."""
+"""`why_not` proposes changes that work: the event happens with the change; without a change it gives a reason."""
 
 from collections import Counter
 from contextlib import suppress
@@ -20,7 +20,7 @@ from tests.statechart.oracle.generating import Data, machine_data
 
 PATIENT = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 MOST = 4
-"""How many states of a machine are asked about."""
+"""The number of states of a machine to explain."""
 
 
 def happens(machine: MachineDefinition, steps: list[RecordedStep], reason: Reason, state: str) -> bool:

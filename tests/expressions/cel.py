@@ -32,7 +32,7 @@ def by_lumen(source: str, scope: Scope) -> Outcome:
 
 
 def by_cel(source: str, scope: Scope) -> Outcome:
-    """The outcome in CEL, without the type checker, as lint is for us; RuntimeError where it can't be read."""
+    """The outcome in CEL, without its type checker, since lint plays that part here; RuntimeError if unreadable."""
     data = {"context": scope.context, "event": scope.event, "state": scope.state}
     result = ENVIRONMENT.compile(source, disable_check=True).eval(data=data)
     if result.type().name() == "ERROR":
@@ -72,7 +72,7 @@ def _ordered(value: Any) -> Any:
 def compare(node: ExpressionNode, scope: Scope) -> bool:
     """Whether the expression has the same outcome in both.
 
-    AssertionError where it has not, though all its parts have, and it is not in the table of docs/expressions.md.
+    AssertionError if it differs although all parts agree, and it is not in the table of docs/expressions.md.
     """
     alike = not [child for child in children(node) if not compare(child, scope)]
     ours, theirs = by_lumen(unparse(node), scope), by_cel(unparse(in_cel(node)), scope)

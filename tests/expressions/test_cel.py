@@ -75,7 +75,7 @@ DIFFERENT: dict[str, list[tuple[str, object, object]]] = {
         ("In('a')", False, ERROR),
     ],
 }
-"""For each row of the table what stands in its first column, and expressions with their outcomes here and in CEL."""
+"""By the first column of each table row: expressions with their outcomes here and in CEL."""
 
 
 @for_each("row", DIFFERENT)
@@ -90,7 +90,7 @@ def outcome(value: object) -> Outcome:
 
 
 def readable(source: str) -> Outcome:
-    """The outcome in CEL, which has none where it can't read the expression."""
+    """The outcome in CEL; an error if CEL can't read the expression."""
     try:
         return by_cel(source, SCOPE)
     except RuntimeError:

@@ -1,4 +1,4 @@
-"""What lint tells of an expression before it runs."""
+"""Findings of lint in expressions, before they run."""
 
 from lumen.expressions import check_expression, check_template, names, parse_expression, schema_of
 from tests.tables import for_each

@@ -1,4 +1,4 @@
-"""What is said of expressions that can't be read, or have no value, and where."""
+"""Messages about unreadable expressions and expressions without a value, and their places."""
 
 import pytest
 

@@ -80,14 +80,14 @@ TREES = st.recursive(LITERALS | PATHS, _larger, max_leaves=15)
 
 
 def run(source: str, scope: Scope) -> Any:
-    """The value, or None where there is none; warnings of Python's compiler count as failures."""
+    """Return the value, or None for an expression without one; warnings of Python's compiler count as failures."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         return attempt(source, lambda: compile_expression.__wrapped__(source)(scope))
 
 
 def attempt(source: str, action: Callable[[], Any]) -> Any:
-    """What the action returns, or None where it raises an ExpressionError; its place must be in the source."""
+    """Return the action's result, or None if it raises an ExpressionError, whose place must be in the source."""
     offset = 0
     try:
         return action()

@@ -96,7 +96,7 @@ def test_lookup(text: str, language: str, value: object) -> None:
 
 
 def test_lookup_of_other_tables() -> None:
-    """What is prepared of a table is that table's own, however many there are."""
+    """Data prepared from a table belongs to that table only, however many tables there are."""
     for n in range(600):
         answers = {"t": (Answer({"en": (f"word{n}",)}, n),)}
         scope = Scope(context={"text": f"say word{n}"}, answers=answers, phrases={"p": {"en": (f"word{n}",)}})

@@ -66,7 +66,7 @@ def test_a_text_of_blanks_is_meant_as_a_whole() -> None:
     st.text(st.characters(codec="utf-8", exclude_categories=["Cs"]), min_size=1), st.sampled_from("'\"|> "), st.data()
 )
 def test_any_text_in_any_style(value: str, style: str, data: st.DataObject) -> None:
-    """What PyYAML writes is found again, character by character; else the whole text is meant."""
+    """Text written by PyYAML is located character by character; otherwise the place is the whole text."""
     text = yaml.dump(
         {"a": value}, default_style=style.strip() or None, allow_unicode=data.draw(st.booleans()), width=20
     )

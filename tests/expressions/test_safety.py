@@ -1,4 +1,4 @@
-"""Nothing of Python can be reached, and nothing an author or a message writes is large or long."""
+"""Expressions cannot reach Python, and no value from an author or a message grows large or runs long."""
 
 import gc
 import sys
@@ -66,7 +66,7 @@ def test_no_python_operators(source: str) -> None:
 
 
 def grown(source: str, value: Any, rounds: int = 70) -> Any:
-    """What is left of assigning the expression to `context.x` again and again."""
+    """Return the value after assigning the expression to `context.x` again and again."""
     evaluate = compile_expression(source)
     for _ in range(rounds):
         value = evaluate(Scope(context={"x": value}))

@@ -1,4 +1,4 @@
-"""What expressions are worth."""
+"""The values of expressions."""
 
 from types import MappingProxyType
 from typing import Any

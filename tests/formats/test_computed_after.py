@@ -1,4 +1,4 @@
-"""An `after` whose time is computed, in files of other tools: listed where it is left out, and drawn."""
+"""An `after` with a computed time, in files of other tools: listed if it is left out, and drawn."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""`python -m tests.fuzzy` says how far the examples that pyfuzzylite carries come out differently here."""
+"""`python -m tests.fuzzy` prints how far the results of pyfuzzylite's own examples differ here."""
 
 import sys
 

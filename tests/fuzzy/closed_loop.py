@@ -19,7 +19,7 @@ Pose = tuple[float, float]
 
 @dataclass
 class Run:
-    """The head's yaw and pitch [rad] by time [s], and where the face was in each image [px]."""
+    """The head's yaw and pitch [rad] by time [s], and the face's position in each image [px]."""
 
     poses: list[tuple[float, float, float]]
     pixels: list[tuple[float, float] | None]
@@ -29,17 +29,17 @@ class Run:
         return next((pose[0] for pose in reversed(self.poses) if abs(pose[1 + axis] - goal) > within), 0.0)
 
     def stray(self, axis: int, since: float) -> float:
-        """How far apart [rad] the axis' places were from then on."""
+        """The range [rad] of the axis' positions from the time `since` on."""
         late = [pose[1 + axis] for pose in self.poses if pose[0] >= since]
         return max(late) - min(late)
 
     def farthest(self, camera: Camera = TOP) -> float:
-        """How far from the middle of the image the face was at most, as a part of half the image; inf where lost."""
+        """The face's greatest distance from the image's middle, as a part of half the image; inf if lost."""
         across, down = camera.width / 2, camera.height / 2
         return max(max(abs(p[0] / across - 1), abs(p[1] / down - 1)) if p else inf for p in self.pixels)
 
     def overshoot(self, axis: int, goal: float) -> float:
-        """How far the axis went beyond the goal, as a part of the way to it."""
+        """The axis' overshoot beyond the goal, as a part of the way to it."""
         way = self.poses[0][1 + axis] - goal
         return max(0.0, *(-(pose[1 + axis] - goal) * copysign(1.0, way) for pose in self.poses)) / abs(way)
 

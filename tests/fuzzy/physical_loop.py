@@ -38,7 +38,7 @@ def run(
     """Let the shipped controller follow a visitor; the head begins so far [deg] beside the pose that centres the face.
 
     The poses of the result are beside that pose too [rad], wherever face and torso are by then: they end at 0. Images
-    are taken every `tick` [s] and told of `latency` [s] later. `within` bends the first pose.
+    are taken every `tick` [s] and published `latency` [s] later. `within` bends the first pose.
     The robot falls short in the ways that `imperfections` say, else in all.
     """
     few = replace(project, routes={name: project.routes[name] for name in ("face", "joint")})

@@ -1,4 +1,4 @@
-"""What docs/fuzzy.md and docs/research.md say is what the code says."""
+"""The figures and claims of docs/fuzzy.md and docs/erratum.md agree with the code."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What a controller file can say in short, and its formulas; every fault in them at its word."""
+"""Short forms of controller files, and their formulas; every fault is reported at its word."""
 
 import json
 from typing import Any

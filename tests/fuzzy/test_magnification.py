@@ -1,4 +1,4 @@
-"""Of all magnifications the one with the greatest answer counts, and where it can be told it takes one evaluation."""
+"""The magnification with the greatest answer counts; if it can be predicted, one evaluation is enough."""
 
 import random
 from collections.abc import Iterator, Mapping
@@ -23,7 +23,7 @@ def head() -> Controller:
 
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[Mapping[str, float]]:
-    """What evaluators are asked from now on."""
+    """The inputs of all later calls of `Evaluator.evaluate`."""
     asked: list[Mapping[str, float]] = []
     evaluate = Evaluator.evaluate
     monkeypatch.setattr(Evaluator, "evaluate", lambda self, inputs, *more: (

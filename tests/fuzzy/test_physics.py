@@ -91,7 +91,7 @@ def test_somebody_who_walks_by_stays_in_the_image(project: Project) -> None:
 
 
 def test_at_its_limit_the_head_rests(project: Project) -> None:
-    """Somebody tall who stands close: their face is higher than the head can look."""
+    """A tall visitor close to the robot: their face is higher than the head can look."""
     outcome = run(project, lambda now: Visitor(0.6, 0.0, 1.8), off=(5.0, 12.0), within=within_reach)
     assert outcome.pixels[-1] is not None
     assert outcome.poses[-1][2] > radians(1.0)

@@ -28,7 +28,7 @@ def through(outputs: Mapping[str, Any], source: Any = "sonar.left", **more: Any)
 
 
 def told(regulator: Regulator, xs: list[float], every: float = 0.2) -> list[Signals]:
-    """What it says of messages with these numbers, one each `every` [s]."""
+    """The signals after messages with these numbers, one every `every` [s]."""
     found = []
     for i, x in enumerate(xs):
         regulator.take("sonar", {"left": x})

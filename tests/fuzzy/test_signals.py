@@ -148,7 +148,7 @@ class Hall:
         self.loop.start()
 
     def people(self, number: object) -> None:
-        """So many people are counted; half a second goes by."""
+        """Publish this number of people, then run for half a second."""
         self.bus.publish("museum.crowd", {"people": number})
         for _ in range(25):
             self.loop.tick()

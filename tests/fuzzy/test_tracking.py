@@ -1,4 +1,4 @@
-"""The head follows a face: by pose at capture, within every limit, and it looks for what it lost."""
+"""The head follows a face: by its pose at capture, within every limit; it searches for a lost face."""
 
 from dataclasses import replace
 from math import degrees, hypot, pi, radians

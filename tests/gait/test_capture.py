@@ -1,4 +1,4 @@
-"""Where a foot has to land to catch a fall, and the leg that brings it there."""
+"""The foothold that catches a fall, and the leg that reaches it."""
 
 from math import cos, sin
 

@@ -1,4 +1,4 @@
-"""Legs bend to where the feet are, and tell where the feet are from how they are bent."""
+"""Legs bend to reach given feet, and the positions of the feet follow from the joint angles."""
 
 from math import pi
 

@@ -1,4 +1,4 @@
-"""What a search of a gait found is written into a body's file, in its units, beside what stands there."""
+"""The result of a gait search is written into a body's file, in its units, and keeps the rest of the file."""
 
 from argparse import Namespace
 from pathlib import Path

@@ -46,7 +46,7 @@ class Legs:
         assert all(self.tick() for _ in range(ticks))
 
     def end(self) -> int:
-        """How many ticks it takes to its end."""
+        """Return the number of ticks until the walk ends."""
         return next(ticks for ticks in range(LIMIT) if not self.tick())
 
 
@@ -55,7 +55,7 @@ VELOCITIES = [(0.1, 0, 0), (-0.1, 0, 0), (0, 0.05, 0), (0, -0.05, 0), (0, 0, 0.4
 
 @for_each("velocity", VELOCITIES, ids=str)
 def test_it_goes_as_fast_as_it_is_told(velocity: tuple[float, float, float]) -> None:
-    """Measured over ten steps from the second on: first the weight has to shift."""
+    """Measured over ten steps from the second on: first the weight must shift."""
     gait = Gait(NAO_LEGS, START, Velocity(*velocity), mass, PACE)
     legs = Legs(gait)
     legs.walk(36 + 4 * 45)

@@ -38,7 +38,7 @@ def overdue(machine: Machine, snapshot: Snapshot, now: float = 0.0) -> Snapshot:
 
 
 class Hall:
-    """A behaviour in real time: `pass_until` lets the machine's clock go on, `set` sets it."""
+    """A behaviour in real time: `pass_until` advances the machine's clock, `set` sets it."""
 
     def __init__(self, begin: str, data: dict[str, Any] = HALL, zone: str = "Europe/Berlin") -> None:
         self.machine, self.zone = Machine.from_dict(data), zone

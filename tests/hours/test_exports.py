@@ -1,4 +1,4 @@
-"""Times of day in files of other tools: listed where they are left out, and drawn."""
+"""Times of day in files of other tools: listed if they are left out, and drawn."""
 
 from pathlib import Path
 

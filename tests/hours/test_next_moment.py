@@ -1,4 +1,4 @@
-"""When a time of day comes next, against somebody who looks at the clock every minute."""
+"""The next moment of a time of day, compared with a search that checks every minute."""
 
 from contextlib import suppress
 from datetime import UTC, date, datetime, timedelta

@@ -14,7 +14,7 @@ from tests import ROOT
 from tests.tables import for_each
 
 KEPT = ROOT / ".cache/mypy"
-"""What mypy found out about the engine, for later runs; the one of `make check`, which may run beside, is another."""
+"""mypy's cache of the engine for later runs; `make check`, which may run at the same time, has its own."""
 MACHINE = Machine.from_dict({"context": {"list": [1]}, "states": {"a": {"on": {"go": "b"}}, "b": None}})
 CONTROLLER = fuzzy.Controller.load(ROOT / "fuzzy/head.yaml")
 X, *_ = CONTROLLER.inputs

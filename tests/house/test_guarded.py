@@ -40,14 +40,14 @@ def test_that_does_not_end():
             if WILLING:
                 raise
 """
-"""A test that starts programs and goes on for ever; where it is not WILLING also when it is interrupted."""
+"""A test that starts programs and never ends; unless it is WILLING, not even when it is interrupted."""
 
 Start = Callable[..., Guarded[str]]
 
 
 @pytest.fixture
 def start(tmp_path: Path) -> Start:
-    """Starts Python in `tmp_path`, which stands in the environment of all that comes of it."""
+    """Starts Python in `tmp_path`, which is in the environment of all child processes."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "TMPDIR": str(tmp_path)}
 
     def begin(*words: str, folder: Path = tmp_path) -> Guarded[str]:
@@ -126,7 +126,7 @@ def begun(start: Start, folder: Path, willing: bool) -> Session:
 
 
 def test_programs_end_in_time_and_say_how() -> None:
-    """As those of the library do, which it stands for."""
+    """Like the functions of the standard library that it replaces."""
     done = run_guarded(["cat"], input="hello", capture_output=True, text=True, timeout=HANG)
     assert (done.returncode, done.stdout, done.stderr) == (0, "hello", "")
     with pytest.raises(TimeoutExpired):

@@ -49,7 +49,7 @@ def test_each_reason_for_a_closed_list_is_about_one_that_exists(files: list[Sour
 
 
 def test_every_thread_is_watched() -> None:
-    """A thread that a fault ends is begun again, or told of: `lumen.upkeep.threads`; the records' is a desk for one,
+    """A thread that a fault ends is restarted or reported: `lumen.upkeep.threads`; that of the records serves one desk,
     whoever waits for a picture of a film gets the fault that drawing it had, and the thread that reads the orders for
     a skill ends its process.
     """

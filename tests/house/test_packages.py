@@ -1,4 +1,4 @@
-"""Folders are packages, which contracts see, and one that says what each of its files is for says it of all of them."""
+"""Folders are packages, visible to contracts; a package that lists the purpose of files lists all of them."""
 
 import ast
 import re

@@ -41,7 +41,7 @@ def items(page: str) -> list[str]:
 
 
 def found(path: str) -> list[Path]:
-    """The files of the repository, or of the package, that a page means by a path; CODE and NAME stand for any."""
+    """The files of the repository, or of the package, that a page names by a path; CODE and NAME match any name."""
     pattern = PLACEHOLDER.sub("*", path).rstrip("/")
     return [file for folder in (ROOT, ENGINE) for file in folder.glob(pattern)]
 
@@ -51,7 +51,7 @@ def paths(text: str) -> list[str]:
 
 
 def names(text: str) -> Iterator[str]:
-    """What can only be a name of the code: dotted, or with a capital or an underscore within."""
+    """The words that can only be names of code: dotted, or with a capital or an underscore inside."""
     for code in CODE.findall(text):
         name = code.removesuffix("()").partition("(")[0]
         inner = re.search(r"[a-z]_[a-z]|[a-z][A-Z]|^[A-Z]\w+$|^_", name) or "." in name
@@ -67,7 +67,7 @@ def words() -> frozenset[str]:
 
 
 def has(name: str) -> bool:
-    """Whether `lumen.x.y` can be imported or asked for, and the parts of any other name stand in the code."""
+    """Return whether `lumen.x.y` can be imported or read, or all parts of another name occur in the code."""
     if not name.startswith("lumen."):
         return all(part in words() for part in name.split("."))
     where: ModuleType | object = importlib.import_module("lumen")

@@ -1,4 +1,4 @@
-"""A house over RabbitMQ: its robots in one process or several, one stopped or killed while the other goes on."""
+"""A house over RabbitMQ: its robots in one process or several; one is stopped or killed while the other continues."""
 
 import json
 import os
@@ -26,7 +26,7 @@ class Hall:
         self.running: list[Guarded[bytes]] = []
 
     def begin(self, *flags: str, url: str = "", robot: str = "recording") -> tuple[Guarded[bytes], Path]:
-        """A process of `lumen run`, and the file with what it says."""
+        """Start `lumen run`; return the process and the file with its output."""
         told = self.root / f"told-{len(self.running)}.txt"
         line = [
             sys.executable,
@@ -57,7 +57,7 @@ class Hall:
         return code, said.out + said.err
 
     def status(self) -> dict[str, dict[str, Any]]:
-        """What each robot says, or is said of it; nothing where none answers."""
+        """Return each robot's status; empty if none answers."""
         code, said = self.call("status", "--format", "json")
         return {} if code else {one["robot"]: one for one in json.loads(said)["robots"]}
 

@@ -39,7 +39,7 @@ def opened(
 
 
 def lived(shows: Mapping[str, Exhibition], seconds: float | None = None) -> dict[str, list[str]]:
-    """What each behaviour did until the first is over."""
+    """Return the steps of each behaviour until the first one is over."""
     steps: dict[str, list[str]] = {name: [] for name in shows}
     for name, show in shows.items():
         show.observe(lambda step, told=steps[name]: told.append(_told(step)))

@@ -1,4 +1,4 @@
-"""What robots have in common: one assigns it, the other reads it, at once; nobody else can change it."""
+"""Shared values of robots: one assigns, the other reads at once; no other process can change them."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -42,7 +42,7 @@ def lumen(core: Path) -> Lumen:
 
 @pytest.fixture(scope="session")
 def exhibition(lumen: Lumen, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What `lumen new` makes there."""
+    """A project made by `lumen new`."""
     folder = tmp_path_factory.mktemp("exhibition")
     done = lumen(folder, "new", "mine")
     assert done.returncode == 0, done.stderr

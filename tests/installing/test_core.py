@@ -1,4 +1,4 @@
-"""Without the simulation: small, lints, plays stories, answers an editor, and says what physics and plots need."""
+"""Without the simulation: small, lints, plays stories, answers an editor, and names the extras of physics and plots."""
 
 import sys
 import tomllib
@@ -106,6 +106,6 @@ print("sits")
 
 
 def test_the_robot_needs_nothing_of_dm_control_that_3_13_lacks(tmp_path: Path) -> None:
-    """What the extra does not list for 3.13 is kept from being imported here."""
+    """Packages that the extra does not list for 3.13 cannot be imported here."""
     done = run_guarded([sys.executable, "-c", BARE], cwd=tmp_path, timeout=HANG, capture_output=True, text=True)
     assert done.stdout == "sits\n", done.stderr[-1500:]

@@ -1,4 +1,4 @@
-"""What is built for others: it says what an index asks, holds what it must, and nothing of what only we need."""
+"""The distributions: they have the metadata an index asks for, all needed files, and none of our own tools."""
 
 import email
 import email.message

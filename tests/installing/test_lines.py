@@ -30,7 +30,7 @@ WORD = r"""(?:'[^'\n]*'|"[^"\n]*"|[^\s`'"),;:]+)"""
 COMMAND = re.compile(rf"pip install ((?:--no-deps )?(?!-){WORD})")
 FOREIGN = {"dm-control>=1.0.50,<2", "uv"}
 REPOSITORY = "lumen-robot @ git+https://github.com/OWNER/lumen@COMMIT"
-"""What stands for the address of a copy of Lumen, and a commit in it."""
+"""The placeholder of the address of a copy of Lumen, and of a commit in it."""
 
 
 def lines() -> Iterator[tuple[str, str]]:
@@ -43,7 +43,7 @@ def lines() -> Iterator[tuple[str, str]]:
 
 
 def words(line: str, wheel: Path) -> list[str]:
-    """What pip is to be given for a line: the wheel stands for the checkout, for its file and for the repository."""
+    """Return pip's arguments for a line: the wheel replaces the checkout, the wheel's file and the repository."""
     replaced = []
     for word in shlex.split(line):
         extras = re.search(r"\[[\w,-]*\]", word)
@@ -79,7 +79,7 @@ def test_all_that_they_ask_for_can_be_had_together_by_who_has_the_core(
 
 
 def asked_on(version: str) -> list[str]:
-    """What the core, the simulation and the plots ask for there; pip reads markers as its own Python does."""
+    """The packages that core, simulation and plots require there; pip evaluates markers for its own Python."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     extras = project["optional-dependencies"]
     lines = [*project["dependencies"], *extras["simulation"], *extras["plot"]]
@@ -128,7 +128,7 @@ def test_each_line_installs_into_an_empty_environment_what_can_then_be_imported(
 ) -> None:
     python = installing.environment(tmp_path / "empty")
     if "lumen-robot[" in line and "@" not in line:
-        installing.install(python, str(wheel))  # it adds to what is installed
+        installing.install(python, str(wheel))  # add it to the installed packages
     installing.install(python, *words(line, wheel))
     module = "dm_control.mjcf" if "dm-control" in line else "lumen.cli.main"
     if "dm-control" in line:

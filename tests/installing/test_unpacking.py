@@ -42,7 +42,7 @@ esac
 
 
 class Machine:
-    """One on which `openssl` is installed and nobody is root; `script` are programs on its PATH besides the usual."""
+    """A machine with `openssl` and without root; `script` are more programs on its PATH besides the usual ones."""
 
     def __init__(self, folder: Path, **script: str) -> None:
         self.unpacked, self.programs = folder / "cache/debian", folder / "bin"
@@ -57,7 +57,7 @@ class Machine:
         self.more = {"STATUS": str(folder / "status"), "UNPACKED": str(self.unpacked), "AS_USER": "1"}
 
     def provide(self, *packages: str) -> str:
-        """What the script says of these."""
+        """Return the script's output for these packages."""
         environment = {"PATH": str(self.programs), **self.more}
         text = "\n".join(packages)
         done = run_guarded(
@@ -154,7 +154,7 @@ def test_a_broker_that_is_given_is_used_for_what_needs_no_more() -> None:
 @pytest.mark.soak
 @pytest.mark.broker
 def test_rabbitmq_starts_from_where_it_was_unpacked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Fetched as on a machine without it: it and Erlang are taken from the list of what is installed."""
+    """Fetched as on a machine without RabbitMQ: it and Erlang are removed from the list of installed packages."""
     blocks = Path("/var/lib/dpkg/status").read_text().split("\n\n")
     left = [block for block in blocks if not block.startswith(("Package: rabbitmq-server", "Package: erlang-"))]
     (tmp_path / "status").write_text("\n\n".join(left))

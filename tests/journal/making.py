@@ -26,7 +26,7 @@ from tests import ROOT
 
 MAX_TIMERS = 12
 WRITTEN = 120.0
-"""How long a crowded machine may take to write what a wild behaviour has done [s]."""
+"""The time that a crowded machine may need to write the steps of a wild behaviour [s]."""
 
 
 @cache
@@ -53,9 +53,9 @@ class Recorded:
         self.runtime.start(self.now, epoch=1_700_000_000.0, timezone="Europe/Berlin")
 
     def happen(self, happening: tuple[str, Any] | None, number: int) -> None:
-        """An event from outside; or by turns time that passes, an answer and a refusal of what is awaited.
+        """Handle an outside event; or in turn let time pass, answer an awaited command, or refuse it.
 
-        Nothing any more where timers have set more and more timers.
+        Do nothing if timers have already set too many timers.
         """
         if len(self.runtime.snapshot.timers) > MAX_TIMERS:
             return
@@ -69,7 +69,7 @@ class Recorded:
         self.runtime.tick(self.now, [Event(name, data, to_the_nanosecond(self.now - 0.02 * (number % 2)))])
 
     def reload(self, machine: MachineDefinition) -> None:
-        """Go on under another machine, where that can be."""
+        """Continue under another machine, if that is possible."""
         project = bundle(machine)
         self.bundles[project.hash] = project
         with suppress(LumenError):
@@ -78,7 +78,7 @@ class Recorded:
                 self.runtime.apply(project, plan.snapshot, "reload", plan.commands)
 
     def crash(self) -> None:
-        """End without notice, and go on from where it stood when that was written."""
+        """End without notice, then resume from the state at the last write."""
         project, frozen = self.runtime.project, serialize(self.runtime.project.machine, self.runtime.snapshot)
         assert self.writer.flush(WRITTEN)
         self._run(project)

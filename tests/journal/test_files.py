@@ -107,7 +107,7 @@ def test_what_is_old_and_what_is_too_much_is_deleted(tmp_path: Path) -> None:
 
 
 def test_what_a_cut_left_is_gone_when_somebody_is_forgotten(tmp_path: Path) -> None:
-    """Nobody can say whom it names."""
+    """The name in a cut entry can't be known."""
     file = tmp_path / "x.journal"
     file.write_bytes(packed(entries(20, 1), 4)[:-3] + b"Budi")
     os.utime(file, (1e9, 1e9))

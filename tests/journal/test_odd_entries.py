@@ -1,4 +1,4 @@
-"""A journal comes from a disk, or from somebody: whatever stands in its entries is told, and raises nothing else."""
+"""A journal comes from a disk or another person: odd entries are reported, and raise no other error."""
 
 import json
 import random
@@ -54,7 +54,7 @@ def with_odd(entry: Any, chance: random.Random) -> Any:
 
 
 def oddly(file: Path, chance: random.Random) -> str:
-    """Write it anew with some entries that nobody would have written; which they are."""
+    """Rewrite the journal with some odd entries; return a description of them."""
     header = read_header(file.read_bytes().split(b"\n", 1)[0], file.name)
     rows = [json.loads(line) for line in read_lines(file)]
     told = []

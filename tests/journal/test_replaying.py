@@ -1,4 +1,4 @@
-"""What was journaled replays to the same steps: random machines and events, other files, and starts after a crash."""
+"""A journal replays to the same steps: random machines and events, other files, and starts after a crash."""
 
 import json
 import logging
@@ -36,7 +36,7 @@ MOVES = st.lists(st.sampled_from(["go", "go", "reload", "crash"]), min_size=1, m
 
 @pytest.fixture(autouse=True)
 def quiet(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """A machine that never comes to rest is told of, and soon: that is not what is looked at here."""
+    """Report a machine that never comes to rest soon and without a log: it is not the subject here."""
     for module in (stepping, microstep):
         monkeypatch.setattr(module, "MAX_MICROSTEPS", 50)
     logging.disable(logging.ERROR)
@@ -45,7 +45,7 @@ def quiet(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 def what(step: Step) -> tuple[object, ...]:
-    """What happened in a step; who caused it changes nothing."""
+    """The event and effect of a step, without the causes."""
     return step.event and step.event[:4], step.entered, step.exited, step.snapshot.at
 
 

@@ -144,7 +144,7 @@ def test_a_step_that_asks_for_something_is_on_the_disk_soon_and_in_order(disk: D
     busy = step(MACHINE, initial(MACHINE).snapshot, Event("come"))
     said = step(MACHINE, busy.snapshot, Event("heard", {"name": "Ada"}, 1.0))
     tell(writer, [busy, said])
-    until(lambda: len(read(disk)) >= 3)  # nobody flushes, nobody closes
+    until(lambda: len(read(disk)) >= 3)  # without flush or close
     assert [entry.position for entry in read(disk)] == list(range(len(read(disk))))
     writer.close()
 
@@ -180,7 +180,7 @@ def test_somebody_who_is_forgotten_is_in_no_file_and_nothing_else_is_lost(disk: 
 
 
 def test_who_comes_home_with_each_step_and_remembers_much_fills_no_disk(disk: Disk) -> None:
-    """Where it stands is written when as much has been written besides; and all replays as ever."""
+    """The snapshot is written after as many bytes of other entries; everything still replays."""
     machine = Machine.from_dict(
         {
             "context": {"n": 0, "all": [f"word {n}" for n in range(10_000)]},

@@ -25,11 +25,11 @@ JOINTS = BODY.parts[HEAD]
 STYLES = sorted(PROJECT.life)
 STEP, LATENCY = 0.02, 0.1
 WITHIN = np.radians(1.0)
-"""How far the follower itself may be beside the face [rad]: a pixel is 0.2 degrees."""
+"""The greatest error of the follower itself [rad]: a pixel is 0.2 degrees."""
 
 
 def reach(style: LifeStyle) -> np.ndarray:
-    """How far such a life moves yaw and pitch at most [rad]."""
+    """Return the greatest movement of yaw and pitch in this style of life [rad]."""
     turns, nods = [each for each in (style.glances, style.asides) if each], style.nods
     turned = np.max([[0.0, 0.0], *([each.yaw, each.pitch] for each in turns)], axis=0)
     swayed = np.array([style.amplitudes.get(joint, 0.0) for joint in JOINTS])
@@ -37,7 +37,7 @@ def reach(style: LifeStyle) -> np.ndarray:
 
 
 def followed(face: Vector3, style: str, seed: int, *, told: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Where the follower has a head without weight that lives, and where it looks [rad]: a row each 20 ms of 20 s.
+    """Return the pose of a weightless living head under the follower, and its gaze [rad]: a row each 20 ms of 20 s.
 
     `told` is whether the poses say how much of them is life.
     """

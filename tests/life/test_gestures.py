@@ -1,4 +1,4 @@
-"""Gestures beside speech: on the word, never the same twice within three texts, and only where nothing else moves."""
+"""Gestures beside speech: on the word, without repetition within three texts, and only if nothing else moves."""
 
 from itertools import pairwise
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The robot's life as the layer adds it: gentle, the same again, and never where a command moves the robot."""
+"""The robot's life as the layer adds it: gentle, repeatable, and absent from parts that a command moves."""
 
 from collections.abc import Collection
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What lint marks is what it speaks of: what the message quotes stands in the marked text, or is a key above it."""
+"""Lint marks the subject of its message: the words that it quotes are in the marked text, or are a key above it."""
 
 import re
 
@@ -11,7 +11,7 @@ ELSEWHERE = {
     *("missing-key", "missing-route", "missing-language", "no-time", "no-rules", "incomplete-posture", "asks-nobody"),
     *("shadowed-transition", "shadowed-answer", "angle-out-of-range"),
 }
-"""What is absent has no word to mark: its parent's key is marked. Of the last ones the message quotes the reason."""
+"""A missing thing has no word to mark: its parent's key is marked. The messages of the last ones quote the reason."""
 
 
 def marked(diagnostic: Diagnostic, files: dict[str, bytes]) -> str:
@@ -26,7 +26,7 @@ def marked(diagnostic: Diagnostic, files: dict[str, bytes]) -> str:
 
 
 def spoken_of(diagnostic: Diagnostic, text: str, files: dict[str, bytes]) -> bool:
-    """Whether the words that the message quotes stand in the marked text, or are keys that lead to it."""
+    """Return whether the words that the message quotes are in the marked text, or are keys that lead to it."""
     words = [word.strip("#.") for word in QUOTED.findall(diagnostic.message)]
     bare = text.strip().strip("\"'.")
     return any(word in text or bare in word or word in keys(diagnostic, files) for word in words)

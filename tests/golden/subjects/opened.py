@@ -78,4 +78,4 @@ class _Statue:
         return None
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Do nothing: there is nothing to close."""
