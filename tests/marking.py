@@ -1,4 +1,4 @@
-"""Which tests need a broker, physics or what npm fetches: marked by what their code names, so that none is forgotten.
+"""Marks of tests that need a broker, physics or npm: derived from the names in their code, for every test.
 
 Looked through are a test, its fixtures and parameters, and what they name of the helpers of tests. Not seen is what a
 test reaches by a string (`getfixturevalue`, the words of a command line): such a test is marked by hand, as are `slow`
@@ -20,9 +20,9 @@ from tests.guarded import Guarded, run_guarded
 from tests.rabbitmq import LentBroker, RabbitMQ
 
 PHYSICS = ("lumen.features.simulation", "mujoco", "dm_control")
-"""What lives in MuJoCo's world."""
+"""Modules that use MuJoCo."""
 NETWORK = ("http.", "socket", "lumen.features.console.serving", "lumen.features.rabbitmq.broker", "lumen.bus.local")
-"""What opens ports or connections."""
+"""Modules that open ports or connections."""
 BROWSER = "tests.features.console.browser"
 OWN_SERVERS = "own servers"
 """The group of tests with a broker of their own, which run one after another: one such broker at a time."""
@@ -79,7 +79,7 @@ def parameters(item: pytest.Function) -> Iterator[Any]:
 
 @cache
 def marks(thing: Any) -> frozenset[str]:
-    """What a function or a class of the tests needs."""
+    """Return the needs of a function or a class of the tests."""
     found, seen, left = set(), set(), [thing]
     while left:
         one = left.pop()
@@ -110,7 +110,7 @@ def home(thing: Any) -> str:
 
 
 def named(thing: Any) -> Iterator[Any]:
-    """What the code of a function, or of a class's functions, names of its module."""
+    """Yield the objects that the code of a function, or of a class's functions, names in its module."""
     for wrapper in ("hypothesis.inner_test", "__wrapped__"):
         with suppress(AttributeError):
             thing = attrgetter(wrapper)(thing)

@@ -12,7 +12,7 @@ from lumen.run.setup import Setup
 
 
 class Printed(Narrator):
-    """What happens as lines: who, and what; on standard output, or in a stream."""
+    """Prints events as lines, each with its actor, to standard output or to a stream."""
 
     stream: TextIO | None = None
 

@@ -32,13 +32,13 @@ UNPACKED = ROOT / ".cache/debian"
 """The folder into which scripts/packages.sh unpacks packages without root."""
 ROOTS = (Path("/"), UNPACKED / "root")
 GIVEN = "LUMEN_TEST_BROKER"
-"""Where a broker is that tests may use in place of one of their own, those that need no more than one: amqp://…"""
+"""The variable with the address of a broker for tests that need no more than one, in place of their own: amqp://…"""
 START_TIMEOUT = HANG
-"""How long a broker may take until it listens, on a crowded machine [s]."""
+"""The time that a broker may need until it listens, on a crowded machine [s]."""
 STOP_TIMEOUT = 20.0
-"""How long it may take to end in order [s]."""
+"""The time that it may need to end in order [s]."""
 VIRTUAL_HOSTS = 64
-"""How many the run's broker has, each for one module; 40 of them cost less than a second of processor time."""
+"""The number of hosts of the run's broker, each for one module; 40 cost less than a second of processor time."""
 HASHING = "rabbit_password_hashing_sha256"
 
 ERLANG_ARGUMENTS = "-kernel inet_dist_use_interface {127,0,0,1} -kernel net_ticktime 60000 +S 1:1 +sbwt none"
@@ -69,7 +69,7 @@ NOWHERE = {
 
 
 class RabbitMQ:
-    """A broker in a folder of its own; `url` is where it listens once `start` has returned.
+    """A broker in a folder of its own; `url` is its address once `start` has returned.
 
     With a folder of certificates it listens for TLS too, on the port `secure`, and has the policy of docs/deployment.md
     for messages without a receiver. With `speaks_mqtt` its plug-in for MQTT listens on the port `mqtt`; `plugins` are
@@ -114,12 +114,12 @@ class RabbitMQ:
         return shlex.join(["env", *environment, str(tool), "-n", f"t{self.port}@localhost"])
 
     def start(self) -> None:
-        """Start it, or start it again with what it had stored, and wait until it accepts connections."""
+        """Start it, or restart it with its stored data, and wait until it accepts connections."""
         self.begin()
         self.wait()
 
     def begin(self) -> None:
-        """Start it; whoever uses it has to `wait` first."""
+        """Start it; call `wait` before using it."""
         plugins = (*self._plugins, *["rabbitmq_mqtt"] * self._speaks_mqtt)
         (self.folder / "plugins").write_text(f"[{','.join(plugins)}].")
         (self.folder / "rabbitmq.conf").write_text(self.conf or "\n".join(self._settings()))
@@ -166,7 +166,7 @@ class RabbitMQ:
 
     @property
     def runs(self) -> bool:
-        """Whether it was started, and nobody has ended it."""
+        """Return whether it was started and has not ended."""
         return self._process is not None and self._process.poll() is None
 
     def kill(self) -> None:
@@ -231,7 +231,7 @@ class LentBroker(RabbitMQ):
 
 
 class GivenBroker:
-    """A broker that somebody else has started and may go on using: nothing of it is ended, or set up."""
+    """A broker that was started elsewhere and stays in use: these tests neither end it nor set it up."""
 
     certificate = None
 
@@ -239,7 +239,7 @@ class GivenBroker:
         self.url = url
 
     def __getattr__(self, name: str) -> NoReturn:
-        """What a broker of our own could do besides."""
+        """Skip the test: it needs an ability that only a broker of our own has."""
         pytest.skip(f"{GIVEN} names a broker that is not ours: what needs its users, its end or TLS is left out")
 
     def url_of(self, user: str) -> str:
@@ -248,7 +248,7 @@ class GivenBroker:
 
 
 def _end(process: Guarded[bytes] | None, how: signal.Signals) -> None:
-    """End a process and its children, by force where it takes too long."""
+    """End a process and its children, by force if they take too long."""
     if process is None:
         return
     try:
@@ -331,7 +331,7 @@ def _speaks_amqp(port: int) -> bool:
 
 
 def serve() -> None:
-    """Run a broker until Ctrl-C, and say how it is reached."""
+    """Run a broker until Ctrl-C, and print its address."""
     rabbitmq = RabbitMQ()
     print("starting RabbitMQ …", flush=True)
     rabbitmq.start()

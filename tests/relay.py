@@ -17,7 +17,7 @@ LOOK = 0.02
 class Relay:
     """Listens on `port` of loopback and forwards to another, `delay` [s] later.
 
-    `cut` stops that without closing anything, `mend` goes on with it; `reset` loses all connections, and `refuse` those
+    `cut` stops that without closing anything, `mend` resumes it; `reset` loses all connections, and `refuse` those
     that come, too, until it is mended.
     """
 
@@ -72,7 +72,7 @@ class Relay:
                 thread.start()
 
     def _connect(self, near: socket.socket) -> None:
-        """A cut cable connects nobody, and refuses nobody either."""
+        """A cut cable neither connects nor refuses a client."""
         self._ends.append(near)
         with near, suppress(OSError), selectors.DefaultSelector() as selector:
             self._whole.wait()

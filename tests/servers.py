@@ -3,7 +3,7 @@
 The process that was called as `pytest` (with xdist: not its workers) listens on a port, of which its workers learn
 from the environment. Who asks there for a server gets the one of the run, which is started for the
 first who asks. Servers are guarded children of that process: they end with it, however it ends, and the processor time
-of a run includes theirs. A part ends with the worker whose it is: a browser context with its connection, and nobody
+of a run includes theirs. A part ends with the worker that owns it: a browser context with its connection; and no one
 else is given a virtual host that was given once.
 """
 
@@ -28,7 +28,7 @@ from tests.waiting import HANG, until
 PORT = "LUMEN_TEST_SERVERS"
 """The environment's name for the port."""
 EVIL = "evil.example"
-"""A name that somebody has bound to this machine; any other name is unknown to the browser."""
+"""A name bound to this machine by its DNS; any other name is unknown to the browser."""
 SWITCHES = (
     "headless=new",
     "no-sandbox",  # root has none
@@ -51,7 +51,7 @@ SWITCHES = (
     "remote-debugging-port=0",
 )
 STOP_TIMEOUT = 20.0
-"""How long Chromium may take to end in order; then it is killed [s]."""
+"""The time that Chromium may need to end in order, before it is killed [s]."""
 UNPACKED = ROOT / ".cache/debian/root/usr/lib/chromium/chromium"
 """Chromium as scripts/packages.sh unpacks it; the script of that name on the PATH starts one in /usr only."""
 
@@ -99,7 +99,7 @@ class Chromium:
 
 
 class Servers:
-    """Starts each server for the first who asks for it, and hands out parts; `port` is where it is asked."""
+    """Starts each server at the first request for it, and hands out parts; `port` accepts the requests."""
 
     def __init__(self) -> None:
         self._broker: RabbitMQ | None = None
@@ -178,7 +178,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def given(name: str) -> Any:
-    """Return a part of the run's server of that name; fail or skip the test if there is none."""
+    """Return a part of the run's server named `name`; fail or skip the test without such a server."""
     where = ("127.0.0.1", int(os.environ[PORT]))
     with socket.create_connection(where, 2 * HANG) as asking, asking.makefile("rw") as lines:
         print(name, file=lines, flush=True)

@@ -1,4 +1,4 @@
-"""What the long tests print, told as each of them ends: their figures, though workers run them."""
+"""Output of the long tests, printed as each of them ends: their figures, even from workers."""
 
 import pytest
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from lumen.language.projects import Project
 
 REAL = ("broker", "browser", "network", "npm", "physics", "process")
-"""The marks of what is real, slow and not deterministic."""
+"""The marks of tests with real, slow and nondeterministic parts."""
 TOUCHES = {
     "subprocess.Popen": "starts a process",
     "os.fork": "starts a process",

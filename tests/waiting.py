@@ -58,7 +58,7 @@ def until(
     The failure names the condition: in the words of `what`, else by its source text, with the variables it reads; and
     it ends with what `shown` returns, as a transcript. `meanwhile` is called between two looks, in place of a pause.
     A look that takes long, as one through a browser does, is followed by a longer pause: who waits leaves the machine
-    to what is waited for.
+    to the awaited work.
     """
     deadline = time.monotonic() + timeout
     pause = threading.Event()

@@ -28,7 +28,7 @@ VALUES: dict[str, Any] = {
     # order
     "1 < 2": True, "context.n < 3": True, "context.x <= 1.5": True, "context.x > 1": True, "3 >= context.n": True,
     "'a' < 'b'": True, "'Z' < 'a'": True, "false < true": True, "1 < 1.5": True, "(1 < 2) == true": True,
-    # logic: CEL's, where a decisive operand outweighs an error
+    # logic: CEL's, in which a decisive operand outweighs an error
     "true && false": False, "true || false": True, "!true": False, "!!context.yes": True, "true && true && true": True,
     "false && context.nothing": False, "context.nothing && false": False, "context.nothing || true": True,
     "true || context.n": True, "context.n && false": False, "false || context.nothing == 1 || true": True,

@@ -1,4 +1,4 @@
-"""Whatever a file holds, lint answers with diagnostics."""
+"""Lint answers any content of a file with diagnostics."""
 
 import json
 from copy import deepcopy

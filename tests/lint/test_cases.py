@@ -2,7 +2,7 @@
 
 Each YAML file beside this one is a table of cases. A case changes the project in base/, or that in the folder of the
 table's name: `edit` maps a file to [old, new, …], `write` to its whole content, `nest` to a word in it and the [before,
-after, times] that take its place; `delete` lists the beginnings of paths. `find` lists what lint has to say, as
+after, times] that replace it; `delete` lists the beginnings of paths. `find` lists all findings of lint, as
 "file:line:column code | part of the hint", and " @ file:line:column" where another place is shown first; it must say
 nothing else.
 """

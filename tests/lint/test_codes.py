@@ -1,4 +1,4 @@
-"""Each code of lint: declared once, beside its check, where a search for it finds all of it, and raised somewhere."""
+"""Each code of lint: declared once, beside its check, so that a search finds all its uses; and raised somewhere."""
 
 import ast
 from collections import Counter
@@ -68,7 +68,7 @@ def test_no_code_is_made_in_any_other_way() -> None:
 
 
 def test_a_search_for_a_code_finds_its_declaration_only() -> None:
-    """Whoever raises it uses the value; `tab` and `falls` are words as well."""
+    """Checks that raise it use the declared value; `tab` and `falls` are words as well."""
     counted = Counter(t for f, tree in trees().items() if is_raising(f) for t in texts(tree) if t in codes())
     assert {code: n for code, n in counted.items() if n > 1 and "-" in code} == {}
 

@@ -1,4 +1,4 @@
-"""The words that come with Lumen are sound, and lint shows them to nobody as a file to edit."""
+"""The words that come with Lumen are sound, and lint never presents them as a file to edit."""
 
 from pathlib import Path
 

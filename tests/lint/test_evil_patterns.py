@@ -16,7 +16,7 @@ from tests.guarded import run_guarded
 BASE = Path(__file__).parent / "pages" / "base"
 
 MAX_CPU = 20
-"""How long a program may think [s of CPU]; they need a second."""
+"""The most CPU time that a program may use [s]; they need a second."""
 
 EVIL = ["^(a+)+$", "^(a|aa)*b$", "^((a*)*)*b$", "^(a|a?)+b$", "^(.*)*(.*)*b$", "^" + "a?" * 30 + "a" * 30 + "b$"]
 TEXT = "a" * 10_000 + "!"
@@ -112,7 +112,7 @@ def test_lint_ends(tmp_path: Path) -> None:
 
 
 def thinks(code: str, *words: str) -> str:
-    """What the program prints, which is ended when it has thought for too long."""
+    """Return the program's output; it is killed if it computes for too long."""
     limit = f"import resource; resource.setrlimit(resource.RLIMIT_CPU, ({MAX_CPU}, {MAX_CPU}))\n"
     begin = f"EVIL, TEXT, SHORT = {EVIL!r}, {TEXT!r}, {SHORT!r}\n"
     done = run_guarded([sys.executable, "-c", limit + begin + code, *words], cwd=ROOT, capture_output=True, text=True)

@@ -12,7 +12,7 @@ HEAD = "states:\n  idle:\n    on: {touched: awake}\n"
 
 
 def lint(awake: str) -> list[str]:
-    """What lint says of a behaviour with this second state, its lines counted from it."""
+    """Return lint's findings in a behaviour with this second state, with lines counted from it."""
     files = BASE | {"behaviors/tour.yaml": (HEAD + awake).encode()}
     return [f"{d.place.line - 3}:{d.place.column} {d.code}" for d in check_files(Path("/nowhere"), files)[1]]
 

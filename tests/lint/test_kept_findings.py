@@ -1,4 +1,4 @@
-"""What lint found is kept, and shown again only where everything that lint looks at is as it was."""
+"""Lint stores its findings, and shows them again only if all its inputs are unchanged."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""What lint worked out of each file is kept, and comes to the same as what it works out anew."""
+"""Lint's stored results for each file are equal to the results of a new run."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What a repository uses lint by: the hook of pre-commit, and the GitHub action."""
+"""Lint in a repository: the hook of pre-commit, and the GitHub action."""
 
 import json
 import re
@@ -91,7 +91,7 @@ def hooks(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 
 @pytest.fixture
 def commit(hooks: tuple[Path, str], tmp_path: Path) -> Callable[[Path], CompletedProcess[str]]:
-    """What pre-commit says of all that is staged. `language: system` keeps it from installing what is installed."""
+    """Return pre-commit's result for all staged files. `language: system` keeps it from installing anything."""
     source, revision = hooks
 
     def commit(repository: Path) -> CompletedProcess[str]:
@@ -145,7 +145,7 @@ STEPS: dict[str, dict[str, Any]] = {step.get("id", step.get("name", "")): step f
 
 
 def perform(step: str, repository: Path, **environment: str) -> tuple[CompletedProcess[str], dict[str, str]]:
-    """What a step of the action does in a repository, as GitHub's runner would have it, and its outputs."""
+    """Run a step of the action in a repository, as GitHub's runner would; return the result and the outputs."""
     runner = repository.parent / "runner"
     runner.mkdir(exist_ok=True)
     outputs = runner / "outputs"
@@ -161,7 +161,7 @@ def perform(step: str, repository: Path, **environment: str) -> tuple[CompletedP
 
 @pytest.fixture
 def installed(repository: Path) -> str:
-    """An environment in place of the one that the action makes, in which nothing has to be installed."""
+    """An environment that replaces the action's own, with nothing to install."""
     folder = repository.parent / "environment" / "bin"
     folder.mkdir(parents=True)
     (folder / "python").write_text("#!/bin/sh\n[ \"$1 $2 $3\" = '-m pip install' ]\n")
@@ -236,5 +236,5 @@ def test_the_action_installs_what_is_pinned_and_lints_with_it(repository: Path) 
 
 
 def test_the_action_takes_nothing_from_outside_into_its_commands() -> None:
-    """What an input says reaches the shell as a variable only: `${{ … }}` in a command would be run."""
+    """An input's value reaches the shell as a variable only: `${{ … }}` in a command would be run."""
     assert not [step for step in ACTION["runs"]["steps"] if "${{" in step.get("run", "")]

@@ -45,7 +45,7 @@ def save(file: Path, text: str) -> None:
 
 
 def answer(process: Guarded[str]) -> str:
-    """What it says until it waits; where it does not, the deadline ends it, and with it the pipe."""
+    """Return the output until the process waits; otherwise the deadline ends the process, and with it the pipe."""
     assert process.stdout
     said = ""
     for line in process.stdout:

@@ -1,4 +1,4 @@
-"""A file that nobody has touched is not read again; whoever touches it, however it is done, is seen."""
+"""An unchanged file is not read again; every kind of change to a file is noticed."""
 
 import os
 import time

@@ -1,4 +1,4 @@
-"""What a project does not hold of robots and messages comes with Lumen, and nothing else."""
+"""Files about robots and messages that a project lacks come with Lumen; other files do not."""
 
 import shutil
 from pathlib import Path

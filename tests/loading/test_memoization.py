@@ -1,4 +1,4 @@
-"""What was worked out before is taken again for the same content only."""
+"""Stored results are used again for the same content only."""
 
 from pathlib import Path
 from typing import Any

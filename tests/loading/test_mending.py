@@ -1,4 +1,4 @@
-"""What slipped in a file that is not YAML: looked for in the lines before, and tried."""
+"""Slips in a file that is not YAML: searched in the lines before the error, and corrected on trial."""
 
 from random import Random
 

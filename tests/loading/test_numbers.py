@@ -1,4 +1,4 @@
-"""What counts as a number in plain data."""
+"""Values that count as numbers in plain data."""
 
 from math import inf, nan
 

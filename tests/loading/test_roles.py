@@ -1,4 +1,4 @@
-"""What the parts of a body are: read from models/NAME.yaml, and reported at the word where it can't be."""
+"""The roles of a body's parts: read from models/NAME.yaml, and reported at the word if they are unreadable."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What lumen.yaml leaves out, or can't say because it is no map, has a value that is safe."""
+"""Settings that lumen.yaml lacks, or cannot hold because it is no map, have safe values."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Words files: part of the behaviours that name them, in a project, beside a lone file and in what is exported."""
+"""Words files: part of the behaviours that name them, in a project, beside a lone file and in exports."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Nodes from events: what libyaml's own composer makes of sound files, and an early end where there is too much."""
+"""Nodes from events: equal to those of libyaml's own composer for sound files, and cut short for too large files."""
 
 from pathlib import Path
 

@@ -1,1 +1,1 @@
-"""What lint makes of mistakes that people make, and of what is right; `python -m tests.mistakes` prints the scores."""
+"""Lint's findings in common mistakes and in correct projects; `python -m tests.mistakes` prints the scores."""

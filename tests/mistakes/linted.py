@@ -1,4 +1,4 @@
-"""What lint finds in a project, worked out once in a process: two tests of the same 301 rows ask for it."""
+"""Lint's findings in a project, computed once in a process: two tests read the same 301 rows."""
 
 from collections.abc import Mapping
 from pathlib import Path

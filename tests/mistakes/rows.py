@@ -1,6 +1,6 @@
 """Changes to projects that are sound: mistakes in table/, and in legal/ what looks odd and is right.
 
-Each file has rows by what they show. A row changes one file of a project:
+Each file groups rows by subject. A row changes one file of a project:
 
     a verb without its colon:
       in: tour                      # or museum or talk; the file is its behaviour, if no `file` is named
@@ -8,7 +8,7 @@ Each file has rows by what they show. A row changes one file of a project:
       after: "  dance:"             # `change` begins to look behind this text
       change: ["- {play: dance}", "- play dance"]     # what stands there once, and what the row puts in its place; or
       write: {motions/bow.yaml: "…"}                  # files as a whole
-      found: lumen.yaml             # the file to report it in, where that is another one
+      found: lumen.yaml             # the file to report it in, if it is another one
       at: play dance                # the line to report: the nearest one with this text, else the first that differs
       says: "`play: dance`"         # stands in the message or the hint; of a list, one does
 

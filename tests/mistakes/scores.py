@@ -1,4 +1,4 @@
-"""What lint says of a row, and how many rows it says the right thing of."""
+"""Lint's findings for a row, and the number of rows with the right finding."""
 
 from collections.abc import Iterable
 from typing import NamedTuple

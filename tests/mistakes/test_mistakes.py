@@ -1,4 +1,4 @@
-"""98 of 100 mistakes that people make are told at the line, with what to do, once; nothing is said of what is right."""
+"""98 of 100 common mistakes are reported once, at the line, with advice; correct projects have no findings."""
 
 from functools import cache
 

@@ -1,4 +1,4 @@
-"""What the tests of motions share: the shipped robot, and motions built from the text of a file."""
+"""Helpers of the tests of motions: the shipped robot, and motions built from the text of a file."""
 
 from functools import cache
 
@@ -38,7 +38,7 @@ def read(
 
 
 def made(text: str, **motions: MotionDefinition) -> MotionDefinition:
-    """The motion in the text of a file that has to be right."""
+    """Return the motion in the text of a file, which must be free of findings."""
     motion, diagnostics = read(text, motions=motions)
     assert diagnostics == []
     assert motion is not None

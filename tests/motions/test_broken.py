@@ -1,4 +1,4 @@
-"""Motion files with something wrong: what is said of them, and where. A new case is a new file."""
+"""Motion files with mistakes: the findings and their places. A new case is a new file."""
 
 import re
 from pathlib import Path
@@ -43,7 +43,7 @@ def test_a_misspelt_name_is_guessed() -> None:
 
 
 def test_what_the_schema_took_out_is_not_asked_for() -> None:
-    """One mistake, one finding: a time that is none is not also missing."""
+    """One mistake, one finding: an invalid time is not reported as missing too."""
     _, diagnostics = read("keyframes: [{at: soon, joints: {HeadYaw: 0}}, {at: 1s, joints: {HeadYaw: 0}}]")
     assert len(diagnostics) == 1
 
@@ -61,7 +61,7 @@ def test_what_is_no_motion_is_said_and_not_built(text: str) -> None:
 
 
 def project(**files: str) -> tuple[dict[str, object], list[str]]:
-    """The motions built of a project's files, and the codes of what is wrong, each with its file."""
+    """Return the motions of a project's files, and the codes of the findings, each with its file."""
     sources = {}
     for name, text in files.items():
         document, _ = parse(f"motions/{name}.yaml", text.encode())

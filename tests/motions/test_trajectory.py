@@ -1,4 +1,4 @@
-"""Where a motion has its joints: through every key, inside the limits, without a jump."""
+"""The path of a motion's joints: through every key, inside the limits, without a jump."""
 
 from itertools import pairwise
 
@@ -48,7 +48,7 @@ def test_stays_inside_the_limits_between_keys(motion: MotionDefinition) -> None:
 @pytest.mark.slow
 @given(motions())
 def test_never_leaves_the_range_of_neighbouring_keys(motion: MotionDefinition) -> None:
-    """Whatever the interpolation: only Bezier handles can lead beyond."""
+    """True of every interpolation drawn: only Bezier handles can lead beyond."""
     trajectory = Trajectory(motion)
     for joint, keys in motion.tracks.items():
         angles = [motion.origin[joint], *(key.angle for key in keys)]

@@ -28,7 +28,7 @@ from tests.tour.playing import play
 MUSEUM = ROOT / "examples/museum"
 PAGE = (ROOT / "docs/museum.md").read_text("utf-8")
 TORSO = 0.01
-"""How far ahead of the feet the torso is [m]."""
+"""The distance of the torso ahead of the feet [m]."""
 EXHIBITS = ["clock", "organ", "globe", "telescope", "loom"]
 
 
@@ -49,12 +49,12 @@ def test_the_story_ends_well(museum: Project, name: str) -> None:
 
 
 def test_whatever_happens_nothing_fails(museum: Project) -> None:
-    """A thousand configurations of it; `lumen test examples/museum --explore` goes on from there."""
+    """Explores a thousand configurations; `lumen test examples/museum --explore` explores more."""
     assert explored(museum, "museum", bound=1_000).findings == ()
 
 
 def test_the_page_shows_what_is_there() -> None:
-    """Every line of YAML in docs/museum.md stands in a file of the project, in that order within a block."""
+    """Every line of YAML in docs/museum.md is in a file of the project, in the same order within a block."""
     lines = [line.strip() for file in matching(MUSEUM, "**/*.yaml") for line in file.read_text("utf-8").splitlines()]
     known = {re.sub(r"\s+#.*", "", line) for line in lines}
     blocks = re.findall(r"```yaml\n(.*?)```", PAGE, re.S)
@@ -64,7 +64,7 @@ def test_the_page_shows_what_is_there() -> None:
 
 
 class Watch(Observer):
-    """What is published on the lamps, how loud it speaks, and where the robot says that it is."""
+    """The messages to the lamps, the volumes of the speech, and the robot's reports of arrival."""
 
     def __init__(self) -> None:
         self.lamps: list[tuple[str, float]] = []

@@ -1,4 +1,4 @@
-"""What became of a mutant: lint says something, or it loads and its stories run; anything else is a miss."""
+"""The verdict on a mutant: lint reports it, or it loads and its stories run; anything else is a miss."""
 
 import signal
 import traceback
@@ -47,7 +47,7 @@ class Outcome(NamedTuple):
 
 @contextmanager
 def patience(seconds: float = PATIENCE) -> Iterator[None]:
-    """Raises Hang within it once it has taken that much CPU time; in the main thread only."""
+    """Raise Hang in the body after this much CPU time [s]; works in the main thread only."""
 
     def ring(signum: int, frame: FrameType | None) -> None:
         raise Hang
@@ -134,7 +134,7 @@ class Judge:
         return None
 
     def _touched(self, project: Project, file: str, line: int, random: Random) -> list[Story]:
-        """A few stories that come by what was changed; any of them where nobody can tell."""
+        """Return a few stories that reach the changed line; any stories if that is unknown."""
         name = Path(file).stem
         if file.startswith("behaviors/stories/"):
             return [project.stories[name]] if name in project.stories else []

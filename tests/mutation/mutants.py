@@ -12,7 +12,7 @@ from tests.mutation.text import Sheet
 
 SHIPPED = read_files(ROOT)
 WEIGHTS = {"behaviors/tour.yaml": 30, "lumen.yaml": 12, "fuzzy/head.yaml": 8, "models/nao.yaml": 6}
-"""How often a file is changed; others once, a motion and a story three times."""
+"""The number of times to change a file; others are changed once, a motion and a story three times."""
 
 OF_OTHER_BODIES = tuple(
     f"{folder}{name}" for folder in ("motions/", "models/") for name in ("greeter", "lantern", "sprout")
@@ -24,7 +24,7 @@ IN_TWO_PLACES = ("swap values", "swap lines", "move a key", "exchange files")
 
 
 class Mutant(NamedTuple):
-    """`file` is what was changed, `line` the first that differs, `files` the whole project; `kind` says how.
+    """`file` is the changed file, `line` the first changed line, `files` the whole project; `kind` names the mistake.
 
     `mistakes` counts the places that were changed: two whose values, lines or files were exchanged are two.
     """
@@ -96,7 +96,7 @@ class Nursery:
 
 
 def _sheet(file: str, content: bytes) -> Sheet | None:
-    """The mutant as a file to change again, None where it can't be read any more or is too small."""
+    """Return the mutant as a sheet for another change; None if it is unreadable or too small."""
     try:
         sheet = Sheet(file, content)
     except AssertionError:

@@ -1,4 +1,4 @@
-"""What goes wrong in a YAML file: each operator makes one mistake somewhere in a file."""
+"""Mistakes in a YAML file: each operator makes one somewhere in a file."""
 
 import re
 from collections.abc import Callable, Mapping

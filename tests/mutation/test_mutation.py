@@ -1,4 +1,4 @@
-"""Whatever becomes of the shipped project, lint says what is wrong, or it runs."""
+"""Each mutant of the shipped project is reported by lint, or it runs."""
 
 from statistics import fmean
 

@@ -44,12 +44,12 @@ class Sheet:
         return self.text[:start] + new + self.text[end:]
 
     def entry(self, path: NodePath) -> tuple[int, int]:
-        """Where a key with its value begins and ends."""
+        """Return the offsets of the start of a key and of the end of its value."""
         span = self.document.spans[path]
         return self.offsets(span.key or span.value)[0], self.offsets(span.value)[1]
 
     def without(self, path: NodePath) -> str:
-        """The text without a key and its value; where they have lines of their own, those go."""
+        """Return the text without a key and its value; if they fill whole lines, those lines are removed."""
         start, end = self.entry(path)
         line = self.text.rfind("\n", 0, start) + 1
         if self.text[line:start].strip() == "" and self.text[end : end + 1] in ("\n", ""):

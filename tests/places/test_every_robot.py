@@ -1,4 +1,4 @@
-"""Each robot says where it believes to be, and is led to a place by it; what it claims is held against the truth."""
+"""Each robot reports its estimated place, and is led to a place by it; its report is compared with the truth."""
 
 from collections.abc import Callable, Iterator
 from math import hypot
@@ -39,7 +39,7 @@ def where(robot: Robot) -> Whereabouts:
 
 
 def led(robot: Body, project: Project, name: str, most: float, also: Callable[[], None] = lambda: None) -> list[Event]:
-    """What is raised until the walk to that place is answered, and the answer."""
+    """Return all events until the walk to that place is answered, including the answer."""
     navigator = Navigator(robot, lambda id, command, now: robot.start(id, command))
     navigator.start("d1", name, 0.0)
     events: list[Event] = []

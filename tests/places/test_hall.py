@@ -1,4 +1,4 @@
-"""What lint knows of a hall: the same that MuJoCo makes of it, seen from above; and the ways through it."""
+"""Lint's plan of a hall: the same as MuJoCo's, seen from above; and the ways through it."""
 
 from math import cos, pi, sin
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the tools know of places: stories, exploring, the diff of two versions, the editor."""
+"""Places in the tools: stories, exploring, the diff of two versions, the editor."""
 
 from pathlib import Path
 
@@ -107,7 +107,7 @@ def test_what_changes_of_places_is_told() -> None:
 def test_the_editor_completes_places_and_finds_where_they_stand() -> None:
     text = SHIPPED.text(TOUR)
     walks: Analysis = SHIPPED.changed("lumen.yaml", SHIPPED.text("lumen.yaml").replace(STAGE, PLACES))
-    assert walks.index  # an editor has the names by the time somebody types again
+    assert walks.index  # an editor has the names by the next key
     begun = walks.changed(TOUR, text.replace("{posture: Stand}", "{walk: {to: }}", 1))
     proposed = {item.text for item in complete(begun, *place(begun, TOUR, "{walk: {to: |}}"))}
     assert {"organ", "clock"} <= proposed

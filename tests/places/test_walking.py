@@ -1,4 +1,4 @@
-"""Behaviours that walk to places, with the recording robot: in order, in time, and told of what goes wrong."""
+"""Behaviours that walk to places, with the recording robot: in order, in time, and with reports of failures."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""The pure part of walking to a place: which walk comes next, and where the robot is."""
+"""The pure part of walking to a place: the choice of the next walk, and the robot's position."""
 
 from math import pi
 

@@ -1,4 +1,4 @@
-"""Processes that are killed, and a broker that is: the tour goes on or ends safely, and nothing is done twice."""
+"""Killed processes and a killed broker: the tour continues or ends safely, and no action is repeated."""
 
 import os
 import signal
@@ -43,7 +43,7 @@ def start(copy: Path, broker: RabbitMQ) -> Iterator[Start]:
 
 
 class Dead:
-    """What comes to `lumen.dead` from now on."""
+    """Collects the messages that reach `lumen.dead` from now on."""
 
     def __init__(self, url: str) -> None:
         self._connection = pika.BlockingConnection(pika.URLParameters(url))
@@ -63,7 +63,7 @@ def motions(member: Member) -> list[str]:
 
 
 PATIENCE = 120.0
-"""How long a brain may be away [s]: a crowded machine takes more than the usual 5 s to begin it again."""
+"""The time that a brain may be away [s]: a crowded machine needs more than the usual 5 s to restart it."""
 PATIENT = f"""
 import sys
 from lumen.cli.main import main

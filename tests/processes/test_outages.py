@@ -11,7 +11,7 @@ BENCHMARK = ROOT / "benchmarks/faults.py"
 
 
 def outages(*words: object) -> str:
-    """What the benchmark prints, where everything went well."""
+    """Return the benchmark's output, after checking that it succeeded."""
     done = run_guarded([sys.executable, BENCHMARK, *words], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     return str(done.stdout)

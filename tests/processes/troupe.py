@@ -145,7 +145,7 @@ class Member:
 
 
 class Troupe:
-    """Members that live while somebody waits for something."""
+    """Members that run while a test waits for a condition."""
 
     def __init__(self, folder: Path, url: str) -> None:
         self.folder, self.url, self.speed = folder, url, SPEED
@@ -169,7 +169,7 @@ class Troupe:
         return robot, brain
 
     def kill(self, member: Member) -> None:
-        """It lives no more, and tells nobody; its connections end, as the system sees to."""
+        """End a member without notice to the others; its connections close, as the system would close them."""
         self.members.remove(member)
         member.process.bus.close()
         member.run_directory.close(forget=False)
@@ -208,7 +208,7 @@ class Troupe:
 
 
 def alone(folder: Path, name: str) -> list[object]:
-    """What the behaviour does in one process."""
+    """Return the trace of the behaviour in one process."""
     project = lumen.load(folder)
     story = project.stories[name]
     show = whole(project, set_up("recording", project, "max", story), story=story)
@@ -224,7 +224,7 @@ def alone(folder: Path, name: str) -> list[object]:
 
 
 def deeds(bodies: list[Any], robot: str = "NAO") -> list[Any]:
-    """What a behaviour did by its trace, without times and ids: states entered and left, and commands.
+    """Return a behaviour's actions from its trace, without times and ids: states entered and left, and commands.
 
     Without the states of the tour's region `face`, which depend on how many faces a camera sends.
     """

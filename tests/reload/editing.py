@@ -1,4 +1,4 @@
-"""Random edits of behaviours, and where the behaviours may stand meanwhile."""
+"""Random edits of behaviours, and the snapshots of the behaviours in between."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -33,7 +33,7 @@ def edits(draw: st.DrawFn, before: Data) -> Data:
 
 
 def renaming(draw: st.DrawFn, data: Data) -> None:
-    """Call a state otherwise, and say so or not."""
+    """Rename a state, and declare the rename or not."""
     path, _ = draw(st.sampled_from(list(states_of(data))))
     home, _, key = path.rpartition(".")
     children = _at(data, home)["states"]
@@ -109,7 +109,7 @@ def built(data: Data) -> Machine | None:
 
 
 def snapshots(machine: Machine, events: Happenings) -> list[Snapshot]:
-    """Where the behaviour stands in the beginning, and after each event."""
+    """Return the snapshots of the behaviour at the start and after each event."""
     found: list[Snapshot] = []
     with suppress(LumenError):
         found.append(initial(machine).snapshot)

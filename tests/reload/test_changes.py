@@ -1,4 +1,4 @@
-"""What differs between two bundles, in the words of whoever edits them; and `lumen diff` from the shell."""
+"""The differences of two bundles, in the words of their authors; and `lumen diff` from the shell."""
 
 import json
 import shutil

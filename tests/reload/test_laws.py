@@ -1,4 +1,4 @@
-"""What holds of every reload: random machines, random edits, anywhere a behaviour may stand."""
+"""Laws of every reload: random machines, random edits, any snapshot of a behaviour."""
 
 from contextlib import suppress
 from copy import deepcopy
@@ -100,7 +100,7 @@ def test_the_same_content_does_nothing(data: Data, events: Happenings) -> None:
 @settings(PATIENT, max_examples=15)
 @given(machine_data(deeds=True), happenings)
 def test_what_differs_elsewhere_changes_nothing(data: Data, events: Happenings) -> None:
-    """A new state that nothing leads to: translated, everything is where it was."""
+    """After adding an unreachable state, the migrated snapshot is the same as before."""
     more = deepcopy(data)
     more["context"]["more"] = 1
     before, after = Machine.from_dict(data), Machine.from_dict(more)

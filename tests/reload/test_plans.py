@@ -1,4 +1,4 @@
-"""Edits as somebody would make them, one by one: what stays, where the rest goes, what is remembered."""
+"""Edits that authors make, one by one: the states that remain, the targets of the rest, and the memory kept."""
 
 from typing import Any
 
@@ -38,7 +38,7 @@ ASK, DANCE = TOUR["states"]["talk"]["states"].values()
 
 
 def at(data: dict[str, Any], *events: tuple[str, float]) -> tuple[Machine, Snapshot]:
-    """The machine, and where it stands after these events."""
+    """Return the machine, and its snapshot after these events."""
     machine = Machine.from_dict(data)
     snapshot = initial(machine).snapshot
     for name, time in events:

@@ -164,7 +164,7 @@ def test_no_message_is_lost_while_routes_come_and_go() -> None:
 
 @pytest.mark.parametrize("part", ["approvals", "recorder"])
 def test_where_going_on_with_other_files_fails_all_is_as_before(part: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A fault of ours in the last of what is done."""
+    """A fault in Lumen itself, in the last step of the reload."""
     project = exhibits.project(behaviors={"tour": DANCING})
     exhibition, _ = running(project)
     runtime, other = exhibition.runtime, replace(project, languages=("nl", "en"))

@@ -1,4 +1,4 @@
-"""What keeps a robot from walking, whichever robot it is."""
+"""Hazards that keep any robot from walking."""
 
 from lumen.robot.hazards import STOP_BUTTONS, danger
 

@@ -59,7 +59,7 @@ def test_a_colour_by_name_is_drawn_and_sent_as_it_looks_on_leds() -> None:
 
 
 def groups(schema: Any) -> dict[str, Any]:
-    """What stands below the first `leds` in a schema."""
+    """Return the properties of the first `leds` in a schema."""
     if '"leds"' not in json.dumps(schema):
         return {}
     if isinstance(schema, dict) and "leds" in schema:

@@ -1,4 +1,4 @@
-"""A robot that a person stopped moves for nobody until a person lets it, and says who stopped it."""
+"""A robot that a person stopped moves only after a person releases it, and it reports who stopped it."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""What a body lacks for a command: robots refuse it, behaviours leave it out, and say so in the same words."""
+"""Commands beyond a body's skills: robots refuse them, behaviours leave them out, both with the same words."""
 
 from dataclasses import replace
 from math import inf, nan

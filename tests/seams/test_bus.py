@@ -1,4 +1,4 @@
-"""What every bus promises, asked of each of them."""
+"""Promises of every bus, tested with each of them."""
 
 import threading
 import time

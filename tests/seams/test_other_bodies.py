@@ -47,7 +47,7 @@ def angles(robot: Remote) -> dict[str, float]:
 
 
 def answer(robot: Remote | RecordingRobot, command: RobotCommand) -> tuple[str, object]:
-    """How a command is answered within 15 s, and with what. Ids differ: none is performed twice."""
+    """Return the kind and data of a command's answer within 15 s. Ids differ, so that no command is repeated."""
     robot.start(repr(command)[:20], command)
     [event] = [event for event in live(robot, 15.0) if ".command." in event.name]
     return event.name.split(".")[0], event.data

@@ -84,7 +84,7 @@ def robot(request: pytest.FixtureRequest, project: Project) -> Iterator[Body]:
 
 
 def live(robot: Body, seconds: float) -> list[Event]:
-    """What it answered and noticed in so much time."""
+    """Return the robot's answers and observations in this time [s]."""
     events: list[Event] = []
     for _ in range(round(seconds / 0.02)):
         robot.advance(0.02)

@@ -103,7 +103,7 @@ READINGS: tuple[NumericReading, ...] = (
 
 
 def examples() -> list[tuple[str, Any]]:
-    """Whatever the schema says of each verb by example; those of one value by that."""
+    """Return the schema's examples of each verb; for a verb of fixed values those values."""
     found = []
     for name in (*COMPUTED.values(), *(verb.name for verb in VERBS)):
         schema = ACTION.get(name, {})
@@ -113,7 +113,7 @@ def examples() -> list[tuple[str, Any]]:
 
 
 def loaded(name: str, data: Any) -> Action:
-    """The action that the YAML says so."""
+    """Return the action that Lumen loads from this YAML."""
     root: dict[str, Any] = {"id": "m", "context": dict.fromkeys(("visitor", "asked"), 0)}
     events = {"bored": {"type": "object"}, "enough": {"type": "object"}}
     state = {"do": [{name: data}], "on": dict.fromkeys(events, "a")}
@@ -171,7 +171,7 @@ def test_what_the_yaml_says_is_read_and_written_and_read_again(name: str, data: 
 
 
 class Heard:
-    """Who watches a behaviour from another process."""
+    """Observes a behaviour from another process."""
 
     def __init__(self) -> None:
         self.commands: list[Command] = []

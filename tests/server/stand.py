@@ -21,7 +21,7 @@ DATE = "2015-06-01T09:30:00.000+00:00"
 
 
 class Puppet:
-    """A robot that says what a test wants it to say."""
+    """A robot whose answers and readings a test sets."""
 
     def __init__(self) -> None:
         self.now = 0.0

@@ -1,4 +1,4 @@
-"""What the modules of 2015 wrote, as commands; and what they get told when it can't be done."""
+"""Commands that the modules of 2015 wrote, translated; and the replies for impossible ones."""
 
 from typing import Any
 

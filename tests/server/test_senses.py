@@ -133,7 +133,7 @@ def test_a_sense_that_fails_where_time_waits_is_off_until_another_bundle() -> No
 
 
 def failing(sense: str) -> Any:
-    """What stands for a robot that can't give a sense."""
+    """A stand-in for a robot that can't provide a sense."""
 
     def publish(key: str, body: dict[str, Any], **_: Any) -> None:
         if key.endswith(sense):

@@ -1,4 +1,4 @@
-"""Cases from YAML: a small machine, what happens to it, and what has to come of that."""
+"""Cases from YAML: a small machine, its events, and the expected outcome."""
 
 from collections.abc import Mapping
 from dataclasses import fields

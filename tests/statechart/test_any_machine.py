@@ -76,7 +76,7 @@ def settled(machine: Machine, saved: str) -> str:
 @settings(PATIENT, max_examples=40)
 @given(machine_data(deeds=True), happenings, happenings)
 def test_what_happened_elsewhere_does_not_matter(data: Data, events: Happenings, others: Happenings) -> None:
-    """Whatever a machine keeps for speed, a snapshot goes on as it does in a machine that has kept nothing."""
+    """A machine's caches do not affect a snapshot: it continues as it does in a machine with empty caches."""
     used, fresh = Machine.from_dict(data), Machine.from_dict(data)
     run(used, others)
     assert as_data(run(used, events), used) == as_data(run(fresh, events), fresh)

@@ -1,4 +1,4 @@
-"""Entering a state because a person says so."""
+"""Entering a state at a person's request."""
 
 from typing import Any
 

@@ -99,7 +99,7 @@ def quick(machine: Machine, snapshot: Snapshot, event: Event) -> Step | None:
 
 
 def same(machine: Machine, snapshot: Snapshot, event: Event) -> Step:
-    """The step of the whole algorithm, which the fast path has to give, too, if it gives any."""
+    """Return the step of the whole algorithm; the fast path must return the same, if it returns any."""
     taken, short = in_full(machine, snapshot, event), quick(machine, snapshot, event)
     if short is not None:
         assert short == taken
@@ -151,7 +151,7 @@ def rows(draw: st.DrawFn) -> dict[str, Any]:
 
 @st.composite
 def lively(draw: st.DrawFn) -> Machine:
-    """A random machine that speaks, raises events, does one thing after another, and remembers where it was."""
+    """A random machine that speaks, raises events, runs sequences of actions, and has history states."""
 
     def leaf(kind: str) -> dict[str, Any]:
         data: dict[str, Any] = {key: draw(SOME) for key in ("entry", "exit") if draw(st.booleans())}

@@ -1,4 +1,4 @@
-"""What is wrong in a machine is told with its place; nothing that a dict or a file holds gives a traceback."""
+"""Mistakes in a machine are reported with their place; no content of a dict or a file causes a traceback."""
 
 from contextlib import suppress
 from pathlib import Path

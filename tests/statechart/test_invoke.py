@@ -1,4 +1,4 @@
-"""Behaviours within behaviours: where they come from, what of them is told, and their snapshots."""
+"""Behaviours within behaviours: their origin, their reports, and their snapshots."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What holds of every machine: the same events give the same steps, and a snapshot on the disk loses nothing."""
+"""Laws of every machine: the same events give the same steps, and a snapshot on the disk loses nothing."""
 
 import json
 from collections.abc import Iterator
@@ -105,7 +105,7 @@ def last_awaited(snapshot: Snapshot) -> str:
 
 
 def running(machine: Machine, snapshot: Snapshot) -> Iterator[tuple[Machine, Snapshot]]:
-    """The machine, and all that it has invoked, each with where it stands."""
+    """Yield the machine and all machines that it has invoked, each with its snapshot."""
     yield machine, snapshot
     for id, child in snapshot.invoked.items():
         [name] = [invoke.behavior for invoke in machine.states[child.state].invoke if invoke.id == id]
@@ -183,7 +183,7 @@ def waits_in_active_states(machine: Machine, snapshot: Snapshot) -> None:
 
 
 def ends_once(steps: list[Step]) -> None:
-    """What began ends once, and ids are never used again."""
+    """Each command that began ends once, and ids are never used again."""
     begun: list[str] = []
     ended: list[str] = []
     for taken in steps:

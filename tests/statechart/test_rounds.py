@@ -109,7 +109,7 @@ def test_an_empty_list_is_done_at_once() -> None:
 
 
 def reloaded(visitor: Visitor, words: list[Mapping[str, Any]]) -> None:
-    """Go on with other questions, as a running exhibition does where they are saved."""
+    """Continue with other questions, as a running exhibition does after they are saved."""
     old, new = visitor.robot.machine, quiz({"lists": {"questions": words}}, shuffle=False, most=10)
     plan = migrate(old, new, deserialize(old, visitor.robot.snapshot()))
     assert isinstance(plan, MigrationPlan)

@@ -13,7 +13,7 @@ from tests.tables import for_each
 @for_each("path", CASES, ids=lambda path: path.stem)
 @for_each("again", [False, True], ids=["first", "again"])
 def test_rule(path: Path, again: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    if again:  # every step by the function that is written for what has happened before, if one is
+    if again:  # each step is repeated, so that the function specialized for it, if any, computes it
         step = FastPaths.step
 
         def thrice(self: FastPaths, snapshot: Snapshot, event: Event) -> Step | None:

@@ -32,7 +32,7 @@ def machine(data: dict[str, Any]) -> Machine:
 
 
 def saved(data: dict[str, Any], after: float) -> dict[str, Any]:
-    """What is on the disk when the clock went on for so long [s] and nothing happened."""
+    """Return the snapshot on the disk after this time [s] without an event."""
     it = Interpreter(machine(data), epoch=7200.0)
     it.start()
     it.clock.advance(after)
@@ -212,7 +212,7 @@ RICHES, FULL = machine(RICH), rich()
 def test_any_damage_is_refused_or_does_no_harm(damages: list[tuple[tuple[Any, ...], Any]]) -> None:
     broken: Any = FULL
     for path, value in damages:
-        with suppress(KeyError, TypeError, IndexError):  # an earlier one took it away
+        with suppress(KeyError, TypeError, IndexError):  # an earlier damage removed it
             broken = change(broken, path, value)
     try:
         it = Interpreter.restore(RICHES, broken)

@@ -1,4 +1,4 @@
-"""`answers` in a story: what a language model says, and what comes of it where that is not offered, or nobody asked."""
+"""`answers` in a story: a language model's text, and the effect if it is not offered or not requested."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What a story can say and expect, and how it is told where that is not so."""
+"""Actions and expectations of a story, and the report of one that fails."""
 
 import re
 from collections.abc import Callable

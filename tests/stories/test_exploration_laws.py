@@ -1,4 +1,4 @@
-"""Laws of exploring: what is left out of account changes nothing of what can be reached."""
+"""Laws of exploring: facts that it ignores do not affect the reachable states."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -81,7 +81,7 @@ def test_keys_that_can_not_matter_any_more_do_not_matter(one: Any, other: Any) -
 
 @st.composite
 def homes(draw: st.DrawFn) -> Any:
-    """A state that remembers where it was left, whole or only roughly, and two outside that lead back."""
+    """A state with shallow or deep history, and two outside that lead back."""
     home = draw(regions())
     if draw(st.booleans()):
         home["states"]["p"] = draw(regions("tuv")) | {"on": home["states"]["p"]["on"]}

@@ -1,4 +1,4 @@
-"""A story in which the robot falls fails, unless it says so: `lumen run --story` beside a podium ends badly."""
+"""A story in which the robot falls fails, unless it expects that: `lumen run --story` beside a podium ends badly."""
 
 from types import SimpleNamespace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Verdicts: the same twice, valid for continuous integration, one line for what can't be."""
+"""Verdicts: equal in two runs, valid for continuous integration, one line for each impossible story."""
 
 import json
 import xml.etree.ElementTree as ET

@@ -106,7 +106,7 @@ def test_every_visit_of_the_shipped_stories_is_a_story_that_passes(
 
 
 def _fails_where_something_else_is_said(project: Project) -> None:
-    """Each text that is expected is one that has to be said."""
+    """A story fails if any of its expected texts is replaced."""
     story = project.stories["found"]
     for i, step in enumerate(story.steps):
         if isinstance(step.action, Expect) and step.action.said:

@@ -15,7 +15,7 @@ from lumen.run.kept_explorations import MAX_KEPT, KeptExplorations
 
 @pytest.fixture
 def root(story: Callable[..., Path]) -> Path:
-    """A project with something to find, and a state that nobody comes to."""
+    """A project with something to find, and an unreachable state."""
     found = story("  - wait: 1s\n")
     door = found / "behaviors/door.yaml"
     door.write_text(door.read_text() + "properties:\n  it never opens: {always: \"!In('open')\"}\n")

@@ -56,7 +56,7 @@ def test_what_is_read_where_a_shallow_history_begins_anew_counts() -> None:
     [("event.data == 1", False), ("event.data == 1 && true", False), ("event.data == 1 || true", True)],
 )
 def test_a_key_keeps_its_value_unless_the_new_one_is_sure(guard: str, live: bool) -> None:
-    """What a true guard has surely computed can be computed again; whatever else may fail."""
+    """A value that a true guard surely computed can be computed again; any other computation may fail."""
     way = {"guard": guard, "target": "asks", "actions": {"assign": {"n": "event.data"}}}
     states = {"first": {"on": {"b": SET, "x": way}}, "asks": {"on": {"a": READ}}, "found": {}}
     assert (liveness(states).of(frozenset(("first",)), {}) == {"n"}) == live

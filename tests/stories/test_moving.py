@@ -1,4 +1,4 @@
-"""A behaviour that keeps walking at a speed: in a story, in a turn that takes its time, and written out again."""
+"""A behaviour that keeps walking at a speed: in a story, in a turn of some length, and written out again."""
 
 from math import pi
 

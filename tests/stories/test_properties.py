@@ -1,4 +1,4 @@
-"""`properties`: what has to be so whatever happens, in stories and when a behaviour is explored."""
+"""`properties`: conditions that must always hold, in stories and in the exploration of a behaviour."""
 
 import json
 from collections.abc import Callable

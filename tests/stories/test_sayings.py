@@ -1,4 +1,4 @@
-"""Sayings as tests: `lumen test` tries each in its state, and names the row that took it instead."""
+"""Sayings as tests: `lumen test` tries each in its state, and names the row that matched it instead."""
 
 import json
 import xml.etree.ElementTree as ET

@@ -1,4 +1,4 @@
-"""Faulty code of a package ends with a sentence that names the package; an exhibition goes on without its module."""
+"""Faulty code of a package ends with a sentence that names the package; an exhibition continues without its module."""
 
 import json
 from pathlib import Path

@@ -20,7 +20,7 @@ from tests.tour.names import GUIDE
 
 @dataclass
 class Run:
-    """What happened: texts with their times [s], motions finished, states entered, errors by name, log lines."""
+    """A record of a run: texts with times [s], motions finished, states entered, errors by name, log lines."""
 
     failure: str = ""
     time: float = 0.0

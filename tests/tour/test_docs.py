@@ -1,4 +1,4 @@
-"""What the documentation says of the files is what the files and the schemas say."""
+"""The documentation's claims about the files agree with the files and the schemas."""
 
 import json
 import re
@@ -20,7 +20,7 @@ BLOCKS = re.findall(r"```yaml\n(.*?)```", CHANGE, re.S)
 
 
 def change(project: Path, old: str, new: str) -> None:
-    """Replace a text of the tour once; it has to be there."""
+    """Replace a text of the tour once; it must be there."""
     tour = project / "behaviors" / "tour.yaml"
     text = tour.read_text("utf-8")
     assert old in text

@@ -24,7 +24,7 @@ def test_the_visitor_is_guided_by_any_robot(model: str, monkeypatch: pytest.Monk
 
 
 def test_pepper_is_guided_through_by_the_recording_robot(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nothing is wrong that a model would have shown; its shoulders do not turn inwards, as two gestures would."""
+    """Without a model Pepper has no errors; its shoulders do not turn inwards, as two gestures would."""
     monkeypatch.setenv(MODEL_VARIABLE, "pepper")
     found = lumen.check(ROOT)
     assert not has_errors(found)

@@ -40,7 +40,7 @@ def test_the_shipped_story_in_physics(blind: Project, robot: SimulatedRobot) -> 
 
 @pytest.mark.once
 def test_who_is_pushed_over_gets_up_and_goes_on(blind: Project, robot: SimulatedRobot) -> None:
-    """A push of 70 N from behind while it greets: it says so, stands up by itself, and says that too."""
+    """A push of 70 N from behind during the greeting: the robot reports it, stands up by itself, and reports that."""
 
     def push(now: float) -> None:
         robot.world.data.xfrc_applied[robot.world.torso][0] = 70.0 if 7.0 < now < 7.15 else 0.0

@@ -1,4 +1,4 @@
-"""What the tour's tables hold: both languages everywhere, and for each question an answer of its own."""
+"""Contents of the tour's tables: both languages everywhere, and for each question an answer of its own."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -143,7 +143,7 @@ def test_a_part_of_a_word_is_not_a_phrase(tour: MachineDefinition, text: str, na
 
 
 def test_every_state_of_a_conversation_ends_by_itself(tour: MachineDefinition) -> None:
-    """A long silence, a motion that never ends: whatever happens, somebody else can be greeted."""
+    """A long silence, a motion that never ends: in any case the next visitor can be greeted."""
     for state in leaves(tour, "guide.talking"):
         around = [s for s in tour.states.values() if f"{state.path}.".startswith(f"{s.path}.")]
         assert any(t.delay for s in around for t in s.transitions), state.name

@@ -1,1 +1,1 @@
-"""Files of an older vocabulary: rewritten with their comments, or told what to do about them."""
+"""Files of an older vocabulary: rewritten with their comments, or reported with instructions."""

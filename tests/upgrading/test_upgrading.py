@@ -36,7 +36,7 @@ MADE_UP: Mapping[int, tuple[Migration, ...]] = {
     ),
     2: (polite,),
 }
-"""Two steps of a vocabulary that nobody has: from 1 to 2, and from 2 to 3."""
+"""Two steps of a fictitious vocabulary: from 1 to 2, and from 2 to 3."""
 FILES = {
     "lumen.yaml": b"# the museum\r\nbehavior: tour # the only one\r\nhall: hall.xml\r\n",
     "behaviors/tour.yaml": (
@@ -227,7 +227,7 @@ def test_keys_of_2015_get_the_robot_and_stay_as_aliases(line_break: bytes) -> No
     ],
 )
 def test_what_is_laid_out_otherwise_is_right_or_left(routes: bytes) -> None:
-    """Nothing is written that says something else."""
+    """No rewritten file changes its meaning."""
     files = {"lumen.yaml": b"routes:\n" + routes}
     try:
         after, _ = with_robot_keys(files)

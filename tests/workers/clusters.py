@@ -15,7 +15,7 @@ READY_TIMEOUT = 60.0
 
 @contextmanager
 def dask_cluster(folder: Path, workers: int) -> Iterator[str]:
-    """The address of a scheduler with so many workers, as `--workers` takes it; they keep their files in `folder`."""
+    """Yield the address of a scheduler with so many workers, in the form of `--workers`; `folder` has their files."""
     from distributed import Client
 
     file = folder / "scheduler.json"

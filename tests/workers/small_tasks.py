@@ -1,4 +1,4 @@
-"""Tasks that workers do in tests: they stand in a module, as all tasks do."""
+"""Tasks for the workers of tests: in a module, as all tasks must be."""
 
 import os
 import signal

@@ -29,7 +29,7 @@ def played(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def both(folder: Path, workers: Workers, other: dict[str, bytes] | None) -> tuple[ReplayReport, ReplayReport]:
-    """What one process says, and what the workers do."""
+    """Return the report of one process, and that of the workers."""
     journal, bundles = chosen(folder, None), KeptBundles(folder)
     kit = shared.replay_kit(journal, bundles, other)
     if other is None:

@@ -120,7 +120,7 @@ def test_whatever_ends_it_leaves_no_process_and_no_folder(
         (os.killpg if everybody else os.kill)(running.pid, number)
         _, said = running.communicate(timeout=HANG)
         assert running.returncode == code
-        assert not said or number == signal.SIGKILL  # then multiprocessing's own tracker tells what it cleans up
+        assert not said or number == signal.SIGKILL  # after SIGKILL multiprocessing's own tracker prints its cleanup
     until(lambda: not left(tmp_path))
     assert left(tmp_path) == []
 

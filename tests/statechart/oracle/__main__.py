@@ -34,7 +34,7 @@ def main() -> None:
 
 
 def shape(machine: MachineDefinition, tally: Counter[str]) -> None:
-    """What the machine has of what the end and completion are about."""
+    """Count the parts of the machine that concern ends and completion."""
     states = machine.states.values()
     kinds = [(s.kind, machine.states[s.parent].kind) for s in states if s.parent is not None]
     tally["machines with a parallel state in a parallel state"] += (StateKind.PARALLEL, StateKind.PARALLEL) in kinds

@@ -3,7 +3,7 @@
 No set is kept from one question to the next. Ours is that states have `after`, whose timers begin with the entry and
 end with the exit; that the root is a state, with whose end the machine stops running; that what is done completes the
 parallel states around it all the way up, where the pseudo-code goes up once; that a region of a parallel state may be
-final; and that after `exitInterpreter` the configuration still says where the machine ended.
+final; and that after `exitInterpreter` the configuration still holds the last states of the machine.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ Wanted = Callable[[Transition], bool]
 
 
 class Oracle(Sets):
-    """A machine that runs; `exited`, `entered` and `taken` tell of the last macrostep."""
+    """A running machine; `exited`, `entered` and `taken` describe the last macrostep."""
 
     def __init__(self, machine: MachineDefinition) -> None:
         super().__init__(World(machine, dict(machine.context)))

@@ -29,7 +29,7 @@ class RestlessError(Exception):
 
 @dataclass
 class Waiting:
-    """A timer: of an `after` where it has a state, else of a `send`; due [s] to the nanosecond."""
+    """A timer: of an `after` if it has a state, else of a `send`; due [s] to the nanosecond."""
 
     event: str
     due: float
@@ -59,7 +59,7 @@ class World:
     started: int = 0
 
     def scope(self, here: State) -> Scope:
-        """What an expression standing in that state sees."""
+        """Return the scope of an expression in that state."""
         event = {"name": self.event.name, "data": self.event.data} if self.event else None
         names = {name for s in self.configuration for name in (s.path, s.alias) if s.path and name}
         return Scope(dict(self.context), event, {"path": here.path, "language": ""}, names.__contains__, self.at)

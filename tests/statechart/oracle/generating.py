@@ -63,7 +63,7 @@ def machines(*, deeds: bool = False) -> st.SearchStrategy[Machine]:
 
 
 class Making:
-    """One machine being made: first the tree of its states, then what stands in each."""
+    """One machine under construction: first the tree of its states, then the contents of each."""
 
     def __init__(self, draw: st.DrawFn, deeds: bool) -> None:
         self.draw, self.deeds = draw, deeds
@@ -147,7 +147,7 @@ class Making:
         return self.bounded() if inner and self.chance(95) else self.transition()
 
     def bounded(self) -> Data:
-        """A transition that is taken a few times only."""
+        """Return a transition that can fire a few times only."""
         data = self.transition(f"context.n < {self.draw(st.integers(1, 9))}")
         data["actions"] = [{"assign": {"n": "context.n + 1"}}, *data.get("actions", [])]
         return data

@@ -40,7 +40,7 @@ def compare(machine: MachineDefinition, events: list[Happening | None], tally: C
 
 
 def happened(snapshot: Snapshot | None, happening: Happening | None) -> Event:
-    """The event that a happening is: the next timer, where there is one, or something from outside."""
+    """Return the event of a happening: for None the next timer, or else an event from outside."""
     at = snapshot.at if snapshot else 0.0
     if happening is None:
         return (snapshot and due(snapshot)) or Event("b.c", None, at)
@@ -48,7 +48,7 @@ def happened(snapshot: Snapshot | None, happening: Happening | None) -> Event:
 
 
 def by_lumen(machine: MachineDefinition, snapshot: Snapshot | None, event: Event) -> Step | None:
-    """The step by the function written for what has happened before, where one is; the first time decides nothing."""
+    """Return the step after repeating it, so that specialized functions, if any, compute it; None if it never rests."""
     try:
         return initial(machine) if snapshot is None else [step(machine, snapshot, event) for _ in range(3)][-1]
     except LumenError as error:

@@ -1,4 +1,4 @@
-"""What the pseudo-code of Appendix D asks of states; every answer is looked for anew in the machine."""
+"""Questions of Appendix D's pseudo-code about states; every answer is computed from the machine again."""
 
 from collections.abc import Iterable
 
