@@ -40,7 +40,7 @@ CROWD = 4
 PERIOD, QUOTA = 100_000, 50_000
 """Half a core: this many microseconds of each period."""
 ENDING = 60.0
-"""The time that an interrupted pytest has to end its fixtures, before it is killed [s]."""
+"""The time for an interrupted pytest to end its fixtures, before it is killed [s]."""
 LINGERING = 60.0
 """The time that processes of tests have to end by themselves after pytest [s]."""
 USUAL = {"quiet": 8, "crowded": 8, "half": 4}

@@ -11,7 +11,7 @@ from pathlib import Path
 NEEDLESS = re.compile(
     r"rabbitmq_(?!prelaunch|mqtt)|(accept|amqp10_client|base64url|cow|eetcd|enough|gun|jose|prometheus|quantile)"
 )
-"""Plugins that no broker here enables, and what only those need."""
+"""Plugins that no broker here enables, and the dependencies that only those need."""
 NEEDED = ("amqp10_client",)
 """The plugins that rabbitmq_shovel needs."""
 

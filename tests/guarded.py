@@ -88,7 +88,7 @@ def _tell(guardian: IO[bytes], line: str) -> None:
 
 @cache
 def _guardian() -> IO[bytes]:
-    """The writing end of the pipe to this process's guardian, which is begun when it is first needed."""
+    """Return the writing end of the pipe to this process's guardian; the first call starts it."""
     guardian = subprocess.Popen(
         [sys.executable, "-I", "-S", __file__], stdin=PIPE, stdout=DEVNULL, bufsize=0, start_new_session=True
     )
@@ -99,7 +99,7 @@ def _guardian() -> IO[bytes]:
 
 
 def guard() -> None:
-    """Be a guardian: read what is started until standard input closes, then end it all."""
+    """Run as a guardian: register programs and folders until standard input closes, then end and delete them all."""
     for ignored in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(ignored, signal.SIG_IGN)
     groups: set[int] = set()
@@ -133,7 +133,7 @@ def _end(groups: set[int]) -> None:
 
 
 def _lives(group: int) -> bool:
-    """Whether a process of that group is there; one that was killed and not waited for is."""
+    """Return whether a process of that group exists; a zombie counts."""
     try:
         os.killpg(group, 0)
     except ProcessLookupError:

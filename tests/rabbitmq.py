@@ -108,7 +108,7 @@ class RabbitMQ:
 
     @property
     def ctl(self) -> str:
-        """How rabbitmqctl is called for this broker."""
+        """Return the command that calls rabbitmqctl for this broker."""
         environment = [f"{name}={value}" for name, value in self._environment().items()]
         tool = Path(self._script).with_name("rabbitmqctl")
         return shlex.join(["env", *environment, str(tool), "-n", f"t{self.port}@localhost"])
@@ -287,7 +287,7 @@ def _rights(user: str) -> tuple[str, str, str]:
 
 
 def _hashed(password: str) -> str:
-    """As RabbitMQ stores it: four bytes of salt, and SHA-256 of salt and password."""
+    """Return the password hash in RabbitMQ's form: four bytes of salt, and SHA-256 of salt and password."""
     salt = b"salt"
     return base64.b64encode(salt + hashlib.sha256(salt + password.encode()).digest()).decode()
 
@@ -321,7 +321,7 @@ def _listens(port: int) -> bool:
 
 
 def _speaks_amqp(port: int) -> bool:
-    """Whether a broker answers there: to the wrong version of the protocol it names its own."""
+    """Return whether a broker answers there: to a wrong version of the protocol it sends its own."""
     try:
         with socket.create_connection(("127.0.0.1", port), timeout=1.0) as connection:
             connection.sendall(b"AMQP\x00\x00\x00\x00")

@@ -83,7 +83,7 @@ class Chromium:
 
     @property
     def runs(self) -> bool:
-        """Whether it is there and listens: one that crashes is there for a while."""
+        """Return whether it runs and listens: a crashed Chromium exists for a while."""
         with suppress(OSError), socket.create_connection(("127.0.0.1", self.port), HANG):
             return self._process.poll() is None
         return False

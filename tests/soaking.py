@@ -4,7 +4,7 @@ import pytest
 
 
 class Figures:
-    """Writes to the terminal what a test marked `soak` has printed, and how long it took."""
+    """Writes the output of each test marked `soak` to the terminal, and its duration."""
 
     def __init__(self, terminal: pytest.TerminalReporter) -> None:
         self.terminal = terminal

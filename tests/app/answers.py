@@ -1,4 +1,4 @@
-"""The child of a `JudgeProcess` that does what it is asked to."""
+"""The child process of a `JudgeProcess` that answers correctly."""
 
 import os
 import signal

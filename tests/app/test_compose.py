@@ -1,4 +1,4 @@
-"""How an exhibition is composed: rows in order, conditions, claimed parts, and what is closed if a maker fails."""
+"""The composition of an exhibition: rows in order, conditions, claimed parts, and cleanup after a failed maker."""
 
 from collections.abc import Sequence
 

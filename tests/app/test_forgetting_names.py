@@ -39,7 +39,7 @@ def test_names_are_forgotten_one_at_a_time_and_each_once() -> None:
 
 
 class Waiting:
-    """A clock for the one who waits; what another process does meanwhile happens in each pause."""
+    """A clock for the waiting process; in each of its pauses the other process works."""
 
     def __init__(self, work: Callable[[], object]) -> None:
         self.now, self.pauses, self._work = 0.0, 0, work

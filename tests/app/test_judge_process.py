@@ -1,4 +1,4 @@
-"""A process that answers questions: what it answers, how it ends without an answer, and that it starts again."""
+"""A process that answers questions: its answers, its end without an answer, and its restart."""
 
 import sys
 import threading

@@ -1,4 +1,4 @@
-"""The lines of a transcript: what a robot's answer to a command adds to them."""
+"""The lines of a transcript, and the additions by a robot's answer to a command."""
 
 from typing import Any
 

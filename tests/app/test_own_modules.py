@@ -38,7 +38,7 @@ class Time:
 
 
 def alive(pid: int) -> bool:
-    """Whether a process runs; one that has ended and was not waited for does not."""
+    """Return whether a process runs; a zombie does not."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:
@@ -142,7 +142,7 @@ def test_a_flood_of_lines_is_bounded(processes: "Starter") -> None:
 
 
 def test_close_ends_all_that_the_program_has_started(processes: "Starter") -> None:
-    """Even what ignores SIGTERM, and what was started in the background."""
+    """Even a program that ignores SIGTERM, and its background processes."""
     process = processes("sh", "-c", "trap '' TERM; sleep 1000 & echo $$ $!; wait")
     process.tick()
     pids = [int(word) for word in printed(process, 1)[0].split()]
@@ -188,7 +188,7 @@ class Watched:
         self.part.begin(0.0)
 
     def tick(self, seconds: float = 0.0) -> list[str]:
-        """The events of a tick so much later."""
+        """Return the events of a tick this much later [s]."""
         self.time.now += seconds
         before = len(self.events)
         self.part.tick(0.0, ())

@@ -35,7 +35,7 @@ def bus(broker: RabbitMQ) -> Iterator[Any]:
 
 
 class Failing:
-    """Work that fails so many times, and is done then."""
+    """Work that fails `times` times, and then succeeds."""
 
     def __init__(self, times: int, error: BaseException) -> None:
         self.left, self.error, self.done = times, error, threading.Event()

@@ -29,7 +29,7 @@ from tests.waiting import until
 
 
 class Turn:
-    """A lock that counts who has asked for it."""
+    """A lock that counts the attempts to acquire it."""
 
     def __init__(self) -> None:
         self.asked, self._lock = 0, threading.Lock()
@@ -43,7 +43,7 @@ class Turn:
 
 
 class SlowJudge:
-    """Is asked until another asks as well; counts how many were there at once."""
+    """Judges until a second judgement starts; counts the most that ran at once."""
 
     def __init__(self) -> None:
         self.most, self.turn, self._count = 0, Turn(), threading.Lock()

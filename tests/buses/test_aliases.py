@@ -25,7 +25,7 @@ def project() -> Project:
 
 @pytest.fixture
 def stranger() -> Iterator[Bus]:
-    """A module of 2015, which knows of no project."""
+    """A bus for a module of 2015, which has no project."""
     bus = connect("memory://aliases")
     yield bus
     bus.close()

@@ -122,7 +122,7 @@ def flood(bus: Bus, key: str) -> None:
 
 
 def taken(bus: Bus, key: str) -> bool:
-    """Whether the bus takes one message more."""
+    """Return whether the bus accepts one more message."""
     try:
         bus.publish(key, "taken")
     except BusFullError:

@@ -41,7 +41,7 @@ def opened(tmp_path: Path) -> Iterator[Opened]:
 
 
 def ended(wire: socket.socket) -> bool:
-    """Whether the other side closes the connection."""
+    """Return whether the other side closes the connection."""
     try:
         while wire.recv(1 << 16):
             pass
@@ -183,7 +183,7 @@ def test_who_does_not_read_slows_nobody_and_fills_no_memory(opened: Opened, monk
 
 
 class Narrow:
-    """A wire that takes so many bytes, and then no more."""
+    """A wire that accepts `room` bytes, and then no more."""
 
     def __init__(self, room: int) -> None:
         self.room, self.taken = room, b""

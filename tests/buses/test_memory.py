@@ -89,7 +89,7 @@ def test_buses_without_a_name_are_strangers_and_a_name_is_shared(address: str) -
 
 
 def flooded(bus: Bus, count: int) -> None:
-    """Publish so many numbers while a subscriber on another thread holds up the bus; return when it has gone on."""
+    """Publish `count` numbers while a subscriber on another thread blocks the bus; return after it has continued."""
     inside, release = threading.Event(), threading.Event()
 
     def slow(message: Message) -> None:

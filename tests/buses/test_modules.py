@@ -32,7 +32,7 @@ def running(*command: str, url: str) -> Iterator[Guarded[str]]:
 
 
 def program(name: str, folder: Path) -> tuple[str, ...]:
-    """How a module is run; one in JavaScript finds its packages in `folder`."""
+    """Return the command that runs a module; one in JavaScript finds its packages in `folder`."""
     if name.endswith(".py"):
         return sys.executable, str(MODULES / name)
     shutil.copy(MODULES / name, folder)

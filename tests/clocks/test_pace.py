@@ -34,7 +34,7 @@ class Outside:
 
 
 class World:
-    """Something simulated that takes so much longer than real time, and may stumble."""
+    """A simulated world that needs `slowness` times real time, and can stumble."""
 
     def __init__(self, outside: Outside, slowness: float = 0.5) -> None:
         self.outside, self.slowness, self.stumble, self.lived = outside, slowness, 0.0, 0.0

@@ -1,4 +1,4 @@
-"""The cases of the SCION test framework, and what our importer and interpreter make of them.
+"""The cases of the SCION test framework, and their results in our importer and interpreter.
 
 A case is a statechart in SCXML and, mostly, a driver: which states have to be active at first, and after each of some
 events. `scripts/fetch.py` fetches them.
@@ -108,7 +108,7 @@ ADJUSTED = {
 
 
 class Outcome(NamedTuple):
-    """How a case with a driver ended.
+    """The outcome of a case with a driver.
 
     `as_given` and `passed` are False if the importer leaves something out. `why` holds the reasons, empty if it passed.
     """

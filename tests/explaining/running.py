@@ -59,7 +59,7 @@ def _answers(one: RecordedStep) -> list[Event]:
 
 
 class Outcome(NamedTuple):
-    """Something that happened at a time: what was entered, or done."""
+    """A state that was entered, or an action that was done, at a time."""
 
     at: float
     what: str

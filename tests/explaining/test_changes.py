@@ -47,7 +47,7 @@ guards = st.recursive(
 
 
 def possible(machine: Machine, guard: str) -> bool:
-    """Whether any values at all make it true, of some hundreds that are tried."""
+    """Return whether any of several hundred combinations of values makes the guard true."""
     context = product(
         (-5, 3, 20), (-9, 10, 40), ("Budi", "a", "b", "c", "", "xxxxx"), (True, False), (["a"], ["a", "b"], [])
     )
@@ -69,7 +69,7 @@ def possible(machine: Machine, guard: str) -> bool:
 
 
 def check(guard: str, tally: Counter[str]) -> None:
-    """A guard that is false: what is proposed makes the transition be taken."""
+    """For a false guard, the proposed change lets the transition fire."""
     data: Any = {"id": "m", "initial": "a", "context": CONTEXT, "phrases": PHRASES, "states": {"a": {}, "b": {}}}
     data["states"]["a"]["on"] = {"e": {"guard": guard, "target": "b"}}
     machine = Machine.from_dict(data)

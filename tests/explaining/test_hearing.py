@@ -151,7 +151,7 @@ def refused(play: Play, state: str) -> dict[str, Any]:
 
 
 def _leads(play: Play, change: Any, number: int, state: str) -> bool | None:
-    """Whether the proposed change leads to the state; None if nothing is proposed."""
+    """Return whether the proposed change leads to the state; None if there is no proposal."""
     if change is None:
         return None
     one = play.steps[number]

@@ -13,7 +13,7 @@ MACHINE = guide()
 
 
 def rows(path: str, text: str, context: dict[str, Any] | None = None) -> dict[str, str]:
-    """Why each row is taken or not, the first of those that have the same key."""
+    """Return the reason for each row's result, for the first row of each key."""
     found = explained(MACHINE, path, text, {**first_context(MACHINE), **(context or {})})
     why: dict[str, str] = {}
     for row in found.rows:

@@ -1,4 +1,4 @@
-"""`why` names what matters: without the cause it did not happen, and without what is not named it did."""
+"""`why` names the causes that matter: without them the event is absent, and without all others it still occurs."""
 
 from collections import Counter
 

@@ -24,7 +24,7 @@ MOST = 4
 
 
 def happens(machine: MachineDefinition, steps: list[RecordedStep], reason: Reason, state: str) -> bool:
-    """Whether the state is entered once what the reason proposes is so."""
+    """Return whether the state is entered after the reason's proposed change."""
     assert reason.change
     one = steps[reason.number]
     decided = reason.because in ("guard", "preempted")

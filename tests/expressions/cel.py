@@ -56,7 +56,7 @@ def in_cel(part: Any) -> Any:
 
 
 def same(one: Outcome, other: Outcome) -> bool:
-    """Whether two outcomes are the same, 1, 1.0 and true being three values."""
+    """Return whether two outcomes are the same; 1, 1.0 and true are three values."""
     return repr(_ordered(one)) == repr(_ordered(other))
 
 
@@ -70,7 +70,7 @@ def _ordered(value: Any) -> Any:
 
 
 def compare(node: ExpressionNode, scope: Scope) -> bool:
-    """Whether the expression has the same outcome in both.
+    """Return whether the expression has the same outcome in both.
 
     AssertionError if it differs although all parts agree, and it is not in the table of docs/expressions.md.
     """
@@ -83,7 +83,7 @@ def compare(node: ExpressionNode, scope: Scope) -> bool:
 
 
 def is_meant(node: ExpressionNode, scope: Scope, ours: Outcome, theirs: Outcome) -> bool:
-    """Whether this one step from the values of its parts is among the differences that the table promises."""
+    """Return whether the table lists the difference in this one step from the values of the parts."""
     values = [by_lumen(unparse(child), scope)[1:] for child in children(node)]
     flat = [leaf for value in values for leaf in leaves(list(value))]
     kinds = {type(value) for value in flat}

@@ -119,7 +119,7 @@ OPERATORS = st.sampled_from(["+", "-", "*", "/", "%", "==", "!=", "<", "<=", ">"
 
 @st.composite
 def flat(draw: st.DrawFn) -> str:
-    """Operands and operators in a row, hardly a bracket: who belongs to whom is for the grammar to say."""
+    """Operands and operators in a row, with few brackets, so that precedence decides their grouping."""
     parts = []
     for _ in range(draw(st.integers(1, 6))):
         prefix = draw(PREFIXES)

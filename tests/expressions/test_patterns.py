@@ -1,4 +1,4 @@
-"""Patterns find what Python's `re` finds, and what could take for ever is refused."""
+"""Patterns match the same texts as Python's `re`; patterns that could run for ever are refused."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Random machines of everything that formats have to carry, and what happens to them."""
+"""Random machines with every element that formats must carry, and events for them."""
 
 from contextlib import suppress
 from typing import Any

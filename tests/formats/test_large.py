@@ -14,7 +14,7 @@ import pytest
 from lumen.cli.main import main
 
 SMALL, TIMES, SLACK = 100, 5, 2.0
-"""A file of five times as many may take ten times as much; what is quadratic takes 25 times."""
+"""A file five times as large may take ten times as much; a quadratic algorithm takes 25 times."""
 
 
 def scxml(*parts: str) -> str:

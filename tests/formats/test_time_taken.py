@@ -20,7 +20,7 @@ from tests.loading.test_yaml_composer import DEEP
 pytestmark = pytest.mark.soak
 
 SMALL, TIMES, SLACK = 400, 5, 2.0
-"""A file of five times as many may take ten times as long; what is quadratic takes 25 times."""
+"""A file five times as large may take ten times as long; a quadratic algorithm takes 25 times."""
 
 
 def seconds(do: Callable[[], object]) -> float:

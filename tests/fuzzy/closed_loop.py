@@ -84,6 +84,6 @@ def run(
 
 
 def off_by(face: Vector3, yaw: float, pitch: float) -> Pose:
-    """The head's pose [rad] that is so far [deg] beside the one that centres the face."""
+    """Return the head's pose [rad] with this offset [deg] from the pose that centres the face."""
     goal = centring(face, TOP)
     return goal[0] + radians(yaw), goal[1] + radians(pitch)

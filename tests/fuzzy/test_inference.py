@@ -23,7 +23,7 @@ Y = {
 
 
 def controller(**changes: Any) -> Controller:
-    """Two inputs `a`, `b`, one output `c`, with what the test changes."""
+    """Return a controller with inputs `a` and `b`, output `c`, and these changes."""
     output = {**Y, **changes.pop("output", {})}
     rules = changes.pop("rules", ["if a is low then c is small", "if a is high and b is high then c is big"])
     return Controller.from_dict({"inputs": {"a": X, "b": X}, "outputs": {"c": output}, "rules": rules, **changes})

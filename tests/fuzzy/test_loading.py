@@ -1,4 +1,4 @@
-"""Broken controller files: each fault at its word, all of them in one run, and nothing said twice."""
+"""Broken controller files: each fault at its word, all of them in one run, and none twice."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Where points appear in NAO's top camera, and the head that centres them."""
+"""The positions of points in NAO's top camera, and the head pose that centres them."""
 
 from math import radians
 

@@ -1,4 +1,4 @@
-"""Controllers that move no joint: what they tell, when, and how often."""
+"""Controllers that move no joint: their signals, and the times and rates of them."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""The text of a rule: what it says, and the word at which it stops saying it."""
+"""The text of a rule: its meaning, and the word at which it becomes invalid."""
 
 from contextlib import suppress
 

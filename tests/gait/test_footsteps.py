@@ -1,4 +1,4 @@
-"""Where the feet go."""
+"""The positions of footsteps."""
 
 import pytest
 from hypothesis import given

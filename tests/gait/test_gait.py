@@ -1,4 +1,4 @@
-"""A walk whose legs do exactly what they are told, on ground that never gives way: the plan alone."""
+"""A walk with legs that follow exactly, on ground that never gives way: the plan alone."""
 
 from collections.abc import Mapping
 from math import pi
@@ -73,7 +73,7 @@ def test_stopped_at_any_moment_it_ends_with_its_feet_together_within_a_second(mo
 
 
 def test_a_foot_that_slipped_around_is_taken_into_account() -> None:
-    """In its third step the torso turns by 0.2 rad that the encoders know nothing of."""
+    """In its third step the torso turns by 0.2 rad that the encoders do not measure."""
     gait = walking(Pose(0.5, 0.0, 0.0))
     angles, ticks, turned = dict(gait.angles), 0, [0.0]
     while tick := gait.tick(angles, gait.heading + (0.2 if gait.steps == 2 else 0.0)):

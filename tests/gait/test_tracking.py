@@ -1,4 +1,4 @@
-"""Where the bearing foot is believed to stand, by what legs and gyrometer tell."""
+"""The estimated position of the supporting foot, from legs and gyrometer."""
 
 import pytest
 

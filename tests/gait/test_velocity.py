@@ -1,4 +1,4 @@
-"""Walking on and on, with legs that do exactly what they are told: the plan alone."""
+"""Continuous walking, with legs that follow exactly: the plan alone."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -27,7 +27,7 @@ def mass(legs: Mapping[str, float]) -> NDArray[np.float64]:
 
 
 class Legs:
-    """Do what the gait says; no joint turns faster than it can."""
+    """Legs that follow the gait, with no joint faster than its limit."""
 
     def __init__(self, gait: Gait) -> None:
         self.gait, self.angles = gait, dict(gait.angles)
@@ -42,7 +42,7 @@ class Legs:
         return True
 
     def walk(self, ticks: int) -> None:
-        """Let it walk for so many ticks of 0.01 s."""
+        """Walk for this number of ticks of 0.01 s."""
         assert all(self.tick() for _ in range(ticks))
 
     def end(self) -> int:

@@ -67,7 +67,7 @@ def command_text(command: Any) -> Any:
 
 @contextmanager
 def told_to_robots(tell: Callable[[float, str, str, Any], None]) -> Iterator[None]:
-    """Call `tell` with the time, the verb, the id and the command of all that a recording robot is told."""
+    """Call `tell` with the time, the verb, the id and the command of each call of a recording robot."""
     start, cancel = RecordingRobot.start, RecordingRobot.cancel
 
     def started(robot: RecordingRobot, id: str, command: Any) -> None:
@@ -158,7 +158,7 @@ def replayed(file: Path, bundles: KeptBundles) -> Iterator[Replayed]:
 
 
 def read_positions(file: Path, event: str) -> list[int]:
-    """Where in a journal that event came from outside."""
+    """Return the positions in a journal at which that event came from outside."""
     entries = read_journal(file).entries
     return [entry.position for entry in entries if entry_data(entry).get("heard") == event]
 
@@ -217,7 +217,7 @@ def _how(found: Any, project: lumen.Project) -> list[str]:
 
 
 def _standing(now: dict[str, Any]) -> list[str]:
-    """States, context, timers and what is under way in a snapshot."""
+    """Return states, context, timers and pending work of a snapshot."""
     lines = [f"  states {' '.join(now['configuration'])}", f"  context {in_one_line(now['context'])}"]
     lines += [f"  timer {one['event']} in {one['due'] - now['at']:.6f} of {one['delay']:g} s" for one in now["timers"]]
     return [*lines, *(f"  {what} {in_one_line(now[what])}" for what in ("doing", "halted", "history") if now[what])]

@@ -17,7 +17,7 @@ lumen_main = command_line.main
 
 
 def findings(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
-    """Return what lint finds in these files, in its order."""
+    """Return lint's findings in these files, in its order."""
     return check_files(root, files)[1]
 
 
@@ -41,5 +41,5 @@ def verbs() -> dict[str, argparse.ArgumentParser]:
 
 
 def options(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
-    """Yield what a parser accepts, in the order of its help."""
+    """Yield the options and arguments of a parser, in the order of its help."""
     yield from parser._actions

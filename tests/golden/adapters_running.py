@@ -121,7 +121,7 @@ def described(node: Node) -> dict[str, Any]:
 
 
 def end(node: Node) -> None:
-    """As SIGTERM does."""
+    """End the node as SIGTERM does."""
     node.interrupt(2, leave=True)
 
 

@@ -65,7 +65,7 @@ def faults(names: list[str], floors: Counts) -> Iterator[str]:
 
 
 def written() -> Iterator[str]:
-    """Yield what a function `test_…` of each file of tests/ is called when it is collected."""
+    """Yield the collected name of each function `test_…` in the files of tests/."""
     for file in sorted(TESTS.rglob("*.py")):
         if "projects" not in file.parts:
             yield from _written(ast.parse(file.read_bytes()).body, str(file.relative_to(ROOT)))

@@ -19,7 +19,7 @@ CHECKOUT = ROOT
 
 
 class Outcome(NamedTuple):
-    """How a call of `lumen` ended; paths begin with FOLDER, or CHECKOUT for what comes with Lumen."""
+    """The outcome of a call of `lumen`; paths begin with FOLDER, or CHECKOUT for files that come with Lumen."""
 
     code: int
     out: str

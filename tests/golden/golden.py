@@ -1,4 +1,4 @@
-"""Recordings that are kept, and their comparison with what the engine does now.
+"""Stored recordings, and their comparison with the engine's present results.
 
 A subject is a module of `tests/golden/subjects` with
 
@@ -51,7 +51,7 @@ def differences(recorded: Path, now: Path) -> list[str]:
 
 
 def record(name: str, folder: Path) -> None:
-    """Write what a subject is now into an empty folder."""
+    """Write the present recording of a subject into an empty folder."""
     folder.mkdir(parents=True, exist_ok=True)
     make: Callable[[Path], None] = subject(name).record
     make(folder)

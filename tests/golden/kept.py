@@ -1,4 +1,4 @@
-"""Where the recorded journals and homes are put to be read: as `.lumen/` of a project."""
+"""The recorded journals and homes, placed as `.lumen/` of a project to be read."""
 
 import shutil
 from functools import cache

@@ -1,4 +1,4 @@
-"""A wire between a client and a server that keeps what the client sends."""
+"""A wire between a client and a server that records the client's bytes."""
 
 import socket
 import threading

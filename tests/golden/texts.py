@@ -25,7 +25,7 @@ def in_one_line(data: Any) -> str:
 
 
 def rounded(value: float, digits: int) -> str:
-    """A number with so many digits after the point, and never `-0`."""
+    """Return a number with this many digits after the point, and never `-0`."""
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
 

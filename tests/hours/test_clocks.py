@@ -25,7 +25,7 @@ HALL = {
 
 
 def when(text: str) -> float:
-    """That time [s since 1970] by the clock in Berlin."""
+    """Return that time of Berlin's clock in s since 1970."""
     return datetime.fromisoformat(f"{text}+02:00").timestamp()
 
 

@@ -19,7 +19,7 @@ from tests.waiting import HANG, until
 
 
 class Hall:
-    """The two robots' processes on one broker, and what people ask of them."""
+    """The two robots' processes on one broker, and the commands of operators."""
 
     def __init__(self, root: Path, url: str, capsys: pytest.CaptureFixture[str]) -> None:
         self.root, self.url, self._capsys = root, url, capsys
@@ -50,7 +50,7 @@ class Hall:
         process.wait(HANG)
 
     def call(self, verb: str, *flags: str) -> tuple[int, str]:
-        """Its exit code, and all that it says."""
+        """Return the exit code and all output."""
         self._capsys.readouterr()
         code = main([verb, *flags, str(self.root), "--bus", self.url])
         said = self._capsys.readouterr()

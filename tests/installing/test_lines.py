@@ -1,4 +1,4 @@
-"""Every command of ours that installs Lumen, in the documents and in what Lumen says, installs it."""
+"""Every command that installs Lumen, in the documents and in Lumen's messages, installs it."""
 
 import json
 import re
@@ -34,7 +34,7 @@ REPOSITORY = "lumen-robot @ git+https://github.com/OWNER/lumen@COMMIT"
 
 
 def lines() -> Iterator[tuple[str, str]]:
-    """The page and what follows `pip install` of each such line that is there."""
+    """Yield the page and the words after `pip install` of each such line."""
     for pattern in PAGES:
         for page in matching(ROOT, pattern):
             for found in COMMAND.finditer(page.read_text()):
@@ -113,7 +113,7 @@ def test_dm_control_is_pinned_for_every_python_and_labmaze_where_it_has_a_wheel(
 
 
 def planned(folder: Path, *command: str) -> set[str]:
-    """The names of what pip would install."""
+    """Return the names of the packages that pip would install."""
     report = folder / "report.json"
     more = ("--dry-run", "--report", str(report))
     done = run_guarded([*installing.PIP, *command, *more], timeout=HANG, capture_output=True, text=True)

@@ -41,7 +41,7 @@ def bundle(machine: MachineDefinition) -> Project:
 
 @dataclass
 class Recorded:
-    """A run that is written into `folder`; `again` is what its journal comes to."""
+    """A run that is recorded into `folder`; `again` returns the replay of its journal."""
 
     folder: Path
     steps: list[Step] = field(default_factory=list)

@@ -33,7 +33,7 @@ def packed(rows: list[RecordedEntry], per_frame: int) -> bytes:
 
 
 def is_prefix_at_every(step: int, seed: int) -> int:
-    """Cut a file at every so many bytes; how many cuts those were."""
+    """Cut a file at every `step` bytes; return the number of cuts."""
     rows = entries(12, seed)
     data, begins, longest = packed(rows, 1 + seed % 4), len(HEADER.line()), 0
     for end in range(begins, len(data) + 1, step):

@@ -38,7 +38,7 @@ def begun(folder: JournalFolder | None, tail: JournalTail | None = None) -> Jour
 
 
 def named(*names: str) -> list[Step]:
-    """A visitor after another says their name."""
+    """Return the steps of visitors who give their names one after another."""
     told = [initial(MACHINE)]
     for name in names:
         for event in (Event("come"), Event("heard", {"name": name}), Event("go")):

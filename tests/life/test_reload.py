@@ -19,7 +19,7 @@ from tests.nodes import whole
 
 
 class Told(RecordingRobot):
-    """Remembers how it was told to live."""
+    """Remembers its styles of life."""
 
     lives: list[Live]
 

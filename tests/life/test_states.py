@@ -1,4 +1,4 @@
-"""`life` of states: which style is meant, and when the robot is told."""
+"""`life` of states: the style that applies, and the time at which the robot receives it."""
 
 import pytest
 
@@ -64,7 +64,7 @@ def test_a_behaviour_that_says_nothing_is_still() -> None:
 
 
 class Listening(RecordingRobot):
-    """Remembers in which styles it was told to live."""
+    """Remembers the styles of life that it received."""
 
     def start(self, id: str, command: RobotCommand) -> None:
         if isinstance(command, Live):

@@ -1,4 +1,4 @@
-"""`--fix` and `--diff`: what is repaired, what is left to its author, and that nothing gets worse."""
+"""`--fix` and `--diff`: repairs, mistakes left to the author, and no change for the worse."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -23,7 +23,7 @@ TOUR, WAVE = "behaviors/tour.yaml", "motions/wave.yaml"
 
 
 def fixed(file: str, old: str, new: str) -> bytes:
-    """That file of the small project after old became new, and then all was repaired that can be."""
+    """Return that file of the small project with `old` replaced by `new`, after all possible repairs."""
     text = BASE[file].decode()
     assert text.count(old) == 1
     files = {**BASE, file: text.replace(old, new).encode()}

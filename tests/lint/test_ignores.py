@@ -1,4 +1,4 @@
-"""`# lumen: ignore[CODE] reason`: what it hides, what it can't, and what is wrong with it."""
+"""`# lumen: ignore[CODE] reason`: findings that it hides, findings that it can't, and its own mistakes."""
 
 from pathlib import Path
 

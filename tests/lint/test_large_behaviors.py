@@ -12,7 +12,7 @@ from lumen.project.building import draft
 from tests.formats.test_large import calls
 
 SMALL, TIMES, SLACK = 100, 5, 2.0
-"""A file of five times as many may take ten times as much; what is quadratic takes 25 times."""
+"""A file five times as large may take ten times as much; a quadratic algorithm takes 25 times."""
 
 PROJECT = b"name: x\nbehavior: hello\nlanguages: [en]\nrobot: {name: NAO, model: nao}\n"
 

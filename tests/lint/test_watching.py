@@ -38,7 +38,7 @@ def watching(project: Path) -> Iterator[Guarded[str]]:
 
 
 def save(file: Path, text: str) -> None:
-    """Save it at once: what is watched is never half of it."""
+    """Save the file in one step, so that lint never reads half of it."""
     draft = file.with_name(f".{file.name}.new")
     draft.write_text(text)
     draft.replace(file)

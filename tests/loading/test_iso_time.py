@@ -1,4 +1,4 @@
-"""Times as texts: what programs read, and what people read."""
+"""Times as texts: for programs and for people."""
 
 from datetime import time
 

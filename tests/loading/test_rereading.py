@@ -69,7 +69,7 @@ def edited(text: str, at: int, column: int, gone: int, word: str) -> str:
 
 
 def told(document: Document | None, found: Any) -> Any:
-    """All that is known of a document, in its order."""
+    """Return all parts of a document, in its order."""
     known = document and (document.data, [*document.spans.items()], document.text, document.dropped)
     return known, found
 

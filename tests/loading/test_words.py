@@ -86,7 +86,7 @@ def test_words_go_along_into_other_formats_and_come_back() -> None:
 
 
 def test_a_change_of_words_is_seen_at_once_and_told_once_in_their_file() -> None:
-    """A behaviour is read anew where only the words that it names have changed."""
+    """A behaviour is read again if only the words that it names have changed."""
     files = {**read_files(ROOT), "behaviors/guide.yaml": b"words: faq\nstates: {a: {on: {heard: a}}}\n"}
     old = b"I weigh a little more than five kilograms."
     before, _ = check_files(ROOT, files)

@@ -10,7 +10,7 @@ _found: dict[tuple[Path, frozenset[tuple[str, bytes]]], tuple[Diagnostic, ...]] 
 
 
 def findings(root: Path, files: Mapping[str, bytes]) -> tuple[Diagnostic, ...]:
-    """Return what lint finds in these files, in its order."""
+    """Return lint's findings in these files, in its order."""
     key = root, frozenset(files.items())
     if key not in _found:
         _found[key] = check_files(root, files)[1]

@@ -9,7 +9,7 @@ from tests.mistakes.rows import Row
 
 
 class Judged(NamedTuple):
-    """A row, what lint found, and whether that is at the line, names what to do, and is one thing."""
+    """A row, lint's findings, and whether they are at the line, name the remedy, and are only one."""
 
     row: Row
     found: tuple[Diagnostic, ...]

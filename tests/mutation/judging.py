@@ -62,7 +62,7 @@ def patience(seconds: float = PATIENCE) -> Iterator[None]:
 
 
 class Seen(Observer):
-    """Which states a story enters and which motions it plays."""
+    """Collects the states that a story enters and the motions that it plays."""
 
     def __init__(self) -> None:
         self.names: set[str] = set()
@@ -77,7 +77,7 @@ class Seen(Observer):
 
 
 def _sound(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> bool:
-    """Whether a finding has a known code and words, and points into a file."""
+    """Return whether a finding has a known code and words, and points into a file."""
     place = diagnostic.place
     height = files.get(place.file, b"").decode("utf-8", "replace").count("\n") + 2
     ordered = (place.line, place.column) <= (place.end_line, place.end_column)

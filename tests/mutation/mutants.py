@@ -17,7 +17,7 @@ WEIGHTS = {"behaviors/tour.yaml": 30, "lumen.yaml": 12, "fuzzy/head.yaml": 8, "m
 OF_OTHER_BODIES = tuple(
     f"{folder}{name}" for folder in ("motions/", "models/") for name in ("greeter", "lantern", "sprout")
 )
-"""How the names of files begin that are not read where NAO is the robot."""
+"""The beginnings of the names of files that are not read if NAO is the robot."""
 
 IN_TWO_PLACES = ("swap values", "swap lines", "move a key", "exchange files")
 """Kinds of change after which two places are wrong, and two findings right."""
@@ -74,11 +74,11 @@ class Nursery:
         return Mutant(number, kinds[0], file, _first(SHIPPED[file], content), {**SHIPPED, file: content}, mistakes)
 
     def mutants(self, seed: int, count: int) -> Iterator[Mutant]:
-        """So many mutants, from that number on."""
+        """Yield `count` mutants, from number `seed` on."""
         return (self.mutant(number) for number in range(seed, seed + count))
 
     def _whole(self, random: Random, number: int, file: str) -> Mutant:
-        """A file is gone, called otherwise, empty, or holds what another one should."""
+        """Delete, rename or empty a file, or exchange its content with another one's."""
         files, kind = dict(SHIPPED), random.choice(["delete a file", "rename a file", "exchange files", "binary file"])
         other = random.choice(self.names)
         match kind:

@@ -240,7 +240,7 @@ def test_a_trial_ends_with_all_its_processes(tmp_path: Path, tests: list[str], h
 
 
 def works_in(pid: int, folder: Path) -> bool:
-    """Whether a process has this working folder."""
+    """Return whether a process has this working folder."""
     try:
         return Path(f"/proc/{pid}/cwd").readlink() == folder
     except OSError:

@@ -6,7 +6,7 @@ from lumen.project.yaml_reader import parse
 
 
 class Sheet:
-    """A file with the places of its nodes; what it gives back is the text of a mutant."""
+    """A file with the places of its nodes; its methods return the text of a mutant."""
 
     def __init__(self, file: str, content: bytes) -> None:
         document, found = parse(file, content)
@@ -28,7 +28,7 @@ class Sheet:
         return node
 
     def offsets(self, place: Place) -> tuple[int, int]:
-        """Where in the text a place begins and ends, without the blanks behind a block."""
+        """Return the start and end of a place in the text, without the blanks behind a block."""
         start = self._starts[place.line - 1] + place.column - 1
         end = self._starts[min(place.end_line, len(self._starts)) - 1] + place.end_column - 1
         return start, start + len(self.text[start:end].rstrip())

@@ -16,7 +16,7 @@ HALL = (Path(ROOT) / "models" / "hall.xml").read_bytes()
 
 
 def on_the_floor(content: bytes) -> bytes:
-    """The hall, its robot beside the podium."""
+    """Return the hall with the robot on the floor next to the podium."""
     return content.replace(b'name="stage" pos="0 0 0.5"', b'name="stage" pos="0.9 0.4 0"')
 
 

@@ -27,7 +27,7 @@ PROJECT = project(messages=messages())
 
 
 class Hall:
-    """A bus and a time that passes when told to."""
+    """A bus and a clock that the test advances."""
 
     def __init__(self) -> None:
         self.bus, self.time = connect("memory://"), 0.0

@@ -134,7 +134,7 @@ class Member:
 
     @property
     def states(self) -> frozenset[str]:
-        """Where the behaviour stands; nowhere before it has begun."""
+        """Return the active states of the behaviour; none before it has begun."""
         assert self.brain
         snapshot = self.brain.behavior.loop.runtime._snapshot
         return snapshot.configuration if snapshot else frozenset()
@@ -192,12 +192,12 @@ class Troupe:
             member.process.tick()
 
     def live(self, seconds: float) -> None:
-        """So much real time."""
+        """Run for this much real time [s]."""
         end = time.monotonic() + seconds
         self.until(lambda: time.monotonic() >= end)
 
     def rounds(self, count: int) -> None:
-        """So many ticks of each."""
+        """Run this many ticks of each member."""
         for _ in range(count):
             self._tick()
 

@@ -48,7 +48,7 @@ def renaming(draw: st.DrawFn, data: Data) -> None:
 
 
 def deletion(draw: st.DrawFn, data: Data) -> None:
-    """Take a state away; what led to it leads to one beside it."""
+    """Remove a state; transitions to it lead to a sibling instead."""
     path, _ = draw(st.sampled_from(list(states_of(data))))
     home, _, key = path.rpartition(".")
     children = _at(data, home)["states"]

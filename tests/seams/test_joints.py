@@ -1,4 +1,4 @@
-"""No joint is told to leave its limits or its speed, whoever sends the command: by a robot that obeys everything."""
+"""No command makes a joint leave its limits or its speed: tested with a robot that obeys everything."""
 
 import re
 import shutil
@@ -109,7 +109,7 @@ class Obedient:
 
 
 def outside(command: RobotCommand, body: Body) -> list[str]:
-    """Everything that the command asks of a joint beyond its limits or its speed."""
+    """Return all demands of the command beyond the limits or the speed of a joint."""
     match command:
         case Look(yaw, pitch):
             return _outside(body.roles.head_joints(yaw, pitch), body)

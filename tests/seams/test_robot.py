@@ -24,7 +24,7 @@ from tests.features.naoqi.lockstep import Lockstep
 
 
 class Body(Robot, Hall, Protocol):
-    """A robot that lives when it is told to."""
+    """A robot whose time a test advances."""
 
     def advance(self, dt: float) -> None: ...
 

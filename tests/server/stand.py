@@ -58,7 +58,7 @@ class Puppet:
 
 
 class Stand:
-    """A server with its puppet, its bus, and all that is said on it."""
+    """A server with its puppet, its bus, and all messages on it."""
 
     def __init__(
         self, bus: Bus | None = None, *listeners: CommandListener, direct: bool = False, **changes: Any

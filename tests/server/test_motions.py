@@ -1,4 +1,4 @@
-"""Motions as data: what is sent is what is played, and nothing else is played."""
+"""Motions as data: the robot plays the motion that was sent, and nothing else."""
 
 from typing import Any
 

@@ -141,7 +141,7 @@ def test_anything_wrong_anywhere_is_told_or_runs(data: st.DataObject, sound: Dat
 
 
 def built(data: Data) -> tuple[Machine | None, Sequence[Diagnostic]]:
-    """The machine, or what is wrong with it."""
+    """Return the machine, or None, and the findings."""
     try:
         return Machine.from_dict(data), ()
     except ProjectError as error:

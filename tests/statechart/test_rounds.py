@@ -40,7 +40,7 @@ class Visitor:
                 self.pending = command.id
 
     def plays(self, knows: Callable[[Mapping[str, Any]], bool]) -> list[int]:
-        """Play to the end of the round; the numbers of the questions asked."""
+        """Play to the end of the round; return the numbers of the questions."""
         self.robot.send("start")
         asked = []
         while "quiz.ask" in self.robot.configuration:
@@ -48,7 +48,7 @@ class Visitor:
         return asked
 
     def answers(self, knows: Callable[[Mapping[str, Any]], bool]) -> int:
-        """Answer the question that was asked; its number."""
+        """Answer the present question; return its number."""
         text = self.said[-1]
         number = next(i for i, q in enumerate(QUESTIONS) if q["ask"][self.language] == text)
         right = QUESTIONS[number]["right"][self.language][0]

@@ -1,4 +1,4 @@
-"""Which stories a word means: a name, a pattern, a file; and a file elsewhere none."""
+"""The stories that a word selects: by a name, a pattern or a file; a file elsewhere selects none."""
 
 from pathlib import Path
 

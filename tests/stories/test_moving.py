@@ -36,7 +36,7 @@ def test_it_walks_on_until_the_state_is_left() -> None:
 
 
 def ended(robot: RecordingRobot, id: str, limit: float) -> float:
-    """When that command was answered with `done` [s]."""
+    """Return the time at which that command was answered with `done` [s]."""
     while robot.time < limit:
         robot.advance(0.1)
         if any(e.name == f"done.command.{id}" for e in robot.poll()):

@@ -1,4 +1,4 @@
-"""Small behaviours that hear, and what a sentence does in them."""
+"""Small behaviours that hear, and their reactions to a sentence."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -71,7 +71,7 @@ def said(machine: Machine, text: Any, snapshot: Snapshot | None = None) -> Step:
 
 
 def taken(machine: Machine, text: str) -> str:
-    """The state that a sentence leads to; `asked` if it is not left."""
+    """Return the state that a sentence leads to; `asked` if it is not left."""
     (state,) = said(machine, text).snapshot.configuration
     return state
 

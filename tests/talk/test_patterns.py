@@ -1,4 +1,4 @@
-"""Phrases as patterns: their forms, and what can't be read."""
+"""Phrases as patterns: their forms, and unreadable ones."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Plays a story in virtual time, on the recording robot or another, and keeps what happened."""
+"""Plays a story in virtual time, on the recording robot or another, and records the run."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -42,7 +42,7 @@ class Performer(Robot, Hall, Protocol):
 
 
 class Log(Observer):
-    """Keeps in a run what it sees."""
+    """Records its observations in a run."""
 
     def __init__(self, run: Run) -> None:
         self.run = run

@@ -36,13 +36,13 @@ STORIES = sorted(path.stem for path in matching(ROOT, "behaviors/stories/*.yaml"
 
 @pytest.fixture(scope="module")
 def coverage(project: Project) -> Coverage:
-    """Of what `run` has played."""
+    """The coverage of all stories that `run` has played."""
     return Coverage(project)
 
 
 @pytest.fixture(scope="module")
 def run(project: Project, coverage: Coverage):  # type: ignore[no-untyped-def]
-    """Plays a story once, however many tests ask for it."""
+    """Return a function that plays each story once, however many tests call it."""
 
     @cache
     def played(name: str) -> Run:

@@ -20,7 +20,7 @@ def process(kit: UnpackedKit, number: int) -> int:
 
 
 def of_sigterm(kit: UnpackedKit, number: int) -> bool:
-    """Whether SIGTERM ends this process at once."""
+    """Return whether SIGTERM ends this process at once."""
     return signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 

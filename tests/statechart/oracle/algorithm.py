@@ -173,7 +173,7 @@ class Oracle(Sets):
 
 
 def matches(transition: Transition, name: str) -> bool:
-    """Whether the descriptor matches the event's name (3.12.1); `onDone` and `onError` want the whole name."""
+    """Return whether the descriptor matches the event's name (3.12.1); `onDone` and `onError` need the whole name."""
     descriptor = transition.event
     if transition.exact:
         return descriptor == name

@@ -187,7 +187,7 @@ class Making:
         return (p for p in self.states if p and p != home and (not home or p.startswith(f"{home}.")))
 
     def meet(self, one: str, other: str) -> bool:
-        """Whether two states lie in different regions of a parallel state, or one in the other."""
+        """Return whether two states are in different regions of a parallel state, or one is in the other."""
         left, right = one.split("."), other.split(".")
         common = 0
         while common < min(len(left), len(right)) and left[common] == right[common]:
