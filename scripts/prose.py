@@ -58,7 +58,7 @@ ENGINE = "engine/lumen"
 TEXTS = "engine/lumen/features/console/pages/texts/en.js"
 LIMIT = 1.0
 """Hits per 1,000 words in all that users read first."""
-OTHER_PAGES, CODE = 5.0, 1.0
+OTHER_PAGES, CODE, TOOLS = 5.0, 1.0, 3.0
 """The rates of the rest, which must not grow."""
 CHANGED = 2.0
 """Hits per 1,000 words in changed lines; one is always allowed."""
@@ -216,6 +216,9 @@ def groups() -> Iterator[Counted]:
         CODE,
         _all(comments, [file for file in every if file.startswith(ENGINE) and file.endswith(".py")]),
     )
+    python = [file for file in every if file.endswith(".py")]
+    beside = [file for file in python if file.startswith(("scripts/", "benchmarks/"))]
+    yield Counted("docstrings and comments of scripts and benchmarks", TOOLS, _all(comments, beside))
     added = changed_lines()
     yield Counted(
         "changed lines", CHANGED, [told for file in added for told in prose(file) if told.line in added[file]], spare=1
