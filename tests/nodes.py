@@ -33,6 +33,6 @@ def whole(
     language: str = "",
     silent: bool = False,
 ) -> Exhibition:
-    """Make visitor, robot and brain alone, not yet begun; the bus ends with them."""
+    """Make an exhibition of visitor, robot and brain alone, not yet started; the bus ends with them."""
     options = {"operated": False}
     return Exhibition(Plan(project, setup, url, story, narrator, language=language, silent=silent, options=options))

@@ -53,7 +53,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 class Expectations:
-    """Adds to the report of a test its name, and what it expected if it failed; runs where the test runs."""
+    """Adds to the report of a test its name, and its expectation if it failed; runs in the process of the test."""
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(

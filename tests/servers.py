@@ -45,7 +45,7 @@ SWITCHES = (
     "force-prefers-reduced-motion",
     "hide-scrollbars",
     "lang=en-GB",
-    # Each window has two hidden pages of the address bar otherwise: half of what a window costs.
+    # Without it each window has two hidden pages of the address bar: half of the cost of a window.
     "disable-features=WebUIOmniboxPopup,WebUIOmniboxAimPopup,WebUIOmniboxFullPopup,AimEnabled,OmniboxPopup",
     f"host-resolver-rules=MAP {EVIL} 127.0.0.1, MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
     "remote-debugging-port=0",

@@ -26,7 +26,7 @@ TOUCHES = {
     "socket.bind": "opens a port",
     "socket.connect": "opens a connection",
 }
-"""Audit events of the interpreter that a deterministic test does not raise, and what they mean."""
+"""Audit events of the interpreter that a deterministic test does not raise, and their meanings."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -1,4 +1,4 @@
-"""The child process of a `JudgeProcess` that answers correctly."""
+"""The child process of a `JudgeProcess`: it answers, or fails in the way that the question names."""
 
 import os
 import signal

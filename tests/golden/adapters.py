@@ -181,7 +181,7 @@ def forked(
 def continued(
     old: lumen.Project, new: lumen.Project, frozen: dict[str, Any], away: float, unchanged: float
 ) -> list[str]:
-    """How a start continues from a snapshot, after the engine was away [s]: sentences, or why it does not."""
+    """Return how a start continues from a snapshot, `away` [s] after the end: sentences, or the reason against it."""
     found = resume(old, new, deserialize(old.machine, frozen), away, ("head", "gone"), unchanged)
     return _how(found, new)
 

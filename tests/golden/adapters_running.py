@@ -209,7 +209,7 @@ def _reached(part: Part) -> set[str]:
 
 
 def _reach(value: Any, found: set[str], of: Part, depth: int) -> None:
-    """Add the words for a service, another part or an observer, and for what a callable was made of."""
+    """Add the words for a service, another part or an observer, and for the objects that a callable holds."""
     words = {**OBSERVERS, **SERVICES, **PARTS}
     name = NAMES.get(type(value).__name__, type(value).__name__)
     if value is of or depth == 0:

@@ -14,7 +14,7 @@ TWO = "robots:\n  ana: {model: nao, at: {y: -0.4}}\n  ben: {model: nao, at: {y: 
 ALERTS = "alerts: {to: [{command: [./told.sh]}]}\n"
 TOLD = "alerts.jsonl"
 PROGRAM = f'#!/bin/sh\nread -r line\necho "$line" >> {TOLD}\n'
-"""Of the one who is told: a line for each alert, written at once, for two may come at the same time."""
+"""The program that receives alerts: it writes each as one line at once, since two may come at the same time."""
 
 
 def small(folder: Path, *, robots: int = 1, more: str = "") -> Path:

@@ -111,7 +111,7 @@ def _signature(value: Any) -> str:
 
 
 class _Told:
-    """Something whose `repr` is what a reader is to see of it."""
+    """An object whose `repr` is the text that a reader sees."""
 
     def __new__(cls, annotation: Any) -> Any:
         if annotation is inspect.Parameter.empty:

@@ -56,7 +56,7 @@ def test_none_is_left_when_the_first_is_killed(name: str, tmp_path: Path) -> Non
 
 
 def _beneath(pid: int) -> dict[int, str]:
-    """The processes that one has begun, and those that they have, with their command lines."""
+    """Return the descendants of a process, with their command lines."""
     parents = {int(entry.name): _parent(int(entry.name)) for entry in Path("/proc").iterdir() if entry.name.isdigit()}
     found: dict[int, str] = {}
     above = {pid}

@@ -22,7 +22,7 @@ from tests.golden import adapters_running
 from tests.guarded import PIPE, Guarded
 
 TICKS = 5
-"""After how many ticks of each a process is looked at: all parts that can begin have begun."""
+"""The number of ticks of each node before a process is examined: by then all parts that can start have started."""
 PLAIN = {
     "COLUMNS": "100",
     "LANG": "C.UTF-8",

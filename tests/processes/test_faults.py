@@ -172,7 +172,7 @@ def test_ctrl_c_ends_each_process_cleanly_and_who_waits_says_for_whom(start: Sta
 
 @pytest.mark.soak
 def test_the_whole_tour_in_four_processes(troupe: Troupe, start: Start) -> None:
-    """Everybody is a process of their own; the tour of `make run` is what it is in one."""
+    """Each part is a process of its own; the tour of `make run` is the same as in one process."""
     expected = alone(troupe.folder, "visitor")
     others = [start("robot", speed="1"), start("motion", speed="1"), start("brain", "--story", "visitor", speed="1")]
     visitor = start("visitor", "--story", "visitor", speed="1")

@@ -1,4 +1,4 @@
-"""Robot, brain, motion and visitor apart, on a real broker: what they do is what one process does."""
+"""Robot, brain, motion and visitor apart, on a real broker: the same actions as in one process."""
 
 from itertools import count
 from typing import Any

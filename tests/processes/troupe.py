@@ -69,13 +69,13 @@ steps:
 
 
 PAUSE_ROUNDS = 200
-"""After so many ticks of each, what came to nothing is sent again."""
+"""The number of ticks of each member after which `insist` sends its message again."""
 LONGEST_ROUND = 0.25
 """The most [s] that passes for the clocks of the members while each of them ticks once."""
 
 
 class RoundTime:
-    """The time outside without what a slow machine adds to a round, so that no visitor is silent because of it."""
+    """The outside time without the delays of a slow machine, so that they do not silence a visitor."""
 
     def __init__(self) -> None:
         self._last, self._now, self._left = time.monotonic(), 0.0, LONGEST_ROUND

@@ -1,4 +1,4 @@
-"""Laws of every machine, `do` and timers included; and every fault put into a sound one is told, at its place."""
+"""Laws of every machine, `do` and timers included; and every fault put into a sound one is reported at its place."""
 
 import json
 from collections.abc import Callable, Iterator, Sequence

@@ -1,4 +1,4 @@
-"""The shell around `step`: the clock, snapshots on the disk, and what it refuses."""
+"""The shell around `step`: the clock, snapshots on the disk, and refused calls."""
 
 import json
 from typing import Any

@@ -25,7 +25,7 @@ def quiz(words: Mapping[str, Any] = WORDS, **loop: Any) -> Machine:
 
 
 class Visitor:
-    """Plays with the machine, and hears what it says; `knows` answers an entry."""
+    """Plays with the machine and hears its texts; `knows` decides whether an entry is answered correctly."""
 
     def __init__(self, machine: Machine, language: str, seed: int = 0) -> None:
         self.said: list[str] = []

@@ -1,4 +1,4 @@
-"""SCXML's Appendix D and what the design adds to it, rule by rule: one YAML file each."""
+"""SCXML's Appendix D and the design's additions to it, rule by rule: one YAML file each."""
 
 from pathlib import Path
 

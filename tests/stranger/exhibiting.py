@@ -1,4 +1,4 @@
-"""A project that uses what the stranger's distribution adds."""
+"""A project that uses the additions of the stranger's distribution."""
 
 from pathlib import Path
 

@@ -136,7 +136,7 @@ class FrameReader:
         return self._count
 
     def taken(self) -> list[tuple[str, dict[str, Any]]]:
-        """The messages since the last call: key, and what the frames say."""
+        """Return the messages since the last call: the key, and the contents of the frames."""
         messages, self._messages = self._messages, []
         return messages
 

@@ -31,7 +31,7 @@ CHART = """<scxml xmlns="http://www.w3.org/2005/07/scxml" initial="a">
 
 
 def record(folder: Path) -> None:
-    """Write what the parsers accept, their help, and the outcome of each call."""
+    """Write the options of the parsers, their help, and the outcome of each call."""
     parsers = verbs()
     write_json(folder / "accepted.json", {name: list(map(_accepted, options(one))) for name, one in parsers.items()})
     with workplace() as work:
@@ -108,7 +108,7 @@ def _option_strings(parser: argparse.ArgumentParser) -> set[str]:
 
 
 def _accepted(action: argparse.Action) -> dict[str, Any]:
-    """Return what a program could rely on: words of help are in help/."""
+    """Return the properties that a program could rely on; the words of help are in help/."""
     found = {
         "options": list(action.option_strings),
         "metavar": action.metavar,

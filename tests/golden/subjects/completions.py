@@ -1,4 +1,4 @@
-"""The completion scripts of bash, zsh and fish, and what they complete."""
+"""The completion scripts of bash, zsh and fish, and their completions."""
 
 import shutil
 from pathlib import Path

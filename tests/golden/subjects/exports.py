@@ -14,7 +14,7 @@ FORMATS = {"scxml": "scxml", "xstate": "json", "mermaid": "mmd", "dot": "dot"}
 
 
 def record(folder: Path) -> None:
-    """Write each export as a file, and in `findings.json` what it could not carry over."""
+    """Write each export as a file, and the findings about the parts it leaves out in `findings.json`."""
     found = {}
     with workplace() as work:
         for name in SHIPPED:

@@ -111,7 +111,7 @@ def of_the_book(oracle: Oracle) -> dict[str, Any]:
 
 
 def shown(event: Event) -> tuple[Any, ...]:
-    """An event without the reason of a fault, which is told in the interpreter's own words."""
+    """Return an event without the reason of a fault, whose words are the interpreter's own."""
     data = {"where": event.data["where"]} if event.name == "error.execution" else event.data
     return event.name, data, event.at
 
