@@ -262,7 +262,7 @@ def _end(process: Guarded[bytes] | None, how: signal.Signals) -> None:
 
 
 def _definitions(hosts: Sequence[str], *, nowhere: bool) -> dict[str, object]:
-    """What the broker imports: each host with all users; `nowhere`: what nobody waits for goes to `lumen.nowhere`."""
+    """Return the definitions: each host with all users; `nowhere` sends unroutable messages to `lumen.nowhere`."""
     return {
         "vhosts": [{"name": host} for host in hosts],
         "users": [

@@ -178,7 +178,7 @@ class Troupe:
         until(condition, meanwhile=self._tick)
 
     def insist(self, send: Callable[[], object], condition: Callable[[], object]) -> None:
-        """Send what may be old by the time that a slow machine has carried it, again and again until that holds."""
+        """Send a message that a slow machine may deliver too late, again and again until the condition holds."""
         rounds = count()
 
         def holds() -> object:
