@@ -2,6 +2,7 @@
 
 import logging
 import os
+import time
 from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
@@ -123,7 +124,7 @@ class LiveBehavior:
         now = self.loop.clock.now
         self.loop.start(
             language=language or (story.language if story else ""),
-            epoch=story_epoch(story, timezone) - now() if story else date_of_zero(now),
+            epoch=story_epoch(story, timezone) - now() if story else date_of_zero(now, time.time),
             timezone=timezone,
             context=story.context if story else None,
         )

@@ -13,7 +13,7 @@ READINGS = 5
 """How often both clocks are read if a crowded machine suspends the process between two readings."""
 
 
-def date_of_zero(now: Callable[[], float], wall: Callable[[], float] = time.time) -> float:
+def date_of_zero(now: Callable[[], float], wall: Callable[[], float]) -> float:
     """Return the date [s since 1970] of time 0 of the clock `now` [s], by the machine's clock `wall`.
 
     A process that is suspended between its readings of the two clocks would see a jump that never happened. So `now` is
