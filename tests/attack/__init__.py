@@ -1,1 +1,1 @@
-"""What anybody may send or save, at random and on purpose."""
+"""Attacks with hostile messages, frames and files, random and hand-written."""

@@ -1,7 +1,7 @@
-"""`python -m tests.attack`: random files, messages and frames against running exhibitions, which have to stand them.
+"""`python -m tests.attack`: random files, messages and frames against running exhibitions, which must survive them.
 
-Attack N is the same wherever and whenever it is made: `--only N` makes it alone. After each batch an exhibition has to
-tick, to obey a stop, to speak and to answer who runs it; its memory, threads and handles may not grow.
+Attack N is the same on every machine and in every run: `--only N` makes it alone. After each batch an exhibition must
+still tick, obey a stop, speak and answer a status request; its memory, threads and handles must not grow.
 
 `python -m tests.attack --imports 2000` changes files of other tools, one name or value at a time, and imports them: the
 result or the findings must differ, unless the format's table lists the changed name as without meaning.

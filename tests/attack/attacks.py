@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 
 class Kind(StrEnum):
-    """Where an attack comes in."""
+    """The way an attack enters: a message, a frame, an imported file or a saved project file."""
 
     MESSAGE = "message"
     FRAME = "frame"
@@ -16,7 +16,7 @@ class Kind(StrEnum):
 
 
 SHARES = {Kind.MESSAGE: 0.58, Kind.FRAME: 0.3588, Kind.FOREIGN: 0.06, Kind.FILE: 0.0012}
-"""How many of all attacks are of each kind: a file that is saved costs a reload, a message a hundredth of that."""
+"""The share of each kind among all attacks. Saved files are rare: each costs a reload, a message 1 % of that."""
 
 
 class Attack(NamedTuple):

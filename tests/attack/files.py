@@ -1,4 +1,4 @@
-"""Hostile files, from a `random.Random`: what somebody may save into a project, or give to `lumen import`.
+"""Hostile files, from a `random.Random`: saved into a project, or passed to `lumen import`.
 
     project_file(random, files)   a path in a project, and its new content: one of `files`, damaged, or another
     foreign_file(random)          a name, and the content of a statechart, motion or controller of another tool
@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from random import Random
 
 LARGEST = 256 * 1024
-"""How long a file is at most [bytes]: what is slow for its size shows there already."""
+"""The maximum length of a file [bytes]: enough to expose code that is slow for the size of its input."""
 
 NUMBERS = (
     "0x" + "f" * 5_000, "0o" + "7" * 5_000, "9" * 5_000, "-" + "9" * 400, "1e999", "-1e308", "1e-320", ".nan", "-.inf",
@@ -37,7 +37,7 @@ Monster = Callable[[Random], str]
 
 
 def project_file(random: Random, files: Mapping[str, bytes]) -> tuple[str, bytes]:
-    """A path in the project, and what stands there from now on."""
+    """Return the path of a project file and its new, hostile content."""
     path = random.choice(sorted(files))
     if random.random() < 0.15:
         return path, _encoded(random, random.choice(MONSTERS)(random))
@@ -137,7 +137,7 @@ def _nested(random: Random, text: str) -> str:
 
 
 DAMAGES: tuple[Damage, ...] = (_cut, _number, _word, _quoted, _lines, _repeated, _sign, _nested)
-"""What may have become of a file."""
+"""The kinds of damage that a file may have."""
 
 
 def _bomb(random: Random) -> str:

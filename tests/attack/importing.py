@@ -20,7 +20,7 @@ from tests.attack.attacks import attack
 from tests.attack.files import foreign_file
 
 LIMIT = 20
-"""How long one file may take [s]; most take some milliseconds."""
+"""The time limit for the import of one file [s]; most need a few milliseconds."""
 
 
 def imported(folder: Path, number: int) -> dict[str, Any]:

@@ -1,7 +1,7 @@
 """The ways in: a broker, the machine on which an exhibition runs, and imports. Each attacks its target, and checks it.
 
-A lane takes `batch` attacks between two checks. `strike` makes one of them; `check` raises BrokenError where the target
-does not do as it should any more. Where a batch breaks it, the lane is begun anew and the batch halved (`running.py`).
+A lane takes `batch` attacks between two checks. `strike` makes one of them; `check` raises BrokenError if the target
+no longer works. If a batch breaks the target, `running.py` starts the lane again and halves the batch.
 """
 
 from collections.abc import Callable, Sequence

@@ -17,8 +17,8 @@ from tests.attack.targets import PATIENCE, BrokenError, Exhibition, save
 class Local:
     """Frames at the door of the embedded bus, and files that are saved.
 
-    A frame has a connection of its own; two of three come from who knows the key. Of files one at a time is hostile:
-    the one before is put right. Where it is taken, the exhibition is checked while it runs.
+    A frame has a connection of its own; two of three prove that they have the key. Only one file at a time is
+    hostile: the previous one is restored first. If the hostile file is accepted, the exhibition is checked on it.
     """
 
     kinds = (Kind.FRAME, Kind.FILE)

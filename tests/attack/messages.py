@@ -1,12 +1,12 @@
-"""Hostile messages, from a `random.Random`: what a broker lets anybody send, and what a process may say at the door.
+"""Hostile messages, from a `random.Random`: for a broker, and for the socket of the local bus.
 
     message(random, sound)  a key, the bytes of a body, and of its AMQP properties, for `Stranger.send`
-    frame(random, keys)     bytes for the socket of the local bus: frames that are none, or hold what nobody expects
-    Stranger(url)           a connection of its own to a broker, `send`s what pika would not: made again where that has
-                            ended it, as RabbitMQ does for headers that a stream can't hold (541, INTERNAL_ERROR)
+    frame(random, keys)     bytes for the socket of the local bus: malformed frames, or frames with unexpected content
+    Stranger(url)           a separate connection to a broker; `send`s messages that pika refuses, and reconnects if the
+                            broker closes it, as RabbitMQ does for headers that streams reject (541, INTERNAL_ERROR)
 
-`sound` has a body that is right for each key, where one is known: what is nearly right goes furthest. Each of them is
-one of a list of small generators, so that another kind is another function. What they give depends on nothing but the
+`sound` has a valid body for each key that has an example: nearly valid input gets furthest. Each message comes from
+one of a list of small generators, so another kind is another function. What they give depends on nothing but the
 seed, and is never much larger than 64 KiB.
 """
 
@@ -23,7 +23,7 @@ from pika.exceptions import AMQPError
 
 MARK = "lumen.attack.mark"
 LARGEST = 64 * 1024
-"""How long a body, a table of headers or a frame is at most [bytes]."""
+"""The maximum length of a body, a table of headers or a frame [bytes]."""
 METHODS = (
     "say",
     "rest",
@@ -48,7 +48,7 @@ METHODS = (
     "dance",
     "all",
 )
-"""All but what lets a robot move again that somebody stopped: `check` would not know whose that was."""
+"""All methods except the one that ends a stop: `check` could not distinguish it from its own."""
 NAMES = (
     "type", "method", "parameter", "id", "text", "result", "x", "y", "time", "name", "replace", "session", "parts",
     "state", "robot", "speed", "realtime", "follows", "bundle", "command", "now", "by", "what", "motion", "tracks",
@@ -61,7 +61,7 @@ _BITS = {
     "content_type": 15, "content_encoding": 14, "headers": 13, "delivery_mode": 12, "priority": 11,
     "correlation_id": 10, "reply_to": 9, "expiration": 8, "message_id": 7, "timestamp": 6, "type": 5,
 }  # fmt: skip
-"""Which bit says that a property is there; those that a broker does not check."""
+"""The flag bit of each property that a broker does not check."""
 
 
 class HostileMessage(NamedTuple):
@@ -84,9 +84,9 @@ class RawProperties(BasicProperties):  # type: ignore[misc]  # pika is not typed
 
 
 class Stranger:
-    """Somebody with a connection to the broker at `url`; `ended` counts how often that has ended it.
+    """A client with its own connection to the broker at `url`; `ended` counts how often the broker closed it.
 
-    What is sent last before that is lost: who asks whether all is well after an attack has a connection of their own.
+    The last message before a close is lost, so checks after an attack use another connection.
     """
 
     def __init__(self, url: str) -> None:
@@ -104,7 +104,7 @@ class Stranger:
             self._publish(message)
 
     def settle(self) -> None:
-        """Return when the broker has taken what was sent: it answers in the order in which it is asked."""
+        """Wait until the broker has processed all sent messages: it handles requests in order."""
         try:
             if self._connection:
                 self._channel.queue_declare(MARK, exclusive=True)
@@ -248,7 +248,7 @@ def _no_text(random: Random) -> bytes:
 
 
 def _answer(random: Random) -> bytes:
-    """An answer to where nobody or the wrong one is."""
+    """Return properties whose `reply_to` has no recipient, or the wrong one."""
     places = (
         b"amq.rabbitmq.reply-to.x",
         b"lumen.#",
@@ -306,7 +306,7 @@ def _published(random: Random, keys: Sequence[str]) -> bytes:
 
 
 def _digited(random: Random, keys: Sequence[str]) -> bytes:
-    """A number of hundreds of digits where a time to live belongs."""
+    """Return a frame whose time to live is a number of hundreds of digits."""
     return framed(
         b'["publish","%s","","",%s,1]' % (random.choice(keys).encode(), b"9" * random.choice((300, 400, 5_000)))
     )

@@ -1,4 +1,4 @@
-"""All attacks, each through its lane and all lanes at once; where a batch breaks its target, which of it did."""
+"""Run all attacks, the lanes in parallel, and narrow a batch that breaks its target to the attacks responsible."""
 
 import time
 from collections import Counter
@@ -11,17 +11,17 @@ from tests.attack.lanes import Lane, lanes
 from tests.attack.targets import BrokenError, Size
 
 BOUND = Size(memory=16.0, threads=0, handles=0)
-"""What a process may have more at the end than when it was settled."""
+"""The growth allowed to a process after it has settled."""
 SETTLED, LAST = 5, 3
-"""After so many checks, or a quarter of all, everything was used once; that many at the end are compared with these.
+"""The number of first checks, at least a quarter of all, with which the last ones are compared; and of these last ones.
 
-What imports read is of all sizes, and the process is as large as the largest needed: it levels off within some 1,500.
+Imported files vary in size, and the process stays as large as the largest one needed: it levels off within about 1,500.
 """
 
 
 @dataclass
 class Trouble:
-    """What broke a target: the fewest numbers that do so alone."""
+    """A fault of a target, with the smallest group of attacks found to cause it by itself."""
 
     numbers: list[int]
     text: str
@@ -29,7 +29,7 @@ class Trouble:
 
 @dataclass
 class Survey:
-    """What came of the attacks through a lane."""
+    """The results of the attacks through one lane."""
 
     name: str
     count: int = 0
@@ -51,7 +51,7 @@ class Survey:
 
 
 def grown(found: Survey) -> list[str]:
-    """What of a lane's target grew beyond `BOUND`."""
+    """Return a line for each resource of a lane's target that grew beyond `BOUND`."""
     return [
         f"{found.name}: {more:+.0f} {what}, at most {most:+.0f}"
         for what, more, most in zip(Size._fields, found.growth, BOUND, strict=True)
@@ -60,7 +60,7 @@ def grown(found: Survey) -> list[str]:
 
 
 def survey(numbers: Iterable[int], url: str) -> list[Survey]:
-    """What came of those attacks, by lane; `url` is a broker's."""
+    """Run these attacks, all lanes in parallel, and return a survey of each lane; `url` is a broker's."""
     kinds = {number: attack(number).kind for number in numbers}
     found = {
         name: ([number for number, kind in kinds.items() if kind in taken], begin)
@@ -72,7 +72,7 @@ def survey(numbers: Iterable[int], url: str) -> list[Survey]:
 
 
 def surveyed(name: str, numbers: list[int], begin: Callable[[], Lane]) -> Survey:
-    """What came of those through one lane; after a batch that broke its target there is a new one."""
+    """Run these attacks through one lane; replace its target after each batch that breaks it."""
     found, began = Survey(name), time.monotonic()
     target = begin()
     try:
@@ -93,7 +93,7 @@ def surveyed(name: str, numbers: list[int], begin: Callable[[], Lane]) -> Survey
 
 
 def struck(target: Lane, batch: list[int]) -> list[str]:
-    """What became of each; raises BrokenError where the target does not stand them."""
+    """Return the outcome of each attack; raise BrokenError if the target no longer works after them."""
     came = [target.strike(attack(number)) for number in batch]
     target.check()
     return came
@@ -109,7 +109,7 @@ def narrowed(batch: list[int], text: str, begin: Callable[[], Lane]) -> Trouble:
 
 
 def broken_by(batch: list[int], begin: Callable[[], Lane]) -> str:
-    """What these do to a new target; empty where it stands them."""
+    """Return the fault that these attacks cause in a new target, or an empty string if it survives."""
     target = begin()
     try:
         struck(target, batch)

@@ -23,6 +23,6 @@ def sound() -> dict[str, Any]:
 
 
 def _example(project: Project, schema: str) -> Any:
-    """The first example of a message's schema, None where it has none."""
+    """Return the first example of a message's schema, or None if it has no examples."""
     found: Any = project.messages.get(schema, {}).get("examples", [None])
     return found[0]

@@ -23,17 +23,17 @@ PARTS = ("behaviors", "functions", "knowledge", "fuzzy", "motions", "schemas", "
 SPOKEN, ANSWERS = "lumen.audio.text.stream", "lumen.attack.checked"
 SPEED = "4"
 PATIENCE = BEGINNING = HANG
-"""How long any answer, and a start, may take on a crowded machine [s]."""
+"""The time limit for an answer, and for a start, on a busy machine [s]."""
 TRIES = 3
-"""How often a text is said that somebody cancels: a stop of the attack, or of the behaviour, that came just then."""
+"""The number of attempts to speak a text: a stop by an attack, or by the behaviour, may cancel one at that moment."""
 
 
 class BrokenError(AssertionError):
-    """What an attack did that none may do."""
+    """A target that no longer works after an attack."""
 
 
 class Size(NamedTuple):
-    """What a process has of the machine: memory [MB], threads, open files and sockets."""
+    """The resources that a process uses: memory [MB], threads, open files and sockets."""
 
     memory: float
     threads: int
@@ -43,7 +43,7 @@ class Size(NamedTuple):
 class Exhibition:
     """`lumen run` with the recording robot, four times as fast as real time, on a bus by its address.
 
-    It takes what is saved in `folder`. `check` raises BrokenError where it does not do as it should any more.
+    It reloads the files saved in `folder`. `check` raises BrokenError if it no longer works.
     """
 
     def __init__(self, url: str) -> None:
@@ -73,7 +73,7 @@ class Exhibition:
         self.lives()
 
     def lives(self) -> None:
-        """Raises BrokenError where the process has ended, or has told of a fault of ours."""
+        """Raise BrokenError if the process has ended or has printed a traceback."""
         if (code := self.process.poll()) is not None:
             raise BrokenError(f"the exhibition ended with {code}\n{self._tail()}")
         with self._told.open("rb") as told:
@@ -84,11 +84,11 @@ class Exhibition:
         self._read += new.rfind(b"\n") + 1
 
     def asked(self, key: str, body: Any) -> Any:
-        """The first answer. Raises BusError where there is none in time."""
+        """Return the first answer; raise BusError if none arrives in time."""
         return next(send_request(self.bus, key, body, ANSWERS, first=PATIENCE))
 
     def size(self) -> Size:
-        """What its process has now."""
+        """Return the resources that its process uses now."""
         process = Path(f"/proc/{self.process.pid}")
         status = dict(line.split(":\t", 1) for line in (process / "status").read_text().splitlines() if ":\t" in line)
         return Size(int(status["VmRSS"].split()[0]) / 1024, int(status["Threads"]), len(os.listdir(process / "fd")))
@@ -104,7 +104,7 @@ class Exhibition:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def dropped(self) -> str:
-        """What it said at its end of messages that it dropped."""
+        """Return the line about dropped messages that it printed when it ended, or an empty string."""
         lines = self._told.read_text("utf-8", "replace").splitlines()
         return next((line.strip() for line in lines if "dropped messages" in line), "")
 
@@ -116,7 +116,7 @@ class Exhibition:
             raise BrokenError(f"no exhibition began: {error}\n{self._tail()}") from None
 
     def _address(self) -> dict[str, Any]:
-        """Where it is found, and under which keys: saved files may change these."""
+        """Return its address and its routing keys, read anew because saved files may change them."""
         found = self._home.read_json(ADDRESS_FILE)
         return found if isinstance(found, dict) else {}
 
@@ -140,7 +140,7 @@ class Exhibition:
             raise BrokenError(f"that somebody let it say `{text}` is not in the journal")
 
     def _reloads(self) -> None:
-        """Who runs the exhibition is answered by the behaviour's own tick."""
+        """Request the status of the exhibition: the behaviour's own tick answers it."""
         self.asked(COMMAND, {"command": "status"})
 
     def _tail(self) -> str:

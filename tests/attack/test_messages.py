@@ -69,7 +69,7 @@ def test_no_message_ends_a_running_exhibition_nor_makes_it_deaf(
 
 
 def test_every_body_that_may_come_gets_an_answer_or_none_but_never_a_fault(caplog: pytest.LogCaptureFixture) -> None:
-    """Where a project's routes have no schemas, nothing checks a body before it is used."""
+    """A body is not checked before use if the project's routes have no schemas."""
     exhibit, random, answers = project(), Random(3), Collector()
     bus, setup = connect("memory://"), set_up("recording", exhibit, "max")
     receiver = CommandReceiver(exhibit, setup.robot, bus)
