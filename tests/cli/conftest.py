@@ -25,7 +25,7 @@ class Terminal(io.StringIO):
 
 @pytest.fixture
 def bus(copy: Path) -> Iterator[Bus]:
-    """A bus that other terminals reach, and nobody on it."""
+    """A bus that other terminals can reach, with no exhibition on it."""
     bus, directory = connect("memory://"), RunDirectory(copy)
     directory.open(bus, "memory://", lumen.load(copy))
     yield bus

@@ -1,4 +1,4 @@
-"""What bash, zsh and fish complete, each asked itself; and what the parser makes of words that are half written."""
+"""Completion as bash, zsh and fish themselves perform it, and the parser's answers for unfinished words."""
 
 import os
 import pty

@@ -1,4 +1,4 @@
-"""What `lumen fleet log` prints for people."""
+"""The text output of `lumen fleet log`."""
 
 from lumen.cli.tables import table
 from lumen.features.fleet.text import log_lines

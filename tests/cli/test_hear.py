@@ -1,4 +1,4 @@
-"""`lumen hear`: rows in columns, for one state or for all that hear, and one line for what can't be asked."""
+"""`lumen hear`: a table for one state or for all listening states, and one line for an invalid request."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Options may stand before, between and after the other words of a command."""
+"""Options are accepted before, between and after the other words of a command."""
 
 import pytest
 

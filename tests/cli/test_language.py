@@ -79,14 +79,14 @@ def hall(tmp_path: Path) -> Path:
 
 
 def without(data: Any, language: str) -> Any:
-    """The data without what stands under that language."""
+    """Return the data without its entries for that language."""
     if isinstance(data, dict):
         return {key: without(value, language) for key, value in data.items() if key != language}
     return [without(value, language) for value in data if value != language] if isinstance(data, list) else data
 
 
 def comments(content: bytes) -> list[str]:
-    """The comments but for what is to be translated; a target such as "#goodbye" is none."""
+    """Return the comments, except those that mark a text to translate; a target such as "#goodbye" is not a comment."""
     lines = (line for line in content.decode().splitlines() if TO_DO not in line)
     return [line[found.start() :] for line in lines if (found := re.search(r"(^|\s)#(?=\s)", line))]
 
@@ -101,7 +101,7 @@ def test_a_new_language_has_a_place_everywhere_and_nothing_else_changes(folder: 
     project, diagnostics = check_files(root, after)
     assert project
     assert project.languages[-1] == "fr"
-    copied = {"shadowed-question"}  # the English questions stand in place of French ones
+    copied = {"shadowed-question"}  # the French questions are copies of the English ones
     assert {diagnostic.code for diagnostic in diagnostics} - copied == {"missing-language", "missing-words"}
     then = draft(after)
     for file in (file for file in files if after[file] != files[file]):

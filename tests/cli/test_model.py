@@ -14,7 +14,7 @@ ANSWERS = '  answers: {model: {url: "http://127.0.0.1:9/v1/chat/completions", na
 
 @pytest.fixture
 def copy(copy: Path) -> Path:
-    """With a language model, where nobody answers."""
+    """A copy that uses a language model whose URL no server answers."""
     file = copy / "lumen.yaml"
     file.write_text(file.read_text("utf-8").replace("\nmodules:\n", f"\nmodules:\n{ANSWERS}\n"), "utf-8")
     return copy

@@ -1,4 +1,4 @@
-"""Whose project a verb is about: one that judges never takes the shipped one for want of another."""
+"""The project that a command uses: one that checks a project never falls back to the shipped one."""
 
 from pathlib import Path
 

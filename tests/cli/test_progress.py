@@ -1,4 +1,4 @@
-"""How far something long is: an estimate that counts down, on a terminal, after a while."""
+"""The progress of a long command: an estimate that counts down, shown only on a terminal and only after a delay."""
 
 import io
 import sys

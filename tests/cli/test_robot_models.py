@@ -245,7 +245,7 @@ WORDS = [
     damage=st.lists(st.tuples(st.floats(0, 1), st.integers(0, 30), st.sampled_from(WORDS)), max_size=4),
 )
 def test_a_damaged_robot_is_read_or_refused(whole: bytes, damage: list[tuple[float, int, bytes]]) -> None:
-    """Whatever is cut out and put in: a body that our own loader takes, or one line."""
+    """After any cuts and insertions the result is a body that Lumen's own loader accepts, or a one-line error."""
     for where, cut, word in damage:
         at = int(where * len(whole))
         whole = whole[:at] + word + whole[at + cut :]

@@ -1,4 +1,4 @@
-"""What a message, a file or a person can do to a running show: it goes on."""
+"""A running show continues whatever a message, a file or a person does."""
 
 from collections.abc import Iterator
 from contextlib import suppress

@@ -144,7 +144,7 @@ def test_the_same_tour_through_rabbitmq(project: Project, broker: RabbitMQ) -> N
 @pytest.mark.once
 @pytest.mark.slow
 def test_what_is_typed_is_what_the_visitor_says(copy: Path) -> None:
-    """A person on a pipe: each line waits for what it answers."""
+    """A person types through a pipe: each line is written after the output that it answers."""
     run = [sys.executable, "-m", "lumen", "run", str(copy), "--robot", "recording", "--speed", "max"]
     with Guarded(run, stdin=PIPE, stdout=PIPE, text=True) as process:
         assert process.stdin
@@ -178,7 +178,7 @@ def test_ctrl_c_once_rests_the_robot_and_twice_ends(copy: Path, tmp_path: Path) 
         until(lambda: "greet" in log.read_text())
         process.send_signal(signal.SIGINT)
         until(lambda: "again to end" in log.read_text())
-        # it may have gone on to `ask_name` by then, where it watches whether the visitor leaves
+        # it may have reached `ask_name` by then, and that state watches whether the visitor leaves
         until(lambda: re.search(r"stopped, interrupted(, unwatched)?  \(stop, then safety\.alarm", log.read_text()))
         process.send_signal(signal.SIGINT)
         assert process.wait(HANG) == 0

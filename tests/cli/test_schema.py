@@ -1,4 +1,4 @@
-"""The published schemas complete and explain in an editor: every property says what it is and shows a value."""
+"""The published schemas support completion and help in an editor: every property has a description and an example."""
 
 import json
 import os
@@ -38,7 +38,7 @@ def properties(schema: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, A
 
 
 def whole(schema: Any, root: Any) -> dict[str, Any]:
-    """A schema with what it refers to; its own words come first."""
+    """Return a schema merged with the definitions that it refers to; its own keywords win."""
     found = dict(schema)
     while reference := schema.get("$ref"):
         schema = root["$defs"][reference.rpartition("/")[2]]

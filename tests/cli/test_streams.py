@@ -1,4 +1,4 @@
-"""Nobody reads on (`lumen … | head`), a stream is closed or full: a verb ends quietly, a show in order."""
+"""Output that is closed, full or no longer read (`lumen … | head`) never causes a traceback."""
 
 import os
 import sys

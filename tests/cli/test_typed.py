@@ -1,4 +1,4 @@
-"""What is typed, by people and by programs that never stop."""
+"""Typed input, from people and from programs that never stop."""
 
 from types import SimpleNamespace
 from typing import Any

@@ -12,7 +12,7 @@ from tests.tour.conftest import project
 __all__ = ["project", "whole"]
 
 PATIENT = "2h"
-"""How long the guide waits for a visitor: at twenty times the pace, no test depends on how fast files are judged."""
+"""The time that the guide waits for a visitor: at 20× speed, slow validation of files must not end the wait."""
 
 
 @pytest.fixture

@@ -29,7 +29,7 @@ def steps(work: Callable[[], object], above: Callable[..., object]) -> list[Code
 
 
 def failing(step: CodeType, work: Callable[[], T], above: Callable[..., object]) -> T:
-    """What `work` makes where this step fails once, as soon as it is entered within a call of `above`."""
+    """Return the result of `work`; this step raises FaultError once, at its first entry within a call of `above`."""
     failed = []
 
     def enter(frame: FrameType) -> None:

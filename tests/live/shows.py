@@ -35,10 +35,10 @@ class Here:
         self._root = root
 
     def begin(self) -> None:
-        """Nothing to begin."""
+        """Do nothing: no process is needed."""
 
     def warm(self, files: Mapping[str, bytes]) -> None:
-        """Nothing to have ready."""
+        """Do nothing: no files are prepared in advance."""
 
     def load(self, files: Mapping[str, bytes]) -> Loaded:
         return check_files(self._root, files)
@@ -50,7 +50,7 @@ class Here:
         return check_visits(self._root, project, running, budget)
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """Do nothing: no resources are held."""
 
 
 class Live:

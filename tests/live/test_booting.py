@@ -1,4 +1,4 @@
-"""Which files a start begins with, what it says of that, and where it is written."""
+"""The files that a start uses, the message about this choice, and its entry in the journal."""
 
 import sys
 from pathlib import Path
@@ -36,7 +36,7 @@ def journal(folder: Path) -> list[dict[str, Any]]:
 
 @pytest.fixture
 def run(copy: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """The words that run the copy for a moment while nobody types."""
+    """The arguments that run the copy for one second, without typed input."""
     monkeypatch.setattr(sys, "stdin", None)
     return ["run", str(copy), "--robot", "recording", "--speed", "max", "--for", "1s"]
 

@@ -1,4 +1,4 @@
-"""Every event of a running exhibition says who or what brought it about; every message says where it comes from."""
+"""Every event of a running exhibition names its cause, and every message its origin."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -28,7 +28,7 @@ def bus() -> Iterator[Bus]:
 
 
 class Tour(NamedTuple):
-    """The shipped story, played: its steps, what was said, and what was told of its state."""
+    """The shipped story as played: its steps, its spoken texts and its reported states."""
 
     project: Project
     steps: list[Step]

@@ -1,4 +1,4 @@
-"""What an operator may ask of a running exhibition, and what is answered."""
+"""The commands that an operator may send to a running exhibition, and its answers."""
 
 import threading
 from collections.abc import Iterator
@@ -84,7 +84,7 @@ def test_what_is_staged_is_tried_for_one_visitor_and_waits_again(manual: Live) -
     assert (answer["verdict"], answer["reason"].split(":")[0]) == ("applied", "for one visitor")
     tried = manual.show.loop.project.hash
     assert tried != before
-    manual.live(30.0)  # nobody has come: it is still being tried
+    manual.live(30.0)  # no visitor has come: the files are still on trial
     assert manual.show.loop.project.hash == tried
     manual.greet()
     assert manual.show.loop.project.hash == tried

@@ -1,6 +1,6 @@
-"""Files that crash, fill or hold up whoever reads them: another process did, and neither run nor start repeats it.
+"""Files that crash, fill or block their reader: it is a separate process, and no run or start reads them again.
 
-What ends the reader stands in for faults that nobody knows yet: those that were known are mended.
+The tests end the reader artificially, because every real fault known so far is fixed.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""A run's home may hold what nobody of us wrote: whoever sends a project may send a `.lumen/` with it."""
+"""A run's home may hold files that Lumen did not write: the sender of a project may include a `.lumen/` folder."""
 
 import sys
 from contextlib import suppress

@@ -22,7 +22,7 @@ __all__ = ["silent"]
 
 
 def entries(folder: Path) -> list[RecordedEntry]:
-    """What can be read at the moment."""
+    """Return the journal entries that are readable now; skip files that cannot be read."""
     found = list[RecordedEntry]()
     for file in sorted((folder / ".lumen" / "journal").glob("*.journal")):
         try:
@@ -37,7 +37,7 @@ def entered(folder: Path, state: str) -> bool:
 
 
 def replayed(folder: Path, **environment: str) -> dict[str, Any]:
-    """What another process says of all days."""
+    """Return the JSON report of a replay of all days in another process."""
     command = [sys.executable, "-m", "lumen", "replay", "--all", "--project", str(folder), "--format", "json"]
     env = {**os.environ, **environment}
     done = run_guarded(command, env=env, capture_output=True, text=True, timeout=HANG)

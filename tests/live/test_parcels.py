@@ -1,4 +1,4 @@
-"""What travels between the process that judges files and the one that runs them: all of it, and nothing twice."""
+"""The data between the process that validates files and the one that runs them: complete, and sent only once."""
 
 from pathlib import Path
 

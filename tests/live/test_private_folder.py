@@ -1,4 +1,4 @@
-"""What an exhibition keeps in `.lumen/` is passed over by version control, whoever made the folder."""
+"""Version control ignores the contents of `.lumen/`, whichever part of Lumen made the folder."""
 
 import re
 from pathlib import Path
@@ -32,11 +32,11 @@ MAKERS = {
     "cli/writing.py": "where the user says",
     "features/simulation/shells.py": "the robot's shape",
 }
-"""Who makes folders that stay, and why that is no leak."""
+"""The modules that may make folders without `private_folder`, each with the reason why that exposes nothing."""
 
 
 def staged(folder: Path) -> str:
-    """What `git add -A` takes of a folder."""
+    """Return the files of a folder that `git add -A` adds, one per line."""
     run_guarded([program("git"), "init", "-q", folder], check=True)
     run_guarded(["git", "add", "-A"], cwd=folder, check=True)
     return str(run_guarded(["git", "ls-files"], cwd=folder, check=True, capture_output=True, text=True).stdout)

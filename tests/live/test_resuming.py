@@ -1,4 +1,4 @@
-"""An exhibition that ended without notice is gone on with: from where it stood, on newer files too."""
+"""An exhibition that ended without notice resumes from its last state, even if its files are newer."""
 
 import json
 import os
@@ -224,7 +224,7 @@ def running(folder: Path, *words: str) -> Iterator[Guarded[str]]:
 
 @pytest.fixture
 def silent(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nobody types."""
+    """Remove standard input, so no text is typed."""
     monkeypatch.setattr(sys, "stdin", None)
 
 

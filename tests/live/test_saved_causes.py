@@ -1,4 +1,4 @@
-"""What saved files and hands bring about names them, and what invoked behaviours do is told as well."""
+"""Events caused by a saved file or a touch name their cause; the steps of invoked behaviours are reported too."""
 
 from pathlib import Path
 

@@ -45,7 +45,7 @@ class Bench:
         self._number = 0
 
     def saved(self, more: bool = False) -> SavedFiles:
-        """All kinds of files as nobody has saved them before; with `more`, a route and a region are new."""
+        """Return new versions of all kinds of files, never saved before; with `more`, they add a route and a region."""
         self._number += 1
         mark = f"\n# {self._number}\n".encode()
         marked = {path: content + mark for path, content in self._first.items() if _ours(path)}
@@ -69,7 +69,7 @@ class Bench:
         return self.live.show.loop.project.hash
 
     def is_whole(self) -> bool:
-        """Whether everything goes by the bundle that runs."""
+        """Return whether the inbox and the state match the bundle that runs."""
         exhibition = self.live.show.loop
         listens = ("lumen.load", "load") in exhibition.inbox._undo
         stands = any(state.endswith("counting") for state in exhibition.runtime.snapshot.configuration)
@@ -128,7 +128,7 @@ def fresh(validation: Validation) -> Callable[[], Validation]:
 @every
 @pytest.mark.parametrize("forth", [True, False])
 def test_a_fault_in_planning_or_applying(bench: Bench, forth: bool, every: bool) -> None:
-    """What is told is true, nothing is mixed, and the next files are taken: where things come, and where they go."""
+    """After a fault the verdict is true, no bundles are mixed, and the next files load, with parts added or removed."""
     new, old = [fresh(bench.validation(bench.saved(more))) for more in (forth, not forth)]
     for validation in (old(), new(), old()):  # once and for all, too
         bench.take(validation)

@@ -136,7 +136,7 @@ def by_another_name(watched: Watched) -> None:
 
 
 def in_a_renamed_folder(watched: Watched) -> None:
-    """Moved away, changed there, and moved back within the longer quiet period of what has vanished."""
+    """Move the folder away, change it there, and move it back within the longer quiet period of vanished files."""
     folder = watched.root / "behaviors"
     folder.rename(watched.root / "elsewhere")
     watched.pause(1.2 * QUIET)

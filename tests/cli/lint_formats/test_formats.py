@@ -52,7 +52,7 @@ def test_findings_read_as_they_did(format: str) -> None:
 
 
 def _without_pages(shown: str) -> str:
-    """What SARIF says of the rules is what their pages say, which may change."""
+    """Empty the rules of SARIF output: their text comes from the rules' pages, which may change."""
     return re.sub(r'"rules": \[\n.*?\n          \]', '"rules": []', shown, flags=re.DOTALL)
 
 
