@@ -1,4 +1,4 @@
-"""Output that is closed, full or no longer read (`lumen … | head`) never causes a traceback."""
+"""Closed, full and unread output (`lumen … | head`): a command prints at most one line; a show ends only if unread."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""Files that crash, fill or block their reader: it is a separate process, and no run or start reads them again.
+"""Files that crash, fill or block their reader: it is a separate process, so no run and no start fails with it.
 
 The tests end the reader artificially, because every real fault known so far is fixed.
 """

@@ -32,7 +32,7 @@ MAKERS = {
     "cli/writing.py": "where the user says",
     "features/simulation/shells.py": "the robot's shape",
 }
-"""The modules that may make folders without `private_folder`, each with the reason why that exposes nothing."""
+"""The modules that may call `mkdir`, each with the reason why that exposes no private data to version control."""
 
 
 def staged(folder: Path) -> str:
