@@ -1,4 +1,4 @@
-"""The ears are open from a face that is near and looks, or from a touch, and say so."""
+"""The ears open for a near face that looks at the robot or for a touch, and publish their state."""
 
 import random
 from collections.abc import Callable, Sequence

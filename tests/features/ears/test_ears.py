@@ -33,7 +33,7 @@ SONG = "can you sing a song please"
 
 
 class Parrot:
-    """A recogniser of one's own: says how long the sound was."""
+    """A custom recogniser that returns the duration of the sound as its text."""
 
     languages = ("en", "id")
 

@@ -20,7 +20,7 @@ SOUND = Sound(8_000, b"\x00\x40" * 4_000)
 
 
 class Engine:
-    """What faster-whisper's `WhisperModel` does, as far as it is asked to."""
+    """A stand-in for faster-whisper's `WhisperModel` with the methods that Lumen calls."""
 
     def __init__(self, *said: tuple[str, float, float], languages: tuple[str, ...] = ("en", "id", "de")) -> None:
         self.said, self.supported_languages = said, languages

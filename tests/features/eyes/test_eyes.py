@@ -57,7 +57,7 @@ def photographed() -> Pixels:
 
 @pytest.fixture(scope="module")
 def drawn(project: Project) -> Mapping[tuple[float, float], tuple[Pixels, tuple[float, float]]]:
-    """What the simulated camera sees of the hall's visitor at some places, and where the face is in truth [px]."""
+    """Camera images of the visitor at four places [m], each with the true position of the face [px]."""
     robot = SimulatedRobot(project.body, Path(project.root) / "models", project.hall)
     seen = {}
     robot.advance(1.0)  # until it stands as it stands

@@ -52,7 +52,7 @@ def ordered(
 
 
 class Taker:
-    """Takes files as the reload of an exhibition would, when the test says so."""
+    """A stand-in for an exhibition's reload that accepts files when the test calls it."""
 
     def __init__(self, files: Mapping[str, bytes]) -> None:
         self.known = {fingerprint(files): dict(files)}

@@ -79,7 +79,7 @@ def test_a_bundle_is_tried_and_not_taken(house: House) -> None:
     house.agent.order(ordered(house.signer, "", version=2))
     house.agent.tick()
     assert house.agent.presence(1.0, {}).tried == {}
-    answer({"verdict": "dry run"})  # too late: nobody asks any more
+    answer({"verdict": "dry run"})  # too late: the order no longer requests a dry run
     assert house.agent.presence(1.0, {}).tried == {}
 
 

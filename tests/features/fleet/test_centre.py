@@ -26,7 +26,7 @@ PLAN = {"steps": ["demo-1", "50%", "all"], "pause": 2.0, "abort-if": "falls > 0"
 
 
 class Hall:
-    """All robots of the example's fleet, each with an agent, and the centre; time goes by at each `look`."""
+    """The centre and all robots of the example's fleet, each with an agent; each `look` advances the time."""
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.now = folder, 1_000_000.0
@@ -61,7 +61,7 @@ class Hall:
         return served
 
     def look(self) -> None:
-        """A second goes by."""
+        """Advance the time by one second: agents tick, robots report, and the centre reads."""
         self.now += 1.0
         for name, agent in self.agents.items():
             agent.tick()

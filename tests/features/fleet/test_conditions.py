@@ -1,4 +1,4 @@
-"""`abort-if`: what `before` stands for, and what is not known."""
+"""`abort-if`: the value of `before`, the place of errors, and conditions on unknown measures."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What a centre has counted: once, whenever it is killed and whatever comes twice."""
+"""The centre's counts: each incident counts once, despite kills and repeated messages."""
 
 import random
 from pathlib import Path

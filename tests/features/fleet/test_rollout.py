@@ -215,7 +215,7 @@ DEEDS = ("on", "off", "cut", "mend", "kill", "restart", "clock", "roll", "abort"
 
 
 def misfortune(count: int, seed: int, deeds: list[tuple[str, int]]) -> None:
-    """Whatever happens: no more robots than the step has run a bundle that no finished rollout has proved."""
+    """Apply `deeds`; an unproved bundle never runs on more robots than the rollout's step allows."""
     world = World(count, seed, TRIED if seed % 3 == 0 else PLAN)
     names, houses, bundles = list(world.robots), list(world.fleet.houses), [NEW, NEXT, "d" * 64]
     for deed, number in deeds:

@@ -1,4 +1,4 @@
-"""A running exhibition takes a bundle between two visits, and has it in its folder once it is proved."""
+"""A running exhibition switches to a bundle between two visits and writes it to its folder once proved."""
 
 import json
 from pathlib import Path

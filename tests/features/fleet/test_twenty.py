@@ -56,7 +56,7 @@ class RunningRobot:
 
     @property
     def bundle(self) -> str:
-        """What it runs, as the fleet calls it; of one that is off, what it would begin with."""
+        """The bundle that the agent runs, or an empty string if the robot has no running exhibition."""
         if self.show is None:
             return ""
         (part,) = [part for part in self.show.node.parts if isinstance(part, FleetPart)]

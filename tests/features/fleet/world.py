@@ -16,7 +16,7 @@ PLAN = RolloutPlan((StepTarget(share=0.1), StepTarget(share=0.3), StepTarget(sha
 
 @dataclass
 class SimulatedRobot:
-    """What a robot keeps on its disk, and whether it is on; `fails` are bundles that do not stand their probation."""
+    """A robot's stored state and its power switch; `fails` lists the bundles that fail their probation."""
 
     name: str
     bundle: str = OLD
@@ -104,7 +104,7 @@ class World:
             self.down += [(self.now + self.delay(), order) for _ in range(self.random.choice((0, 1, 1, 2)))]
 
     def roll(self, bundle: str) -> None:
-        """Begin a rollout where that may be."""
+        """Begin a rollout of this bundle; do nothing if the centre refuses it."""
         try:
             self.keep(begin(self.centre, self.fleet, bundle, self.plan, self.now))
         except ValueError:
@@ -141,7 +141,7 @@ class World:
                 self.send_down(order)
 
     def on(self, bundle: str) -> int:
-        """How many robots run it now, whatever anybody knows of that."""
+        """Count the robots that run the bundle now, reported or not."""
         return sum(robot.bundle == bundle for robot in self.robots.values())
 
     def approve(self) -> None:

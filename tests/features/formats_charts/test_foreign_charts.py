@@ -164,7 +164,7 @@ def test_what_an_actor_did_is_told_and_its_end_waited_for() -> None:
 
 
 def test_a_behaviour_invoked_by_that_id_is_what_is_waited_for() -> None:
-    """What the hint says: then the graph works again."""
+    """The machine works again after the change that the hint suggests."""
     data, _ = read(LOADING)
     data["states"]["shown"]["invoke"] = {"behavior": "watcher", "id": "watch.er"}
     watcher = {"initial": "a", "states": {"a": {"on": {"END": "z"}}, "z": FINAL}}

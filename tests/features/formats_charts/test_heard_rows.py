@@ -1,4 +1,4 @@
-"""Rows of `hears` in charts of other tools: what stands for each, what is reported, and that they come back."""
+"""Rows of `hears` in other tools' charts: their equivalents, the reports, and the round trip."""
 
 import json
 from typing import Any

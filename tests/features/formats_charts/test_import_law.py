@@ -1,4 +1,4 @@
-"""The law of importers: what they write loads, and means what the original means, or they said what does not.
+"""The law of importers: their output loads and behaves as the original, or a report names each difference.
 
 Foreign files, generated and damaged ones, go through `lumen import`; generated charts are run by XState beside us.
 """
@@ -25,7 +25,7 @@ ACTOR = "xstate.done.actor.act"
 
 
 def stranger(random: Random) -> dict[str, Any]:
-    """A chart as XState takes it: histories of every spelling, actors, final regions, targets by name, path and id."""
+    """A random XState chart: histories of every spelling, actors, final regions, targets by name, path and id."""
     names: list[str] = []
     root = _state(random, "m", 3, names)
     while not root.get("states"):
@@ -82,7 +82,7 @@ def _lead(random: Random, state: dict[str, Any], path: str, names: list[str], re
 
 
 def lawful(seeds: range) -> tuple[int, int]:
-    """How many generated charts went where XState goes; and how many were read with a warning that they would not."""
+    """Count the generated charts that behave as in XState, and those imported with a warning of a difference."""
     charts, sequences = [], []
     for seed in seeds:
         random = Random(seed)

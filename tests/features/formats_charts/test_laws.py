@@ -1,4 +1,4 @@
-"""What holds of every machine: out and in again it behaves the same, and the second time nothing changes any more."""
+"""Laws of export and import: a round trip keeps every machine's behaviour, and a second one changes nothing."""
 
 import json
 from typing import Any
@@ -30,7 +30,7 @@ def through(machine: Machine, format: str) -> dict[str, Any]:
 
 
 def trace(machine: Machine, happenings: list[str]) -> list[tuple[Any, ...]]:
-    """What a run is seen to do: states by name, commands, context, and events raised."""
+    """The observable behaviour of a run, step by step: states, commands, context and raised events."""
     steps = run(machine, happenings)
     return [
         (

@@ -1,4 +1,4 @@
-"""What each part of SCXML becomes, and what is said of the parts that can't be carried over."""
+"""The import of each part of SCXML, and the reports for parts that Lumen does not support."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ def read(body: str) -> tuple[dict[str, Any], list[str]]:
 
 
 def state(content: str, more: str = "") -> dict[str, Any]:
-    """What a state with this content becomes; nothing may be said of it."""
+    """Import a state with this content and return its data; the import must report nothing."""
     data, said = read(f'<datamodel><data id="x" expr="0"/></datamodel><state id="a">{content}</state>{more}')
     assert said == []
     found: dict[str, Any] = data["states"]["a"]

@@ -1,4 +1,4 @@
-"""What we write as SCXML keeps the rules of W3C's schema: which element and attribute stands where, and ids."""
+"""Exported SCXML follows W3C's schema: the allowed elements and attributes of each element, and unique ids."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -34,7 +34,7 @@ ID = re.compile(r"[A-Za-z_][\w.-]*")
 
 
 def faults(text: str) -> list[str]:
-    """What the schema would not allow; elements and attributes of other namespaces are anybody's."""
+    """List the violations of the schema; elements and attributes of other namespaces are ignored."""
     root = ET.fromstring(text)
     elements = [e for e in root.iter() if _name(e)]
     ids = [e.get("id", "") for e in elements if _name(e) in ("state", "parallel", "final", "history")]

@@ -1,4 +1,4 @@
-"""What each part of an XState machine becomes, and what is said of code that lies elsewhere."""
+"""The import of each part of an XState machine, and the reports for code outside the file."""
 
 import json
 from typing import Any

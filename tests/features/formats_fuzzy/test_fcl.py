@@ -1,6 +1,6 @@
 """Fuzzy Control Language as jFuzzyLogic means it: its shapes and their universe, its formulas, its pairs of operators.
 
-What is expected here was worked out from jFuzzyLogic's own formulas, which stand beside each number.
+The expected numbers were computed by hand from jFuzzyLogic's formulas, given beside each number.
 """
 
 import math

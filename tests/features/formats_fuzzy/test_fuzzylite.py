@@ -1,6 +1,6 @@
 """pyfuzzylite as witness: the examples it carries, and each word of the language by itself.
 
-Where it has NaN or infinity we have the default, or an error that says so: that is our rule, and the only difference.
+The only difference: if pyfuzzylite returns NaN or infinity, Lumen returns the default value or raises an error.
 """
 
 import math
@@ -55,7 +55,7 @@ def theirs(engine: Any, inputs: Mapping[str, float]) -> dict[str, float]:
 
 
 def compared(ours: Controller, engine: Any, points: list[dict[str, float]]) -> Iterator[tuple[float, float]]:
-    """Each output, ours and theirs; but where they have none: there we raise."""
+    """Yield each output of both engines; if theirs is not finite, ours must raise instead."""
     previous: dict[str, float] = {}
     for point in points:
         expected = theirs(engine, point)
@@ -68,7 +68,7 @@ def compared(ours: Controller, engine: Any, points: list[dict[str, float]]) -> I
 
 
 def agree(ours: Controller, engine: Any, points: list[dict[str, float]]) -> int:
-    """How many outputs were compared; all within 1e-6."""
+    """Compare all outputs to within 1e-6 and return their number."""
     pairs = list(compared(ours, engine, points))
     assert [mine for mine, _ in pairs] == pytest.approx([other for _, other in pairs], abs=1e-6)
     return len(pairs)
@@ -98,7 +98,7 @@ def test_an_example_of_the_package(file: Path) -> None:
 
 
 def plain(data: Mapping[str, Any]) -> dict[str, Any]:
-    """What FuzzyLite can say of a file's data: descriptions are for people."""
+    """Drop the descriptions from a controller's data, because FuzzyLite's files cannot store them."""
     variables = {
         side: {name: {k: v for k, v in spec.items() if k != "description"} for name, spec in data[side].items()}
         for side in ("inputs", "outputs")

@@ -1,4 +1,4 @@
-"""What we write as AsyncAPI is right by AsyncAPI's own parser, and says all that the routes do."""
+"""AsyncAPI's own parser accepts the exported documents, which describe the routes in full."""
 
 import json
 from dataclasses import replace
@@ -22,7 +22,7 @@ from tests.waiting import HANG
 
 
 def parsed(*projects: Project) -> list[dict[str, Any]]:
-    """What the parser makes of their documents."""
+    """Export each project and return the results of AsyncAPI's own parser."""
     texts = json.dumps([write_asyncapi(project) for project in projects])
     script = ROOT / "tests/formats/asyncapi.cjs"
     done = run_guarded(
@@ -39,7 +39,7 @@ def with_face(schema: dict[str, Any]) -> Project:
 
 
 def test_asyncapis_own_parser_finds_the_shipped_routes_and_nothing_wrong() -> None:
-    """And it finds what is wrong, and follows references in a schema to where it stands in the document."""
+    """The parser also reports an invalid schema and resolves references inside a schema."""
     points = {"$defs": {"point": {"type": "number"}}, "type": "array", "items": {"$ref": "#/$defs/point"}}
     shipped, pointed, wrong = parsed(project(), with_face(points), with_face({"type": "numbr"}))
     routes = project().routes
