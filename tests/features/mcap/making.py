@@ -42,7 +42,7 @@ def write(path: Path, *messages: Message) -> Path:
 
 
 def bodies(path: Path) -> list[tuple[str, Any]]:
-    """What mcap's own reader finds with the index: topics, and bodies without where they come from."""
+    """Read a recording with mcap's indexed reader; return topics and bodies, without the bodies' origins."""
     with path.open("rb") as file:
         found = list(make_reader(file, validate_crcs=True).iter_messages())
     return [
@@ -55,7 +55,7 @@ def bodies(path: Path) -> list[tuple[str, Any]]:
 
 
 def readable(data: bytes) -> Iterator[bytes]:
-    """What mcap's own reader finds from the front in a recording that was cut."""
+    """Yield the messages that mcap's own reader finds in a truncated recording, from the front."""
     records = StreamReader(BytesIO(data)).records
     while True:
         try:

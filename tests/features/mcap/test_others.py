@@ -1,4 +1,4 @@
-"""What Foxglove and Lichtblick read recordings with reads ours, with an exhibition's whole traffic in them."""
+"""The reader libraries of Foxglove and Lichtblick read our recordings of an exhibition's whole traffic."""
 
 import json
 from pathlib import Path

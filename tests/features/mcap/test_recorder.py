@@ -1,4 +1,4 @@
-"""What is said on a bus is recorded, no publisher waits, and what the disk refuses is told once."""
+"""A recorder writes every message of a bus, delays no publisher, and reports a disk's fault once."""
 
 import errno
 import threading

@@ -22,7 +22,7 @@ def robot(project: Project) -> Iterator[Lockstep]:
 
 @pytest.fixture
 def live(robot: Lockstep) -> Live:
-    """What the robot answers and notices in so many seconds."""
+    """A function that advances the robot by some seconds and returns the robot's events."""
 
     def lived(seconds: float) -> list[Event]:
         events: list[Event] = []

@@ -47,7 +47,7 @@ class FakeNao:
         return int(self.url.rpartition(":")[2])
 
     def drop(self) -> None:
-        """Be gone, whatever goes on."""
+        """Close the session at once, even during a call."""
         self._session.close()
 
     def close(self) -> None:
@@ -58,7 +58,7 @@ class FakeNao:
         self._visitor = visitor
 
     def face(self) -> tuple[float, float] | None:
-        """Where the visitor's face stands in the top camera's image [px]."""
+        """The position of the visitor's face in the top camera's image [px], or None if there is no visitor."""
         if self._visitor is None:
             return None
         angles = self.world.joints.angles()

@@ -66,7 +66,7 @@ class Joints:
         self._tasks: list[Task] = []
 
     def known(self, names: Any, method: str) -> list[str]:
-        """The names as a list; raises as ALMotion does for one that is none."""
+        """Return the names as a list; raise ALMotion's error for an unknown joint."""
         listed = [names] if isinstance(names, str) else list(names)
         for name in listed:
             if name not in self.body.joints:
@@ -74,7 +74,7 @@ class Joints:
         return listed
 
     def angles(self) -> dict[str, float]:
-        """Where they are now."""
+        """Return the present angle of each joint [rad]."""
         now = self._times.now
         for task in self._tasks[:]:
             self._angles.update(task.way(min(now, task.end) - task.begin))
@@ -100,7 +100,7 @@ class Joints:
         return None
 
     def kill(self, names: Sequence[str]) -> None:
-        """End the tasks that use one of these joints, where they are."""
+        """End the tasks that use one of these joints, which keep their present angles."""
         self.angles()
         for task in [t for t in self._tasks if not set(names).isdisjoint(t.names)]:
             self._tasks.remove(task)

@@ -1,4 +1,4 @@
-"""What NAOqi is told for each command, and what becomes of it."""
+"""The calls to NAOqi for each command, and the command's outcome."""
 
 import logging
 from dataclasses import replace
@@ -217,7 +217,7 @@ def test_a_move_ends_when_it_is_told(robot: Lockstep, live: Live) -> None:
 
 
 def test_rest_goes_out_while_a_call_hangs(robot: Lockstep, live: Live) -> None:
-    """A walk that NAOqi does not end keeps nobody from resting for longer than the patience for it."""
+    """A walk that NAOqi does not end delays a rest no longer than the timeout of the call."""
     robot.start("a", Walk(0.3))
     live(0.5)
     robot.nao.world.deaf = True

@@ -115,6 +115,6 @@ def test_a_connection_lost_in_a_motion_fails_it_and_comes_back(
 
 
 def test_a_robot_that_is_silent_is_lost(robot: Lockstep, live: Live) -> None:
-    """A cable that was pulled tells nobody."""
+    """A pulled cable sends no message, so a silent robot counts as lost."""
     robot._session._broken(robot._session._session, "the robot has not answered for 2 s")
     assert live(0.1)[0].name == "robot.lost"

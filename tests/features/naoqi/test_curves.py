@@ -1,4 +1,4 @@
-"""What NAOqi plays is what the motion says, whichever interpolation it uses."""
+"""NAOqi plays the curve that the motion describes, for every kind of interpolation."""
 
 from math import pi
 

@@ -1,4 +1,4 @@
-"""Life on a real NAO: head and arms move a little where nothing else moves the robot."""
+"""Life on a real NAO: head and arms move slightly while nothing else moves the robot."""
 
 from dataclasses import replace
 from itertools import chain

@@ -1,4 +1,4 @@
-"""What the robot's microphones hear, as a WAV; and what may be in the way of that."""
+"""WAV recordings from the robot's microphones, and the faults that can prevent one."""
 
 import base64
 import io

@@ -1,4 +1,4 @@
-"""Pepper behind the same bridge: what NAOqi is asked and told of a robot on wheels. The fake is Pepper from memory."""
+"""Pepper behind the same bridge: NAOqi's calls for a robot on wheels. The fake Pepper was written from memory."""
 
 import logging
 from dataclasses import replace

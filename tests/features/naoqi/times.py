@@ -1,4 +1,4 @@
-"""The fake robot's time: it stands still until somebody lets it pass, and answers blocking calls when they are due."""
+"""The fake robot's clock: it advances only when a test advances it, and ends blocking calls when they are due."""
 
 import heapq
 import threading

@@ -1,4 +1,4 @@
-"""What the services of a NAOqi share: time, joints, what was called, and what a test may break."""
+"""The shared state of the fake NAOqi's services: time, joints, recorded calls, and faults that a test can set."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from tests.features.naoqi.times import Times
 
 
 class World:
-    """What the services share: time, joints, what was called, and what a test may break."""
+    """The services' shared state: time, joints, recorded calls, and faults that a test can set."""
 
     def __init__(self, body: Any) -> None:
         self.times = Times()

@@ -1,4 +1,4 @@
-"""What only the bus on RabbitMQ promises, with a real broker."""
+"""Guarantees that only the bus on RabbitMQ gives, tested with a real broker."""
 
 import json
 import threading

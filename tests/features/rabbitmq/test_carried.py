@@ -325,7 +325,7 @@ def test_who_leaves_while_another_comes_takes_nothing_from_them(
     consume = PolledConnection.consume
 
     def between(connection: PolledConnection, *told: Any) -> str:
-        """The queue is declared, and nobody reads it yet but who leaves."""
+        """Close the first reader after the second one declared the queue and before it consumes."""
         monkeypatch.undo()
         undo()
         first.close()

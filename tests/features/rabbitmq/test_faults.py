@@ -1,4 +1,4 @@
-"""What must arrive does, once, whatever befalls the broker and the way to it; and nothing grows meanwhile."""
+"""Messages that must arrive do so exactly once despite faults of broker and network; memory stays bounded."""
 
 import logging
 import threading
@@ -63,7 +63,7 @@ class Sending:
 
 
 class Effects(Counter[tuple[str, int]]):
-    """How often each message had an effect."""
+    """Counts the effects of each message."""
 
     def __call__(self, message: Message) -> None:
         self[message.key, message.body] += 1
@@ -146,7 +146,7 @@ def links_of(bus: Any) -> list[Any]:
 
 
 def cut_for(seconds: float, broker: RabbitMQ) -> None:
-    """A network that carries nothing for a while, and tells nobody."""
+    """Cut the network for a while without closing a connection; every message must arrive once."""
     relay, effects = Relay(broker.port), Effects()
     url = f"amqp://guest:guest@{broker.place(relay.port)}?heartbeat=1"
     reader, sender = opened(url), opened(url)
@@ -215,7 +215,7 @@ def test_a_flood_of_fifty_thousand_arrives_whole_and_fills_no_memory(broker: Rab
 
 @pytest.mark.usefixtures("no_thread_stays")
 def test_telemetry_that_nobody_can_take_fills_no_memory(broker: RabbitMQ) -> None:
-    """A camera goes on while the network is away: the newest frame waits, and no other."""
+    """A camera publishes while the network is away: only the newest frame waits."""
     relay, key = Relay(broker.port), "lumen.fault.image"
     bus, seen = connect(f"amqp://guest:guest@{broker.place(relay.port)}"), Collector()
     bus.carry({key: Route("image", key, Direction.OUT, keep=1)})

@@ -1,4 +1,4 @@
-"""What is believed of what others say of their messages."""
+"""The identity that a bus derives from a foreign message's properties, valid or not."""
 
 import math
 import time

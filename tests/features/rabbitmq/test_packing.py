@@ -41,7 +41,7 @@ def picture(shade: int = 0) -> Image:
 
 
 class Seeing(RecordingRobot):
-    """A robot with a camera; `drawn` counts the pictures that somebody asked it to draw."""
+    """A robot with a camera; `drawn` counts the pictures that it drew on request."""
 
     drawn = 0
 
@@ -107,7 +107,7 @@ def plain(broker: RabbitMQ) -> Iterator[Plain]:
 def test_a_consumer_that_wants_two_images_a_second_gets_two(
     project: Project, broker: RabbitMQ, plain: Plain, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In ten seconds of the robot's time, in which nobody wants the thirty of the other route: they are not drawn."""
+    """In ten simulated seconds, the other route's thirty images a second have no consumer and are not drawn."""
     monkeypatch.setattr(publisher, "PROBE_PERIOD", 3_600.0)
     bus, ear, told = validated(connect(broker.url), project), connect(broker.url), Collector()
     ear.subscribe(SLOW, told)

@@ -1,4 +1,4 @@
-"""What AMQP says of a message may be anything: the message is taken, and the connection stays."""
+"""A message may have any AMQP properties: the bus accepts it and keeps its connection."""
 
 import logging
 import struct

@@ -1,4 +1,4 @@
-"""Who may use a broker, and whom we believe to be one."""
+"""Access to a broker by password and TLS, and the check of the broker's identity."""
 
 import socket
 import threading
@@ -19,7 +19,7 @@ from tests.waiting import Collector, until
 
 @pytest.fixture(scope="module")
 def secure(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RabbitMQ]:
-    """A broker with TLS, its certificate for 127.0.0.1, and a policy for messages that nobody waits for."""
+    """A broker with TLS, a certificate for 127.0.0.1, and a policy for messages without a consumer."""
     broker = RabbitMQ(certify(tmp_path_factory.mktemp("certificates"), "IP:127.0.0.1"))
     broker.start()
     yield broker

@@ -1,4 +1,4 @@
-"""What a process that stood still finds in its socket is as old as it may be; what comes else is new."""
+"""Messages found in the socket after a stall count as old as they can be; all others count as new."""
 
 import pytest
 
@@ -46,7 +46,7 @@ def test_who_stood_still_in_a_turn_and_reads_in_the_next(time: Time, clock: Turn
 
 
 def test_many_short_turns_are_no_standing_still(time: Time, clock: TurnClock) -> None:
-    """As where a queue is declared, for which the broker takes a second."""
+    """Such turns follow each other while the broker needs a second to declare a queue."""
     for _ in range(10):
         clock.begin(0.5)
         time.now += 0.3

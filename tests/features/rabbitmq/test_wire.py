@@ -15,14 +15,14 @@ from lumen.features.rabbitmq.wire import WireConnection
 from tests.tables import for_each
 
 PIECE = 50
-"""How much of a body goes into a frame here [bytes]."""
+"""The size of a frame's part of a body in these tests [bytes]."""
 READER = b"ctag1"
 
 Seen = tuple[int, bool, bytes, MessageProperties, bytes]
 
 
 class Wire(WireConnection):
-    """A connection that is open to nobody; `rest` are the frames that are pika's."""
+    """A connection without a broker; `rest` collects the frames that pika handles itself."""
 
     is_open = True
 
@@ -96,7 +96,7 @@ def test_what_is_no_short_text_is_refused_before_anything_is_written(text: str, 
 
 
 class Line:
-    """What pika writes to: a socket that fails, or takes a few bytes at once, and pika's own buffer."""
+    """A stand-in for the socket, which fails or accepts a few bytes at once, and for pika's own buffer."""
 
     def __init__(self, takes: int | OSError) -> None:
         self._sock, self._takes = self, takes

@@ -171,7 +171,7 @@ def test_a_lamp_and_a_button_by_mqtt(
 
 
 def _reached(here: Stand, there: Device) -> bool:
-    """Whether the lamp has been told; asks once more where it was not there yet."""
+    """Return True if the lamp got a value; if not, publish once more, since it may not have listened yet."""
     if not there.came:
         here.bus.publish(LAMP, {"level": 1.0})
         here.settle()
@@ -331,7 +331,7 @@ def test_a_sound_desk_by_osc(desk: tuple[int, list[Any]], museum: Callable[..., 
 
 
 def _moved(sender: SimpleUDPClient, moved: Collector) -> bool:
-    """Whether the desk is heard; it moves once more where nobody listened yet."""
+    """Return True if a move of the desk arrived; if not, move it once more, since the port may open late."""
     if not moved.messages:
         sender.send_message("/ch/1", [0.5, "left"])
     return bool(moved.messages)
