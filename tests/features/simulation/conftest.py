@@ -52,7 +52,7 @@ def until_answered(robot: SimulatedRobot, id: str, limit: float = 60.0) -> list[
 
 
 def answer(events: Sequence[Event], id: str) -> str:
-    """`done`, `cancelled` or `error: REASON` of that command, empty where none came."""
+    """Return the command's `done`, `cancelled` or `error: REASON`, or an empty string if no answer came."""
     for event in events:
         kind, _, rest = event.name.partition(".command.")
         if rest == id:
@@ -61,7 +61,7 @@ def answer(events: Sequence[Event], id: str) -> str:
 
 
 def look_at_face(robot: SimulatedRobot, do: Do, body: Body) -> None:
-    """Turn the head so that the visitor's face should stand in the middle of the image."""
+    """Turn the head so that the visitor's face should be in the middle of the image."""
     robot.advance(0.2)
     torso = robot.world.data.body("nao/Torso")
     face = robot.world.data.site("visitor_face").xpos

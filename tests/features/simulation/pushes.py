@@ -14,16 +14,16 @@ from lumen.ports import Perform
 from tests.features.simulation.walks import Push, any_robot
 
 SETTLE = 1.0
-"""How long a robot has stood before [s]."""
+"""The time that a robot stands before the trial [s]."""
 
 AFTER = 3.0
-"""How long a pushed robot is watched [s]."""
+"""The time that a robot is observed after a push [s]."""
 
 DIRECTIONS = tuple(2 * pi * k / 10 for k in range(10))
 """Where to [rad]: 0 is forward, pi / 2 to the robot's left."""
 
 Doing = Callable[[SimulatedRobot], None]
-"""What the robot does when it is pushed."""
+"""Starts the robot's activity during the push."""
 
 
 class PushTrial(NamedTuple):

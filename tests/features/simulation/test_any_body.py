@@ -1,4 +1,4 @@
-"""Whatever body it is: it is examined, filmed, drawn from its joints, lit, and seen through its camera."""
+"""Features that work with any body: examination, films, link poses, eye lights and the camera."""
 
 from pathlib import Path
 

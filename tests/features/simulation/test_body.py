@@ -1,4 +1,4 @@
-"""models/nao.yaml, its schema, and what is said of a broken one."""
+"""models/nao.yaml, its schema, and the errors that a faulty body file causes."""
 
 import json
 from copy import deepcopy

@@ -1,4 +1,4 @@
-"""Steps that catch a fall: in physics, for robots that differ, by what they measure of themselves."""
+"""Steps that catch a fall, in simulated physics: varied robots rely on their own sensors alone."""
 
 from math import hypot, inf, pi
 
@@ -20,7 +20,7 @@ HARD = 3.0
 
 
 def pushed(robot: SimulatedRobot, impulse: float, seconds: float, to: float = 0.0) -> bool:
-    """Push it for 0.1 s, and live that long; whether it took a step to stay upright."""
+    """Push the robot for 0.1 s, simulate `seconds`, and return True if it stepped to stay upright."""
     push, begin, stepped = Push(10 * impulse, 0.0, to), robot.time, False
     while robot.time < begin + seconds:
         push.act(robot, robot.time - begin)

@@ -1,4 +1,4 @@
-"""What the simulated robot does with commands, good and absurd."""
+"""The simulated robot's response to commands, valid and absurd."""
 
 from math import inf, nan
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The robot in somebody else's dm_control world."""
+"""The robot in a dm_control world of another project."""
 
 import runpy
 from pathlib import Path

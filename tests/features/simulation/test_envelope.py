@@ -1,4 +1,4 @@
-"""Whatever is wanted of the joints, they are told nothing beyond their limits and speeds."""
+"""The joints' targets never exceed the joints' limits and speeds, for any command."""
 
 import numpy as np
 from hypothesis import given, settings

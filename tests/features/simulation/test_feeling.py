@@ -1,4 +1,4 @@
-"""What the robot feels of itself: soles, inertial unit, the heat of its motors; in NAOqi's names and units."""
+"""The robot's internal sensors in NAOqi's names and units: soles, inertial unit, motor temperatures."""
 
 from math import pi
 

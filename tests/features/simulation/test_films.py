@@ -70,7 +70,7 @@ def test_nothing_is_cut_faster_than_an_eye_follows(times: dict[float, FilmMoment
 
 
 def in_picture(place: CameraPlace, point: HallPoint, aspect: float) -> tuple[float, float]:
-    """Where a point lies in a picture: (0, 0) is its middle, 1 its edge, right and up."""
+    """Project a point into a picture: (0, 0) is the middle, 1 the edge, right and up are positive."""
     azimuth, elevation, _ = free_camera(place)
     a, e = radians(azimuth), radians(elevation)
     ahead = np.array([cos(e) * cos(a), cos(e) * sin(a), sin(e)])

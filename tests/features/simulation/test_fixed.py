@@ -1,4 +1,4 @@
-"""A robot that is built in where it stands: no legs, no wheels, no arms. It looks, takes postures, and stays."""
+"""A robot fixed in place, without legs, wheels or arms: it looks around, changes posture, and never moves away."""
 
 import numpy as np
 import pytest

@@ -1,8 +1,8 @@
 """Far walks, and floors that are not flat: who stays upright, how far off, and what odometry believes.
 
 Bounds are what was measured, a little rounded up; `python benchmarks/walking.py --robots 20` prints the figures, and
-docs/decisions/074 says which of them fall short of what is wanted. Five metres cost
-5 s of CPU: what strays shows only then.
+docs/decisions/074 lists the figures that miss their targets. A walk of five metres costs
+5 s of CPU, but shorter walks do not show the drift.
 """
 
 from math import pi
@@ -18,7 +18,7 @@ from tests.features.simulation.walks import RESTED, any_robot, bump, ramp, stray
 class Way(NamedTuple):
     """A walk over geoms `more`, how far beside its goal it may end and how far odometry may be wrong [cm].
 
-    Before it the robot has stood for `rest` [s]: so long it has learned what its gyrometer tells at rest.
+    Before the walk the robot stands for `rest` [s], in which it estimates its gyrometer's bias.
     """
 
     more: str

@@ -1,4 +1,4 @@
-"""What sensors and motors lack, and that each of it can be switched off."""
+"""The imperfections of sensors and motors, each of which has a switch."""
 
 from dataclasses import fields, replace
 

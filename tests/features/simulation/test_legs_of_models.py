@@ -1,4 +1,4 @@
-"""What is read of a body's legs, and which legs are refused, saying why."""
+"""The geometry read from a body's legs, and the legs that are refused with a reason."""
 
 import shutil
 from dataclasses import replace

@@ -18,7 +18,7 @@ from tests.gait.nao_legs import NAO_LEGS
 STAGE = Stage((-0.4, 0.4), (-0.6, 0.6))
 FASTEST = fastest(GaitParameters())
 GRACE = 0.01
-"""How far beyond the stage a foot may land [m]: as far as encoders err."""
+"""The distance beyond the stage's edge at which a foot may land [m]: the encoders' error."""
 
 
 @pytest.fixture
@@ -77,7 +77,7 @@ def full_speed(body: Body, seed: int, command: Move, seconds: float) -> tuple[bo
 
 
 BRISK = [(Move(1.0), 1, 0.2), (Move(0.0, 1.0), 2, 0.12), (Move(0.0, 0.0, 9.0), 3, 0.85)]
-"""What is asked for, which of the speeds that is, and what is reached at least."""
+"""The command, the index of its speed in the result, and the least speed that the robot must reach."""
 
 
 @pytest.mark.parametrize(("command", "speed", "least"), BRISK)

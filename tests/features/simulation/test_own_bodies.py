@@ -132,7 +132,7 @@ def test_left_is_right_in_a_mirror(name: str) -> None:
 
 @pytest.mark.parametrize(("name", "posture"), SAMPLES)
 def test_it_stands_still_in_its_postures(name: str, posture: str) -> None:
-    """Nothing of it touches itself, it neither falls nor creeps, and no motor works at its limit."""
+    """The robot neither touches itself nor falls nor creeps, and no motor works at its limit."""
     model, data = posed(name, posture)
     floor = model.geom("floor").id
     assert not [contact for contact in data.contact if floor not in contact.geom], "it touches itself"
@@ -154,7 +154,7 @@ def test_it_stands_still_in_its_postures(name: str, posture: str) -> None:
 
 @own
 def test_a_heavier_brother_is_heavier_in_all_its_parts(name: str) -> None:
-    """Its masses stand at geoms and their classes rather than in `inertial`."""
+    """These models define masses in geoms and their classes rather than in `inertial`."""
     document, _ = parse(f"models/{name}.yaml", (MODELS / f"{name}.yaml").read_bytes())
     assert document is not None
     body = build_body(document.data, DocumentReport(document), name=name)

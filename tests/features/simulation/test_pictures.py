@@ -1,4 +1,4 @@
-"""What is drawn: camera images, films, shells. Needs an OpenGL library, which the tests' packages bring."""
+"""Camera images, films and shells. These tests need an OpenGL library, which the tests' packages contain."""
 
 import os
 import sys

@@ -1,4 +1,4 @@
-"""Down to the floor and up again: in physics, whatever the robot weighs and whatever it stands on."""
+"""Down to the floor and up again, in simulated physics: robots of different weights on different floors."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -47,7 +47,7 @@ def load(robot: SimulatedRobot, *parts: str) -> float:
 
 
 def trips(seeds: Sequence[int], body: Body, posture: str) -> int:
-    """How many of these robots come to a posture and stand afterwards."""
+    """Count the robots that reach the posture and then stand up again."""
     good = 0
     for seed in seeds:
         robot = any_robot(body, seed)
@@ -80,7 +80,7 @@ def shoved(robot: SimulatedRobot, angle: float) -> None:
 
 
 def falls(seeds: Sequence[int], body: Body) -> int:
-    """How many of these robots, pushed over in any direction, get up."""
+    """Count the robots that get up after a push has thrown them over in a random direction."""
     good = 0
     for seed in seeds:
         robot = any_robot(body, seed)

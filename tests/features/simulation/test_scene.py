@@ -12,7 +12,7 @@ from tests import ROOT
 
 MODELS = ROOT / "models"
 MOVED, STOOD = 1.1, 2.0
-"""How long it is moved at random, and how long it has to stand [s]."""
+"""The duration of random motion, and the duration for which the robot must stand [s]."""
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""Touch: a knob that stands in the hall presses the sensor that it touches, and no other."""
+"""Touch: a knob in the hall presses the sensor that it touches, and no other."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from tests.features.simulation.conftest import MODELS
 
 RADIUS = 0.02
 DEPTH = 0.003
-"""How far the knob stands in what touches [m]."""
+"""The overlap between the knob and the part that touches it [m]."""
 
 TOUCHED = {
     "ChestButton": ("Torso", (1, 0, 0), (0.052, 0.0, 0.0552)),

@@ -1,4 +1,4 @@
-"""A robot on wheels: it drives to places, brakes, knows where it is, and tips over where it is pushed hard enough."""
+"""A robot on wheels: it drives to places, brakes, tracks its position, and tips over if it is pushed hard enough."""
 
 import shutil
 from dataclasses import replace
@@ -38,7 +38,7 @@ def wheels(robot: SimulatedRobot) -> Wheels:
 
 
 def really(robot: SimulatedRobot) -> Pose:
-    """Where the middle of its wheels stands, from where it began."""
+    """Return the true pose of the robot, relative to its start [m, m, rad]."""
     torso = robot.world.data.body(robot.world.torso)
     axes = torso.xmat.reshape(3, 3)
     return Pose(torso.xpos[0] - START[0], torso.xpos[1] - START[1], np.arctan2(axes[1, 0], axes[0, 0]))

@@ -79,7 +79,7 @@ def test_a_robot_that_sat_walks_only_where_it_is_safe_all_the_same(body: Body) -
 
 
 def believed(robot: SimulatedRobot) -> Pose:
-    """Where the robot takes itself to stand, from where it began."""
+    """Return the robot's own estimate of its pose, relative to its start."""
     return middle(robot.base.odometry.feet)
 
 

@@ -1,4 +1,4 @@
-"""A world that was compiled before is the same to the bit, and nobody gets another one's."""
+"""A cached world equals a newly compiled one to the bit, and is never used for other files."""
 
 import shutil
 from collections.abc import Iterator

@@ -24,7 +24,7 @@ START = (3.0, -3.0)
 
 TARGETS = (Walk(0.2), Walk(0.5), Walk(0.0, 0.2), Walk(0.0, 0.0, pi / 2), Walk(0.3, 0.2, pi / 4))
 SLOPE = 2.0
-"""How long a slope is [m]."""
+"""The length of a slope [m]."""
 
 LONGEST = 120.0
 """No walk takes longer [s]."""
@@ -33,12 +33,12 @@ RESTED = 12.0
 """A robot that has stood so long knows its gyrometer's bias [s]."""
 
 NEAR, STRAIGHT = 1.5, 1.5
-"""How true a walk has to end [cm], [degrees]."""
+"""The largest allowed errors at the end of a walk: distance [cm] and direction [degrees]."""
 
 
 @dataclass
 class Walked:
-    """How a walk ended: its answer, how far from where it should [cm, degrees], the greatest tilt [degrees]."""
+    """The end of a walk: its answer, its distance from the target [cm, degrees], the greatest tilt [degrees]."""
 
     answer: str
     events: list[Event]
@@ -100,7 +100,7 @@ def feet(robot: SimulatedRobot) -> Feet:
 
 
 def truth(robot: SimulatedRobot) -> Pose:
-    """Where the robot really stands, between its feet, from where it began."""
+    """Return the true pose of the midpoint between the robot's feet, relative to its start."""
     return middle(feet(robot))
 
 
@@ -124,7 +124,7 @@ def bump(height: float) -> str:
 
 
 def strayed(robot: SimulatedRobot) -> float:
-    """How far the robot stands from where its odometry believes it to be [cm]."""
+    """Return the distance between the robot's true position and its odometry's estimate [cm]."""
     there, where = truth(robot), robot.base.whereabouts
     return 100 * hypot(there.x - where.x, there.y - where.y)
 

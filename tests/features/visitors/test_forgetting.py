@@ -1,4 +1,4 @@
-"""The database forgets people: whole visits, nobody else's, also while they stand there, and what came from before."""
+"""The database forgets one person: whole visits, even a current one, and older rows; other people's rows stay."""
 
 import sqlite3
 from collections.abc import Callable
@@ -93,7 +93,7 @@ def test_who_is_forgotten_while_standing_there_is_not_noted_again(stand: Make) -
     context(here.bus, "Ani")
     assert forget(here, "Ani")["entries"] == 2
     hear(here.bus, "I like dancing")
-    context(here.bus, "Ani")  # a behaviour of somebody else's, which forgets nobody
+    context(here.bus, "Ani")  # a foreign behaviour that ignores the request to forget
     hear(here.bus, "Ani likes dancing")
     here.ask(JOURNAL, {"kind": "note", "text": "the projector was moved"})
     here.ask(JOURNAL, {"kind": "note", "text": "Ani moved it"})

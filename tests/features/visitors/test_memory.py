@@ -1,4 +1,4 @@
-"""The database module: what it keeps, what it answers, what it forgets, and what it says where it can't."""
+"""The database module: its entries, its answers, its deletions, and its errors if the file is unusable."""
 
 import sqlite3
 from collections.abc import Callable
@@ -37,7 +37,7 @@ def remembering(stand: Stand, file: Path | None, date: Callable[[], float] = Cal
 
 
 def talk(bus: Bus, name: str) -> None:
-    """A visitor of that name comes, says so, is answered, and goes."""
+    """Publish a whole visit: a visitor gives this name, gets an answer, and leaves."""
     bus.publish("lumen.audio.speech.recognition", {"name": "visitor", "result": f"my name is {name}"})
     bus.publish("lumen.state", {"robot": "NAO", "time": 1.0, "entered": ["how_are_you"], "context": {"visitor": name}})
     bus.publish(

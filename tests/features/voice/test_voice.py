@@ -29,7 +29,7 @@ STREAM, SPOKEN = "lumen.audio.text.stream", "lumen.audio.text.to.speech"
 
 
 def loud(sound: Sound, begin: float, end: float) -> bool:
-    """Whether anything is to be heard between these times [s]."""
+    """Return True if the sound is not silent between these times [s]."""
     part = sound.samples[2 * round(begin * sound.rate) : 2 * round(end * sound.rate)]
     return any(part)
 
