@@ -52,7 +52,7 @@ def ordered(
 
 
 class Taker:
-    """A stand-in for an exhibition's reload that accepts files when the test calls it."""
+    """A stand-in for an exhibition's reload; it applies offered files when the test calls `take`."""
 
     def __init__(self, files: Mapping[str, bytes]) -> None:
         self.known = {fingerprint(files): dict(files)}

@@ -14,7 +14,7 @@ from lumen.ports import Perform
 from tests.features.simulation.walks import Push, any_robot
 
 SETTLE = 1.0
-"""The time that a robot stands before the trial [s]."""
+"""The time for which a robot settles before the trial [s]."""
 
 AFTER = 3.0
 """The time that a robot is observed after a push [s]."""

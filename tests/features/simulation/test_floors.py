@@ -18,7 +18,7 @@ from tests.features.simulation.walks import RESTED, any_robot, bump, ramp, stray
 class Way(NamedTuple):
     """A walk over geoms `more`, how far beside its goal it may end and how far odometry may be wrong [cm].
 
-    Before the walk the robot stands for `rest` [s], in which it estimates its gyrometer's bias.
+    Before the walk the robot rests for `rest` [s], in which it estimates its gyrometer's bias.
     """
 
     more: str
