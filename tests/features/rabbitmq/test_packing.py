@@ -107,7 +107,7 @@ def plain(broker: RabbitMQ) -> Iterator[Plain]:
 def test_a_consumer_that_wants_two_images_a_second_gets_two(
     project: Project, broker: RabbitMQ, plain: Plain, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The other route, at thirty images a second, has no consumer, so none of its images is drawn."""
+    """The other route, at thirty images a second, has no consumer: only its first image, a probe, is drawn."""
     monkeypatch.setattr(publisher, "PROBE_PERIOD", 3_600.0)
     bus, ear, told = validated(connect(broker.url), project), connect(broker.url), Collector()
     ear.subscribe(SLOW, told)
