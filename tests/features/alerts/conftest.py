@@ -1,4 +1,4 @@
-"""Servers that take what is told, and nothing of this machine's own settings."""
+"""Servers that receive alerts, and an environment without the settings of this machine."""
 
 from collections.abc import Callable, Iterator
 

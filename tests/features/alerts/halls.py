@@ -39,7 +39,7 @@ states:
 
 
 def files(folder: Path, web: Web) -> Path:
-    """The files of the exhibition; people are told of the same each time."""
+    """Write the files of the exhibition; its interval of 1 ms sends repeated alerts each time."""
     copied_project(BASE, folder)
     main = folder / "lumen.yaml"
     kept = "".join(line for line in main.read_text("utf-8").splitlines(keepends=True))
@@ -60,7 +60,7 @@ class NearBus(MemoryBus):
 
 
 class Hall:
-    """Exhibitions and parts of them that live while somebody waits."""
+    """Exhibitions, or parts of them, that tick while a test waits for a condition."""
 
     def __init__(self, folder: Path, web: Web) -> None:
         self.folder, self.web, self.bus = files(folder, web), web, NearBus()
@@ -118,7 +118,7 @@ class Hall:
         until(condition, meanwhile=lambda: self.live(1), shown=lambda: [body["text"] for body in self.web.bodies])
 
     def told(self, kind: str) -> str:
-        """What was told first of that kind, once it was."""
+        """Wait for the first alert of that kind, and return its text."""
         self.until(lambda: self.web.of(kind))
         text: str = self.web.of(kind)[0]["text"]
         return text.partition(": ")[2]
@@ -129,7 +129,7 @@ class Hall:
                 node.tick()
 
     def kill(self, node: Node) -> None:
-        """It lives no more, and tells nobody."""
+        """Stop ticking that node, without a notice to any other."""
         self.nodes.remove(node)
 
     def close(self) -> None:

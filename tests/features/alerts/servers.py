@@ -1,4 +1,4 @@
-"""Servers on loopback that take what is told: one for the web, one for mail."""
+"""Servers on loopback that receive alerts: one for webhooks, one for mail."""
 
 import base64
 import json
@@ -15,7 +15,7 @@ from tests.waiting import HANG, until
 
 
 class Web:
-    """Keeps what is posted to it; answers with each of `statuses` once, and then with 200. Closed it answers nobody."""
+    """Keep what is posted; answer with each of `statuses` once, then with 200. It refuses connections once closed."""
 
     def __init__(self, *statuses: int) -> None:
         self.statuses, self.bodies = list(statuses), list[dict[str, Any]]()

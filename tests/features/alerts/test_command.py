@@ -1,4 +1,4 @@
-"""`lumen alerts test`: who is reached, and why somebody is not."""
+"""`lumen alerts test`: the recipients that it reaches, and why it does not reach the others."""
 
 import json
 from collections.abc import Callable

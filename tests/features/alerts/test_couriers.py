@@ -1,4 +1,4 @@
-"""How often somebody is told: the same once in a while, with a count; later in quiet hours; again where it failed."""
+"""The frequency of alerts: repeats once per interval, with a count; after quiet hours; again if sending failed."""
 
 import itertools
 import threading

@@ -1,4 +1,4 @@
-"""Programs that run: `lumen run`, and `lumen run --only` on RabbitMQ, until somebody is told of them."""
+"""Alerts of real processes: `lumen run`, and `lumen run --only` on RabbitMQ, up to the delivered alert."""
 
 import os
 import signal

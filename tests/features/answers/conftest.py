@@ -47,7 +47,7 @@ class Desk:
     def ask(
         self, question: str = "what is it", language: str = "en", within: float = LONGEST, **more: Any
     ) -> list[Any]:
-        """What is published for a question, without its id."""
+        """Ask a question, and return the bodies that are published for it, without ids and without the end marker."""
         self.asked += 1
         id = f"d{self.asked}"
         body = {"id": id, "question": question, "language": language, "within": within, "visit": 1, "offers": {}}

@@ -1,4 +1,4 @@
-"""`ask` in a `do`: what is asked, what of an answer is said, and what is done where none comes."""
+"""`ask` in a `do`: the question, the sentences of an answer that are spoken, and the actions if none comes."""
 
 import json
 from typing import Any

@@ -1,4 +1,4 @@
-"""Passages found by what is meant: a server's vectors, as good as the exhibition's own questions say, or not at all."""
+"""Passages found by meaning: vectors from a server, with a threshold that the exhibition's own questions set."""
 
 import json
 from collections.abc import Callable

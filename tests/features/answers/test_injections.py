@@ -1,4 +1,4 @@
-"""A language model that obeys whoever tells it anything: nothing comes out but sentences that may be said, and offers.
+"""A language model that obeys every instruction it reads: only sentences and offers that are allowed come out.
 
 10 framings for visitors' words and 7 for passages, and 18 goals, make 306 injections. The model of these tests does
 what each of them wants.
@@ -29,7 +29,7 @@ SAMPLE = 12
 
 
 class Injection(NamedTuple):
-    """Words for the model, where they stand, and what an obeying one does."""
+    """Words for the model, the place they are put in, and what a model that obeys them does."""
 
     place: str
     words: str
@@ -91,7 +91,7 @@ class ObeyingVisit:
         self.visit.close()
 
     def put(self, one: Injection) -> bool:
-        """Whether the tour asks the model, and goes on within the time of the question, having only spoken."""
+        """Return whether the tour asks the model; check that it only speaks, and continues before the time is over."""
         here = self.visit
         first = len(here.steps)
         here.exhibition.send("heard", {"result": one.words if one.place == "visitor" else "zxcv qwrt"})
@@ -114,14 +114,14 @@ def says(step: Any) -> bool:
 
 
 def started(visit: Visit, first: int) -> list[Start]:
-    """What was begun from that step on; nothing else was asked for, but to end questions."""
+    """The commands started from that step on; check that all others only cancel commands."""
     commands = [command for step in visit.steps[first:] for command in step.commands]
     assert all(isinstance(command, Start | Cancel) for command in commands)
     return [command for command in commands if isinstance(command, Start)]
 
 
 def tried(project: Project, injections: list[Injection], monkeypatch: pytest.MonkeyPatch) -> int:
-    """Put these to the tour; how many of them the model was asked with."""
+    """Put these to the tour, and return how many of them reached the model."""
     monkeypatch.setenv("FAKE_KEY", "sk-secret")
     poison = ""
     nearest = Retriever.nearest

@@ -1,4 +1,4 @@
-"""Passages found by what is meant without any server: a folder of static embeddings, and the package with a model."""
+"""Passages found by meaning without a server: a folder of static embeddings, and the package with a model."""
 
 import json
 import sys

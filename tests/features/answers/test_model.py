@@ -1,4 +1,4 @@
-"""What a language model says is spoken sentence by sentence, or not at all: whatever its server does."""
+"""The robot speaks a model's answer sentence by sentence, or not at all, whatever the model's server does."""
 
 import json
 from collections.abc import Callable

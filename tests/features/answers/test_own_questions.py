@@ -1,4 +1,4 @@
-"""An exhibition's own questions say how like a passage a question has to be, while it runs and in `lumen test`."""
+"""An exhibition's own questions set how similar a question must be to a passage, in a run and in `lumen test`."""
 
 import json
 from dataclasses import replace
@@ -25,7 +25,7 @@ OWN = {"visitors": QuestionSet("visitors", ASKED, {"en": ("where is the exit",)}
 
 
 def test_they_count_while_it_runs() -> None:
-    """What is asked is like enough for what they set, and was not for what holds without them."""
+    """The question is similar enough for the threshold that they set, but not for the default one."""
     tour, found = lumen.load(ROOT), []
     for questions in ({}, OWN):
         known = replace(tour, knowledge=PASSAGES, questions=questions)

@@ -24,7 +24,7 @@ FILLER = {"after": 1.5, "say": {"en": "Let me think."}}
 
 
 class Visit:
-    """The tour on a recording robot in virtual time, where a visitor has come to `offer`."""
+    """The tour on a recording robot in virtual time, after a visitor has reached the state `offer`."""
 
     def __init__(self, project: Project) -> None:
         self.bus = connect("memory://", project)
@@ -157,7 +157,7 @@ def test_another_visitor_is_counted(visit: Callable[..., Visit]) -> None:
     here = visit()
     here.says(QUESTION, "answer")
     here.passes("goodbye", 100.0)
-    here.passes("greet")  # at once, for somebody stands there: idle may be over within a tick
+    here.passes("greet")  # at once, since a visitor is present: idle may end within a tick
     assert here.questions.visit == 2
 
 
@@ -183,7 +183,7 @@ def test_a_project_without_the_module_knows_at_once(project: Project, tmp_path: 
 
 
 def test_the_network_is_cut_in_the_middle_of_a_visit(visit: Callable[..., Visit]) -> None:
-    """The address answers nobody: the module says so once, and the tour goes on."""
+    """No server answers at the address: the module reports it once, and the tour continues."""
     here = visit()
     told: list[str] = []
     module = Answers(here.exhibition.project, here.bus, told.append)

@@ -1,4 +1,4 @@
-"""The switch of the language model: at once, and after every restart until somebody switches it back."""
+"""The switch of the language model: it acts at once, and outlasts restarts until an operator switches back."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""What nobody could answer is on the console's list, without names, and becomes a passage with one edit."""
+"""Unanswered questions are on the console's list, without names, and become passages with one edit."""
 
 from datetime import date
 from pathlib import Path

@@ -37,15 +37,15 @@ class Chromium:
         self.driver.set_script_timeout(HANG)
 
     def run(self, script: str, *arguments: Any) -> Any:
-        """What a script in the page returns."""
+        """Run a script in the page, and return its result."""
         return self.driver.execute_script(script, *arguments)
 
     def open(self, address: str) -> None:
-        """Go to an address, and don't wait for it."""
+        """Open an address, and don't wait until it has loaded."""
         self.driver.get(address)
 
     def window(self) -> str:
-        """Another window, which is looked at from now on."""
+        """Open another window, switch to it, and return its handle."""
         return self._browser.window()
 
     def look(self, window: str) -> None:
@@ -106,11 +106,11 @@ class Chromium:
         until(pressed, HANG)
 
     def said(self) -> str:
-        """What the page says became of Rest, in its words; empty for nothing."""
+        """The page's text about the outcome of Rest; empty if it shows none."""
         return str(self.run(SAID))
 
     def quiet(self) -> None:
-        """Close what it said before."""
+        """Close the notice about an earlier Rest."""
         self.run(QUIET)
 
     def close(self) -> None:

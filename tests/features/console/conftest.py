@@ -51,7 +51,7 @@ class Hosted:
 
     @property
     def _state(self) -> tuple[object, ...]:
-        """What a test may have changed of it."""
+        """The parts of the exhibition's state that a test may change."""
         one = self.exhibition
         return (
             one.configuration,
@@ -140,7 +140,7 @@ def house(copy: Path) -> Iterator[House]:
 
 @pytest.fixture
 def chromium() -> Iterator[Chromium]:
-    """A browser in which nobody was here before."""
+    """A new browser, without any earlier session on the console."""
     one = Chromium()
     yield one
     one.close()

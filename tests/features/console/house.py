@@ -19,7 +19,7 @@ from tests.waiting import HANG, until
 
 WHOLE, ROBOT, REST_OF_IT, CONSOLE = "whole", "robot", "remote", "console"
 ANSWER = 3.0
-"""How long an answer may take before it is asked for again [s]."""
+"""Seconds to wait for an answer before the question is sent again."""
 
 
 class House:
@@ -81,29 +81,29 @@ class House:
         return False
 
     def await_page(self) -> None:
-        """Return once the console says how the robot is."""
+        """Wait until the console shows the state of the robot."""
         until(self._shown, HANG)
 
     def await_robot(self) -> None:
-        """Return once the robot answers, and the console says so."""
+        """Wait until the robot answers, and the console shows it."""
         until(lambda: self.stopped_by() is not None, HANG)
         self.await_page()
 
     def stopped_by(self) -> str | None:
-        """Who stopped the robot, as it says itself, empty where nobody has; None where it does not answer."""
+        """The author of the stop, as the robot reports it; empty if it is not stopped, None if it does not answer."""
         answer = self.ask_robot("stopped")
         return answer["stopped_by"] if isinstance(answer, dict) else None
 
     def resume(self) -> None:
-        """Let it move again, not over the console."""
+        """Let the robot move again, with a message to it instead of the console."""
         until(lambda: self.ask_robot("resume") == "command finished" and self.stopped_by() == "", HANG)
 
     def ask_robot(self, method: str, **parameter: Any) -> Any:
-        """What the robot answers on its key `stop`; None for nothing."""
+        """Ask the robot on its key `stop`, and return its answer; None if none comes."""
         return self._answer(lambda reached: reached.stop, {"type": "motion", "method": method, "parameter": parameter})
 
     def ask_brain(self, question: Mapping[str, Any]) -> Any:
-        """What the exhibition answers an operator; None for nothing."""
+        """Ask the exhibition as an operator, and return its answer; None if none comes."""
         return self._answer(lambda reached: operator_key(reached.robot), question)
 
     def send(self, key: str, body: Any) -> None:

@@ -23,7 +23,7 @@ ENGLISH_WORDS = re.compile(
     re.IGNORECASE,
 )
 QUOTED = re.compile(r"“[^”]*”|\S*[._|/=]\S*|→ \S+")
-"""What is said, and names of the project."""
+"""Quoted words, and names of the project: neither is translated."""
 
 
 def texts(code: str) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""What a page does: asks, sends commands, and listens to server-sent events, over real connections."""
+"""A page's client: it requests data, sends commands and receives server-sent events, over real connections."""
 
 import http.client
 import json
@@ -16,7 +16,7 @@ JSON = {"Content-Type": "application/json"}
 
 
 class Answer(NamedTuple):
-    """What the console answered."""
+    """An HTTP answer of the console."""
 
     status: int
     headers: dict[str, str]
@@ -133,7 +133,7 @@ class Served:
 
     @property
     def serves(self) -> bool:
-        """Whether nobody has closed it."""
+        """Whether the console's thread still runs."""
         return self._thread.is_alive()
 
     def close(self) -> None:

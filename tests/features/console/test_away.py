@@ -1,6 +1,6 @@
 """A page that was away is live again soon, and has every entry once: the server was killed, the network or a wire cut.
 
-What was taken is collected in the page itself, and compared with the journal, which is asked on the bus.
+The page itself collects the entries it receives; the test compares them with the journal, read over the bus.
 """
 
 import sys
@@ -19,9 +19,9 @@ from tests.waiting import HANG, until
 
 HEARD = "lumen.NAO.audio.gender.identification"
 EACH = 0.03
-"""How often something happens [s]: while a page is away more of it than it would be given without asking."""
+"""Seconds between two events: more come while a page is away than it would receive without a request."""
 SHORT, FULL = 4.0, 30.0
-"""How long it is away [s]."""
+"""Seconds for which the page is away."""
 COLLECT = """
 const done = arguments[arguments.length - 1];
 import("/pages/live.js").then(({ live, listen }) => {

@@ -1,4 +1,4 @@
-"""The console beside an exhibition: begun with it, begun again where it dies, ended with it."""
+"""The console beside an exhibition: it starts with it, starts again if it dies, and ends with it."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""The bus goes and comes back: the console goes on by itself, no entry comes twice and none is missing."""
+"""The bus fails and comes back: the console reconnects, no entry comes twice and none is missing."""
 
 import os
 import signal
@@ -15,7 +15,7 @@ from tests.waiting import until
 
 
 def whole(positions: list[str]) -> bool:
-    """Whether they are without a gap, and none is there twice."""
+    """Whether the positions have no gap and no duplicate."""
     numbers = [int(position) for position in positions]
     return numbers == list(range(numbers[0], numbers[0] + len(numbers)))
 

@@ -1,4 +1,4 @@
-"""What the robot sees: only the newest image, only while somebody looks, and only pictures."""
+"""The robot's camera: only the newest image, only while a page shows it, and only pictures."""
 
 import base64
 import http.client

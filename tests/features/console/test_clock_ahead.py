@@ -1,4 +1,4 @@
-"""How far the clock of an exhibition is ahead: told once, so that a page counts by it, and no page is told again."""
+"""The lead of an exhibition's clock: pages receive it once, count with it, and receive it again only if it changes."""
 
 from datetime import UTC, datetime, timedelta
 

@@ -1,4 +1,4 @@
-"""What a person does about a conversation: passages of what nobody could answer, the model's switch, the ears."""
+"""Conversations on the pages: passages for unanswered questions, the model's switch, the ears."""
 
 from collections.abc import Iterator
 
@@ -55,7 +55,7 @@ def console(asked: Hosted) -> Iterator[str]:
 
 
 def violations(viewer: Viewer) -> object:
-    """What a screen reader or a keyboard could not use of what is shown."""
+    """Return the violations that axe-core finds: parts that a screen reader or a keyboard can't use."""
     viewer.run((fetched("console") / "axe-core/axe.min.js").read_text("utf-8"))
     return viewer.driver.execute_async_script("axe.run().then((found) => arguments[0](found.violations))")
 

@@ -18,17 +18,17 @@ from tests.waiting import until
 ROW = "  gender: {"
 HEARD = "lumen.NAO.audio.gender.identification"
 BATCH, EACH = 20, 0.05
-"""So many events at a time, and how often [s]: 400 a second."""
+"""Events per batch, and seconds between batches: 400 events a second."""
 OPEN = 12
-"""Pages that are there at a time."""
+"""Pages that are open at the same time."""
 BEHIND = 3_000
-"""How many entries a tab lacks at most: more than the console keeps, so that it asks the exhibition for the others."""
+"""Most entries that a tab lacks: more than the console keeps, so it requests the others from the exhibition."""
 MORE = 12.0
-"""What it may have more at the end than then [MB]."""
+"""Megabytes by which the warm console may grow until the end."""
 POOL = min(32, (os.cpu_count() or 1) + 4)
-"""How many threads asyncio keeps for what takes long, begun when first needed; Starlette has a pool, too."""
+"""Threads in asyncio's pool for slow calls, started at the first use; Starlette has a pool, too."""
 HANDLES = 6
-"""Connections that are just ending, and what asks for images."""
+"""Handles of connections that are about to end, and of requests for images."""
 PAGES = ("", "robot/NAO", "robot/NAO/day", "robot/NAO/files", "robot/NAO/see", "robot/NAO/subtitles")
 SHOWN = "return document.readyState === 'complete' && document.querySelector('main')?.innerText && location.pathname"
 WAIT = 120.0
@@ -81,7 +81,7 @@ def size(house: House) -> tuple[float, int, int]:
 
 
 def lived(house: House, events: int, tabs: int, looks: int) -> None:
-    """Let so much happen, with so many tabs, of which a few are Chromium's, and tell how large the console was."""
+    """Play `events` with `tabs` tabs and `looks` pages in Chromium, print the console's sizes and check its growth."""
     draw, begin = Random(18), house.ask_brain({"ask": "now"})["position"]
     chromium, crowd, opened = Chromium(), Crowd(house, events), list[Stream]()
     sizes, seen, tab = list[tuple[float, int, int]](), 0, 0
@@ -116,8 +116,10 @@ def lived(house: House, events: int, tabs: int, looks: int) -> None:
 
 
 def warmed(house: House, chromium: Chromium) -> int:
-    """Let it begin, load and hold all that it ever does: each answer, each page, and as many tabs that lack as much as
-    any; how many entries these took."""
+    """Request each answer and each page, with as many late tabs as there ever are, so that all memory is in use.
+
+    Return the number of entries that these tabs received.
+    """
     for path in ("/api/day", "/api/day.csv", "/api/why?what=idle", "/api/files", "/api/shape"):
         house.browser.get(path)
     for page in PAGES:
@@ -143,7 +145,7 @@ def position(house: House) -> int:
 
 
 def leave(page: Stream) -> int:
-    """Close a page, which has to have had entries once and in order; how many."""
+    """Close a page, check that it received each entry once and in order, and return their number."""
     page.close()
     positions = [event.data["position"] for event in page.of("entry")]
     assert positions == list(range(positions[0], positions[0] + len(positions))) if positions else True

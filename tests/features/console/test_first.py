@@ -1,4 +1,4 @@
-"""A page is told how the robot is and what happens, and what becomes of a command."""
+"""A page receives the robot's state, the entries of the journal, and the result of each command."""
 
 import pytest
 

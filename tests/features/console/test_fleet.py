@@ -22,7 +22,7 @@ pytestmark = [pytest.mark.slow]
 
 
 class Watched:
-    """A centre with its robots, whose time goes by on a thread, and a console on its bus."""
+    """A centre with its robots, which tick on a thread, and a console on its bus."""
 
     def __init__(self, folder: Path) -> None:
         self.hall, self._ending = Hall(folder), threading.Event()

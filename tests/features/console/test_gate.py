@@ -1,4 +1,4 @@
-"""What a foreign page, a rebound name, a guesser of PINs or a careless program may send, and what becomes of it."""
+"""Requests of a foreign page, a rebound host name, a guesser of PINs or a careless program, and their answers."""
 
 import json
 import socket

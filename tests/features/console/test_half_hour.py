@@ -1,7 +1,7 @@
 """An operator's half hour: broken visitors, a bad edit, a fall, a robot and a broker that are gone.
 
-Whatever happens has to be seen on the pages, and mended from them; nothing else is looked at. Each page is waited for
-as a person would. `pytest -m soak` plays as many of them as fill half an hour.
+The operator sees and mends each problem on the pages, and uses nothing else. The test waits for each page as a person
+would. `pytest -m soak` plays as many scenes as fill half an hour.
 """
 
 from collections.abc import Callable
@@ -16,9 +16,9 @@ from tests.waiting import until
 
 HEARD, FACE = "lumen.NAO.audio.speech.recognition", "lumen.NAO.visual.face.detection"
 WAIT = 180.0
-"""How long a page may take on a crowded machine [s]."""
+"""Seconds that a page may need on a busy machine."""
 LOOK = 0.25
-"""How often somebody looks [s]."""
+"""Seconds between two looks at a page."""
 ROUNDS = 20
 LEFT = "visitor.left: goodbye"
 """Of all scenes, in half an hour."""
@@ -28,12 +28,12 @@ ALL = """
 const entries = [...document.querySelectorAll(".entry")].map((one) => one.textContent);
 return [document.body?.innerText ?? "", ...entries].join("\\n");
 """
-"""All that is shown, with what is seen when the list of what happened is moved."""
+"""All text of the page, with the entries that are visible only after scrolling."""
 STATES = "return [...document.querySelectorAll('.leaf .state-name')].map((one) => one.textContent)"
 
 
 class Operator:
-    """Somebody who has nothing but the pages."""
+    """An operator who has only the pages."""
 
     def __init__(self, house: House, chromium: Chromium) -> None:
         self._house, self._chromium = house, chromium
@@ -128,7 +128,7 @@ def a_fall(house: House, operator: Operator) -> None:
     operator.sees("The robot fell.", "Keep visitors away", "I fell")
     operator.presses(".notice button")
     operator.sees_no(".notice button")
-    operator.looks_at()  # what somebody has read does not come again with the next page
+    operator.looks_at()  # a notice that was read does not come again with the next page
     operator.sees("I am on my feet again")
     operator.sees_it_in("watching")
     assert not operator.sees_now(".notice button")
@@ -169,7 +169,7 @@ SCENES: tuple[Callable[[House, Operator], None], ...] = (
 
 
 def begin(house: House, operator: Operator) -> None:
-    """Somebody comes, stays, and says their name whenever it is asked: a crowded machine may be slow to look."""
+    """A visitor comes, stays, and answers each question for the name: a busy machine may notice the answer late."""
     operator.looks_at()
 
     def introduced() -> bool:

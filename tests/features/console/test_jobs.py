@@ -1,4 +1,4 @@
-"""What takes much memory is computed by processes that end, and whatever becomes of them is a line for the page."""
+"""Jobs that need much memory run in processes that end; each outcome, failures too, is a line for the page."""
 
 import asyncio
 import errno
@@ -52,7 +52,7 @@ def _gone_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def done(*jobs_: str, told: AsyncIterator[bytes] | None = None) -> list[Any]:
-    """What comes of these jobs, all asked for at once."""
+    """Run these jobs, all requested at once, and return their results or exceptions."""
 
     async def ask() -> list[Any]:
         here = Jobs(Path())
@@ -190,7 +190,7 @@ def test_a_model_that_is_gone_is_said_and_what_draws_is_begun_anew(
 def test_who_does_not_read_poses_is_given_the_newest_only(
     served: Served, hosted: Hosted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """However often the robot moves, of what it was not sent nothing is kept."""
+    """The console keeps no pose that it did not send, however often the robot moves."""
     poses = served.console.site.sights.poses("NAO")
     view = served.console.site.watch.robots["NAO"]
 

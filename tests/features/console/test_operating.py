@@ -1,4 +1,4 @@
-"""What people do on the pages: sign in, press what the states declare, say GO, and ask why."""
+"""Work on the pages: sign in, press buttons that the states declare, say GO, and ask why."""
 
 from collections.abc import Iterator
 
@@ -16,7 +16,7 @@ from tests.waiting import HANG, until
 pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("operating")]
 PINS = {Role.SHOW: "show-1111", Role.OPERATOR: "operator-2222", Role.AUTHOR: "author-3333"}
 SEEN = {"buttons": ".declared", "say": ".say", "autonomy": ".body .choice", "cues": ".cues"}
-"""What some may use, and where it is."""
+"""Controls that need a role, and their selectors on the page."""
 MAY = {Role.SHOW: {"buttons"}, Role.OPERATOR: {"buttons", "say", "autonomy"}, Role.AUTHOR: set(SEEN)}
 CHOOSE = """
 const found = [...document.querySelectorAll(".entry button")].find((one) => one.textContent.includes(arguments[0]));

@@ -22,7 +22,7 @@ def sources(*endings: str) -> Iterator[Path]:
 
 
 def test_no_line_is_longer_than_120_characters() -> None:
-    """A text of a page may be longer, with its name on a line of its own: nobody finds half a sentence."""
+    """A text of a page may be longer, on one line with its name: a search would not find a divided sentence."""
     long = [
         f"{file.relative_to(ROOT)}:{number}"
         for file in sources(".js", ".css")

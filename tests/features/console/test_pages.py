@@ -1,4 +1,4 @@
-"""The console's pages in Chromium, of a running exhibition: they load, rest the robot, and say so when they can't."""
+"""The pages of a running exhibition in Chromium: they load, rest the robot, and show an alarm if they can't."""
 
 import socket
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ PAGES = {
     "see": ("robot/NAO/see", ".picture"),
     "subtitles": ("robot/NAO/subtitles", ".subtitles"),
 }
-"""Where they are, and what is there once they are drawn."""
+"""The path of each page, and a selector that matches once it is drawn."""
 OPERATORS = ("now", "day", "files", "see")
 NARROW = 360
 ESCAPE = """
@@ -104,7 +104,7 @@ def test_rest_that_is_not_sent_says_so_until_somebody_closes_it(viewer: Viewer, 
 def test_a_server_that_is_silent_is_not_one_that_was_reached(viewer: Viewer, served: Served) -> None:
     viewer.open(served.console.address, ready=".leaf")
     served.close()
-    with closing(socket.create_server(("127.0.0.1", served.browser.port))):  # takes connections, and says nothing
+    with closing(socket.create_server(("127.0.0.1", served.browser.port))):  # accepts connections, and never answers
         viewer.escape_twice()
         viewer.shows("NOT SENT", ".rest-said")
 

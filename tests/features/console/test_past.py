@@ -15,7 +15,7 @@ from tests.waiting import until
 
 @pytest.fixture(scope="module")
 def browser(shared: Shared) -> Browser:
-    """A visitor called a name that a page had better not believe says something that nobody expects."""
+    """A visit whose visitor has a script as a name, and says a spreadsheet formula."""
     hosted, browser = shared.hosted(), shared.served().browser
     position = browser.robots[0]["position"]
     hosted.send("face", {"x": 160, "y": 120})

@@ -1,6 +1,6 @@
-"""Rest at any moment: the robot rests, or the page says that it does not. In a real browser, on both buses.
+"""Rest at any moment: the robot rests, or the page shows that it does not. In a real browser, on both buses.
 
-Whether it rests is asked of the robot, not of the console. `LUMEN_SEED=5` draws other moments.
+The test asks the robot whether it rests, not the console. `LUMEN_SEED=5` draws other moments.
 """
 
 import os
@@ -40,7 +40,7 @@ addEventListener("pagehide", () => {
   if (!sessionStorage.getItem("lumen.pressed")) sessionStorage.setItem("test.read", said.innerText);
 });
 """
-"""What a page said at last counts where it stood there for so long that the next one need not tell of it (`SEEN`)."""
+"""Keeps a page's last Rest notice if it was shown so long that the next page need not repeat it (`SEEN`)."""
 READ = "return sessionStorage.getItem('test.read') ?? ''"
 TOOK = "return document.querySelector('rest-button[main]')?.told?.[1]?.seconds ?? null"
 
@@ -96,11 +96,11 @@ class Desk:
             self.chromium.open(house.address + draw.choice(PAGES))
 
     def read(self, trouble: Trouble) -> str:
-        """What could be read on the page that was left."""
+        """The Rest notice of the page that was left; empty in any other trouble."""
         return str(self.chromium.run(READ)) if trouble is LEAVING else ""
 
     def hear(self, trouble: Trouble, window: str) -> str:
-        """What a page says at last, as far as it does."""
+        """Wait for a page's final notice about Rest, and return it; empty if none comes."""
         self.chromium.look(window)
         said = ""
 
@@ -114,7 +114,7 @@ class Desk:
         return said
 
     def judge(self, trouble: Trouble, window: str, said: str, *, rests: bool) -> None:
-        """What a page said is compared with what is so; where it alarmed for nothing it has to say so."""
+        """Compare a page's notice with the robot's state; the page must correct a false alarm."""
         self.chromium.look(window)
         what = " ".join(said.split())
         if rests and REFUSES.search(said):
@@ -134,7 +134,7 @@ class Desk:
                 self.times.append(float(seconds))
 
     def corrected(self) -> str:
-        """What a page says once it knows better."""
+        """Wait for the page's correction of an alarm, and return its notice."""
         with suppress(AssertionError):
             until(lambda: RESTS.search(self.chromium.said()), HANG)
         return self.chromium.said()

@@ -1,4 +1,4 @@
-"""Who is not trusted: pages of others in the same browser, who guesses PINs, who has no role, and what visitors say."""
+"""Untrusted input: foreign pages in the same browser, guesses of PINs, users without a role, words of visitors."""
 
 import http.client
 import json
@@ -45,7 +45,7 @@ fetch("/api/commands", { method: "POST", headers: { "Content-Type": "application
 
 
 class Foreign(BaseHTTPRequestHandler):
-    """A page of somebody else."""
+    """A page from a foreign server."""
 
     def do_GET(self) -> None:
         self.send_response(200)
@@ -175,7 +175,7 @@ def test_show_presses_what_is_there_and_breaks_nothing(hosted: Hosted) -> None:
 
 
 def tried(browser: Browser, number: int, source: str) -> int:
-    """What a PIN gets, sent from an address of this machine."""
+    """Send a PIN from a loopback address, and return the HTTP status."""
     connection = http.client.HTTPConnection(browser.host, browser.port, timeout=HANG, source_address=(source, 0))
     try:
         connection.request("POST", "/api/session", json.dumps({"pin": f"{number:04}"}), JSON)
@@ -185,7 +185,7 @@ def tried(browser: Browser, number: int, source: str) -> int:
 
 
 def test_nobody_hears_a_name_or_sees_an_image(locked: Browser, hosted: Hosted) -> None:
-    """What the robot says aloud is shown on a screen beside it, without the name: the hall heard that."""
+    """The screen beside the robot shows its spoken words, which the hall hears anyway, but without the name."""
     meet(hosted, NAME)
     signed_in = {"Authorization": f"Bearer {PIN}"}
     until(lambda: locked.get("/api/now", **signed_in).data["robots"][0]["visitor"] == NAME)

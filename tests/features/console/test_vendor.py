@@ -1,4 +1,4 @@
-"""What the console's pages carry of others is what npm has, with its licence."""
+"""The third-party files of the console's pages equal those on npm, and have their licences."""
 
 import re
 

@@ -93,7 +93,7 @@ def test_eight_windows_that_see_are_live_and_rest_goes_through(
 def test_what_came_of_rest_is_told_by_the_next_page_too_where_nobody_could_read_it(
     served: Served, hosted: Hosted, chromium: Chromium
 ) -> None:
-    """Whoever presses and goes on at once sees the answer there; whoever has closed it is not told again."""
+    """A user who presses and leaves at once sees the answer on the next page; a closed notice does not come again."""
     before = _commands(served)
     chromium.open(served.console.address)
     chromium.rest()

@@ -1,4 +1,4 @@
-"""What may happen to an exhibition while somebody presses Rest: begun at some moment, and mended again."""
+"""Troubles of an exhibition while a user presses Rest: each begins at a random moment, and is mended again."""
 
 import signal
 from collections.abc import Callable, Sequence
@@ -11,11 +11,11 @@ from tests.features.console.house import CONSOLE, ROBOT, WHOLE, House
 SORRY = 'en: "I am sorry, I did not understand that."'
 PARDON = 'en: "Come again, please?"'
 LONGEST = 2.5
-"""How long a trouble lasts at most, besides what it takes to mend it [s]."""
+"""Longest duration of a trouble in seconds, without the time to mend it."""
 
 
 class Trouble(NamedTuple):
-    """Something that goes wrong, or just on: how it begins, how it is mended; `weight` says how often it is drawn.
+    """An event that may disturb Rest: its begin, its mending, and its `weight` in the random choice.
 
     `presses` windows press while it lasts.
     """

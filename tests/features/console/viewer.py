@@ -68,12 +68,12 @@ class Viewer:
         return self.driver.find_elements(By.CSS_SELECTOR, selector)
 
     def text(self, selector: str) -> str:
-        """What those of the elements that one sees say, while they are drawn anew."""
+        """The text of the visible elements that match, read in one step since the page may redraw them."""
         seen = "[...document.querySelectorAll(arguments[0])].filter(e => e.checkVisibility())"
         return str(self.run(f"return {seen}.map(e => e.innerText).join('\\n')", selector))
 
     def shows(self, text: str, selector: str = "body") -> None:
-        """Wait until it does."""
+        """Wait until the visible elements that match contain the text."""
         until(lambda: text in self.text(selector), HANG)
 
     def click(self, selector: str) -> None:
@@ -101,13 +101,13 @@ class Viewer:
         until(pressed, HANG)
 
     def complaints(self) -> list[str]:
-        """What the page's own console said that is more than information."""
+        """The warnings and errors in the browser's log, without those of other tests' pages."""
         said = [entry["message"] for entry in self.log("browser") if entry["level"] in ("SEVERE", "WARNING")]
         others = ("http://127.0.0.1:", f"http://{EVIL}:")  # pages of other tests in this browser
         return [one for one in said if one.startswith(self._address) or not one.startswith(others)]
 
     def requests(self) -> list[str]:
-        """The addresses that the page has asked for since it was asked last."""
+        """The addresses that the page has requested since the last call."""
         said = [json.loads(entry["message"]) for entry in self.log("performance")]
         own = [one["message"] for one in said if one["webview"] == self.driver.current_window_handle]
         return [str(m["params"]["request"]["url"]) for m in own if m["method"] == "Network.requestWillBeSent"]

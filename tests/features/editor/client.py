@@ -78,15 +78,15 @@ class Client:
                 return list(params["diagnostics"])
 
     def message(self) -> str:
-        """The next message that is to be shown to a person."""
+        """Wait for the next message to show to the user, and return its text."""
         return str(self.notified("window/showMessage")["message"])
 
     def notified(self, method: str) -> dict[str, Any]:
-        """What the next notification of a method says."""
+        """Wait for the next notification of a method, and return its parameters."""
         return dict(self._take(lambda m: m.get("method") == method)["params"])
 
     def request(self, method: str, **params: Any) -> Any:
-        """The answer; an error as a map with `code` and `message`."""
+        """Send a request and return its result; an error is a map with `code` and `message`."""
         self._number += 1
         number = self._number
         self._send({"id": number, "method": method, "params": params})
@@ -94,7 +94,7 @@ class Client:
         return answer.get("result") if "error" not in answer else answer["error"]
 
     def ask_later(self, method: str, **params: Any) -> None:
-        """A request whose answer nobody waits for."""
+        """Send a request, and ignore its answer when it comes."""
         self._number += 1
         self._unwanted.add(self._number)
         self._send({"id": self._number, "method": method, "params": params})

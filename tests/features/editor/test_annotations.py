@@ -1,4 +1,4 @@
-"""What is shown between and behind the lines: lenses, hints, signatures, folds, links, and what is found by name."""
+"""Additions to the lines of a file: lenses, hints, signatures, folds, links, and the search for symbols by name."""
 
 from lumen.features.editor.analysis import Analysis
 from lumen.features.editor.folding import folds

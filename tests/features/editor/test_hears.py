@@ -1,4 +1,4 @@
-"""What the language services say of `hears`, of phrases, and of the words that come with Lumen."""
+"""The language services for `hears`, for phrases, and for the words that come with Lumen."""
 
 from pathlib import Path
 
@@ -86,7 +86,7 @@ def written(file: str, old: str, new: str) -> tuple[Analysis, tuple[str, int, in
 
 
 def rows_of(analysis: Analysis) -> int:
-    """How many rows of `hears` the behaviour has."""
+    """Return the number of transitions with `hears` in the behaviour."""
     machine = analysis.draft.behaviors["tour"]
     return sum(transition.hears is not None for state in machine.states.values() for transition in state.transitions)
 

@@ -1,4 +1,4 @@
-"""Where a running exhibition is, shown in the editor."""
+"""The active states of a running exhibition, as the editor shows them."""
 
 from pathlib import Path
 

@@ -33,7 +33,7 @@ COMPLETED = {
     "a step of a story": (SILENCE, "- visitor: arrives", "- |", {"visitor", "says", "touch", "expect"}),
     "a visitor": (SILENCE, "visitor: arrives", "visitor: |", {"arrives", "leaves"}),
 }
-"""What is completed at `|`, where the first text of a file is replaced by the second."""
+"""File, text, its replacement, and the labels that are completed at the `|` of the replacement."""
 
 EXPLAINED = [
     ("motions/dance.yaml", "te|mpo: 132", "Beats per minute"),

@@ -45,7 +45,7 @@ def units(text: str) -> int:
 
 
 def shown(text: str, span: dict[str, Any]) -> str:
-    """What a range of one line, in UTF-16, holds."""
+    """Return the text in a range within one line; its columns count UTF-16 code units."""
     line = text.split("\n")[span["start"]["line"]].encode("utf-16-le")
     return line[2 * span["start"]["character"] : 2 * span["end"]["character"]].decode("utf-16-le")
 
@@ -159,7 +159,7 @@ def test_lenses_hints_signatures_folds_links_highlights_and_symbols(client: Clie
 
 
 def test_a_story_is_run_by_its_lens(client: Client) -> None:
-    """A client that has no command of that name leaves it to the server, which says how the story ended."""
+    """A client without a command of that name sends it to the server, which reports how the story ended."""
     story = "behaviors/stories/unknown_visitor.yaml"
     client.open(story)
     (lens,) = client.request("textDocument/codeLens", textDocument={"uri": client.uri(story)})

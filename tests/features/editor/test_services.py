@@ -1,4 +1,4 @@
-"""What the language services say of a place: files and positions in, values out, no editor around."""
+"""The language services at a position: files and positions in, values out, without an editor."""
 
 import asyncio
 from contextlib import nullcontext, suppress

@@ -39,7 +39,7 @@ def extension(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def hosted(extension: Path, root: Path, file: str, *more: str) -> dict[str, Any]:
-    """What the extension did in an editor that has this file open."""
+    """Run the extension in an editor that has this file open, and return what it did."""
     words = [ROOT / "tests/features/editor/vscode_host.js", extension, root, json.dumps(COMMAND), root / file, *more]
     done = run_guarded([program("node", "npm"), *words], capture_output=True, text=True, timeout=HANG)
     assert done.returncode == 0, done.stderr
