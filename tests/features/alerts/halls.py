@@ -1,4 +1,4 @@
-"""A small exhibition that tells a server on loopback, whole or in parts on one bus, as fast as it can."""
+"""A small exhibition that sends alerts to a server on loopback, whole or in parts on one bus, as fast as possible."""
 
 from collections.abc import Callable
 from pathlib import Path

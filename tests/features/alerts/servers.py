@@ -45,7 +45,7 @@ class Web:
         threading.Thread(target=self._server.serve_forever, args=(0.02,), daemon=True).start()
 
     def told(self, kind: str, count: int = 1) -> list[dict[str, Any]]:
-        """Wait for so many of that kind."""
+        """Wait for `count` alerts of that kind."""
         until(lambda: len(self.of(kind)) >= count)
         return self.of(kind)
 
@@ -59,7 +59,7 @@ class Web:
 
 
 class Post:
-    """A mail server: keeps what it is sent, and who was logged in. `answers` replace what it says to a command."""
+    """A mail server that keeps the mails and the logins it receives. `answers` replace its replies to commands."""
 
     def __init__(self, certificate: Path | None = None, **answers: str) -> None:
         self.mails: list[str] = []

@@ -186,7 +186,7 @@ def test_a_program_that_does_not_end_is_ended_with_its_children(
     begin = ways.subprocess.Popen
 
     def begun(*words: Any, **options: Any) -> Any:
-        """Its time begins when its child has."""
+        """Start a program, and return once its child runs, so that the time limit starts after that."""
         process, child = begin(*words, **options), tmp_path / "child"
         until(lambda: child.exists() and child.read_text())
         return process

@@ -1,4 +1,4 @@
-"""Each kind of alert is told: in `lumen run`, and by the processes of `--only` that notice it."""
+"""Each kind of alert is sent: by `lumen run`, and by the processes of `--only` that detect it."""
 
 import shutil
 from collections import namedtuple
@@ -170,7 +170,7 @@ def test_room_is_looked_for_where_there_is_no_folder_yet(tmp_path: Path) -> None
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Processes find and miss each other within moments."""
+    """Shorten the periods in which processes find each other, and detect that one is lost."""
     monkeypatch.setattr(claiming, "CLAIM_DURATION", 0.05)
     monkeypatch.setattr(node, "CLAIM_DURATION", 0.05)
     monkeypatch.setattr(presence, "PRESENCE_PERIOD", 0.05)
@@ -179,7 +179,7 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def apart(hall: Hall) -> tuple[node.Node, node.Node]:
-    """Robot and brain in processes of their own, each of which knows the other."""
+    """Start robot and brain as separate nodes, and return them once each has found the other."""
     robot, brain = hall.part("robot"), hall.part("brain")
     hall.until(lambda: "idle" in _states(brain) and robot.presence and robot.presence.find("brain"))
     hall.live(5)

@@ -1,4 +1,4 @@
-"""The module `answers` on a bus, before a model that answers as the test wants it."""
+"""The module `answers` on a bus, connected to a model that answers as the test defines."""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
@@ -32,7 +32,7 @@ LONGEST = 60.0
 
 
 class Desk:
-    """Asks the module; `told` are lines for the operator."""
+    """A client that asks the module; `told` are lines for the operator."""
 
     def __init__(self, project: Project, model: FakeModel | None = None) -> None:
         self.project, self.model = project, model

@@ -32,7 +32,7 @@ class Handler(BaseHTTPRequestHandler):
         self.end_headers()
 
     def delta(self, **said: Any) -> None:
-        """A piece of the answer."""
+        """Send a piece of the answer."""
         self.event(json.dumps({"choices": [{"index": 0, "delta": said}]}))
 
     def event(self, data: str) -> None:
@@ -44,7 +44,7 @@ class Handler(BaseHTTPRequestHandler):
         self.event("[DONE]")
 
     def wait(self) -> None:
-        """Say nothing more until the client has gone, or the test is over."""
+        """Send nothing more until the client has disconnected, or the test is over."""
         self.connection.settimeout(0.05)
         while not self.server.over.is_set():
             with suppress(TimeoutError):

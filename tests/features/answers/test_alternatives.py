@@ -1,4 +1,4 @@
-"""Of several texts that a visitor may have said, the first that means something now is taken."""
+"""If the ears report several possible texts, the behaviour uses the first that means something now."""
 
 from dataclasses import replace
 from typing import Any

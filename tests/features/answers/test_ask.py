@@ -29,7 +29,7 @@ MACHINE = Machine.from_dict(DATA)
 
 
 class Talk:
-    """A behaviour that was asked something; `said` is what it says, `at` when it is [s]."""
+    """A behaviour after a visitor's question; `said` are its spoken texts; `at` is the time of an event [s]."""
 
     def __init__(self, machine: Machine = MACHINE, question: Any = "how tall are you") -> None:
         self.machine, self.steps = machine, list[Step]()

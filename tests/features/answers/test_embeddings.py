@@ -38,7 +38,7 @@ def vector(text: str) -> list[float]:
 
 
 def meaning(handler: Handler, body: dict[str, Any]) -> None:
-    """Vectors, the last first: they are told apart by their index."""
+    """Reply with the vectors in reverse order: their index identifies them."""
     handler.begin("application/json")
     rows = [{"index": i, "embedding": vector(text)} for i, text in enumerate(body["input"])]
     handler.wfile.write(json.dumps({"data": rows[::-1]}).encode())
@@ -52,7 +52,7 @@ def with_embeddings(project: Project, url: str, **more: Any) -> Project:
 
 @pytest.fixture
 def asking(project: Project, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """Makes a desk before a server that answers so."""
+    """Make a desk that uses a server with that reply."""
     monkeypatch.setenv("FAKE_KEY", "sk-secret")
     opened: list[Any] = []
 

@@ -45,7 +45,7 @@ INJECTIONS = [
 
 
 def obeys(handler: Handler, body: dict[str, Any]) -> None:
-    """Does what the words want that it was sent, wherever they stand."""
+    """Do what the injected words demand, whether they are in the question or in a passage."""
     data = json.loads(body["messages"][1]["content"])
     given = " ".join([data["question"], *data["passages"]])
     goal = next(one for one in WRITTEN["goals"] if one["goal"] in given or _plain(one["goal"]) in _plain(given))
@@ -79,7 +79,7 @@ def test_what_an_obeying_model_says_is_not_published(desk: Callable[..., Desk], 
 
 
 class ObeyingVisit:
-    """A visit to the tour, whose passages are poisoned, before a model that obeys."""
+    """A visit to a tour with poisoned passages, whose model obeys them."""
 
     def __init__(self, project: Project) -> None:
         self.visit = Visit(project)

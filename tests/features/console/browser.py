@@ -52,7 +52,7 @@ class DrivenBrowser:
 
 
 class _Browser:
-    """The developer tools of the browser as a whole, which a driver has no way to."""
+    """A connection to the developer tools of the whole browser, which a driver can't reach."""
 
     def __init__(self, address: str) -> None:
         """Connect. Raises OSError or WebSocketException."""
@@ -76,7 +76,7 @@ class _Browser:
 
 
 def _connected() -> tuple[_Browser, int]:
-    """The run's Chromium, and its port; another one if the one before is just crashing."""
+    """Connect to the run's Chromium, or to its successor if it has crashed; return the connection and the port."""
     found: list[tuple[_Browser, int]] = []
 
     def connected() -> bool:
@@ -90,7 +90,7 @@ def _connected() -> tuple[_Browser, int]:
 
 
 class _Driver(Remote):
-    """Fails the test once Chromium has ended: who waits for a page would wait for nothing."""
+    """A driver that fails the test once Chromium has ended, since no page can appear any more."""
 
     def execute(self, driver_command: str, params: dict[str, Any] | None = None) -> dict[str, Any]:
         try:
@@ -123,7 +123,7 @@ class _Chromedriver:
 
 
 def _attached(options: ChromeOptions) -> Remote:
-    """A session of the driver. It begins on any page there is, which another worker may close just then."""
+    """Start a session of the driver; retry, since it attaches to any open page, which another worker may close."""
     url, made = _Chromedriver.url(), list[Remote]()
 
     def attached() -> bool:

@@ -52,7 +52,7 @@ class Chromium:
         self.driver.switch_to.window(window)
 
     def find(self, selector: str) -> WebElement:
-        """The first element that is shown and that this is true of, once there is one."""
+        """Wait for an element that matches and is displayed, and return the first."""
         found: list[WebElement] = []
 
         def there() -> bool:
@@ -66,7 +66,7 @@ class Chromium:
         return self.driver.find_elements(By.CSS_SELECTOR, selector)
 
     def text(self) -> str:
-        """All that is shown."""
+        """The text that the page shows."""
         return str(self.run("return document.body ? document.body.innerText : ''"))
 
     def shows(self, *texts: str) -> bool:
@@ -74,7 +74,7 @@ class Chromium:
         return all(text in shown for text in texts)
 
     def click(self, selector: str, text: str) -> None:
-        """Click the first that says this, wherever it is by then: what comes meanwhile moves it."""
+        """Click the first match with this text; retry, since new entries may move it meanwhile."""
 
         def clicked() -> bool:
             with suppress(WebDriverException, StopIteration):

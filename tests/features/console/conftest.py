@@ -62,7 +62,7 @@ class Hosted:
 
     @property
     def unchanged(self) -> bool:
-        """Whether it is as it was begun."""
+        """Whether the exhibition's state equals that at its start."""
         return self._state == self._begun
 
     def close(self) -> None:
@@ -73,7 +73,7 @@ class Hosted:
 
 
 class Shared:
-    """An exhibition and its console for the tests of a module: each has them as they were begun, or new ones."""
+    """An exhibition and its console for the tests of a module; new ones replace them if a test has changed them."""
 
     def __init__(self, root: Path) -> None:
         self._root = root

@@ -25,9 +25,9 @@ globalThis.AudioContext = class {
   close() {}
 };
 """
-"""A sound is kept in place of being played."""
+"""Records the frequency of each sound instead of playing it."""
 LATER = "const now = Date.now; Date.now = () => now() + 3600e3;"
-"""The page's clock, an hour ahead."""
+"""Sets the page's clock an hour ahead."""
 
 
 def fall(served: Served) -> None:

@@ -33,7 +33,7 @@ import("/pages/live.js").then(({ live, listen }) => {
 
 
 class Speaker:
-    """Is heard again and again until `close`, of which the robot makes nothing."""
+    """A voice that the robot receives again and again until `close`, and ignores."""
 
     def __init__(self, house: House) -> None:
         self._house, self._ending = house, Event()
@@ -50,7 +50,7 @@ class Speaker:
 
 
 class Window:
-    """A window on one page, which notes what it takes."""
+    """A window with one page, which records the entries that it receives."""
 
     def __init__(self, chromium: Chromium, handle: str, address: str) -> None:
         self._chromium, self._handle = chromium, handle
@@ -74,7 +74,7 @@ class Window:
         return str(self.run("return live.state"))
 
     def time_of(self, number: int) -> float:
-        """When it took the one of that number [s since 1970]."""
+        """The time when the page received the entry of that number [s since 1970]."""
         return float(self.run(f"return times[{number}]"))
 
 
@@ -85,13 +85,13 @@ def begun_house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[House]:
 
 @pytest.fixture
 def house(begun_house: House) -> House:
-    """The one of the test before, whole again."""
+    """The house of the module, once the robot answers again after the last test."""
     begun_house.await_robot()
     return begun_house
 
 
 def journaled(house: House, first: int, last: int) -> list[int]:
-    """The positions that the journal has, from one to another."""
+    """The positions in the journal from `first` to `last`, both included."""
     found: list[int] = []
     while not found or found[-1] < last:
         page = house.ask_brain({"ask": "journal", "from": found[-1] + 1 if found else first})
@@ -102,7 +102,7 @@ def journaled(house: House, first: int, last: int) -> list[int]:
 
 
 def away(house: House, chromium: Chromium, what: str, seconds: float, leave: Callable[[], object], back: Any) -> None:
-    """Two pages are away and come back, while things happen; both have all of it, once and in order."""
+    """Two pages are away and come back, while events happen; both have all entries, once and in order."""
     handles = (str(chromium.driver.current_window_handle), chromium.window())
     speaker = Speaker(house)
     try:

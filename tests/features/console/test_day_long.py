@@ -35,7 +35,7 @@ WAIT = 120.0
 
 
 class Crowd:
-    """Lets events happen, `count` in all; `left` are those to come."""
+    """A thread that sends `count` events; `left` are those still to come."""
 
     def __init__(self, house: House, count: int) -> None:
         self.left, self._house, self._pause = count, house, Event()
@@ -55,7 +55,7 @@ class Crowd:
 
 @pytest.fixture
 def eager(copy: Path) -> Path:
-    """A project that takes more voices a second than anybody has."""
+    """A project that accepts more voices a second than real visitors have."""
     main = copy / "lumen.yaml"
     text = main.read_text("utf-8")
     assert ROW in text
@@ -135,7 +135,7 @@ def shows(chromium: Chromium, page: str) -> bool:
 
 
 def caught_up(house: House, pages: Sequence[Stream]) -> bool:
-    """Whether all these pages have all that there is."""
+    """Whether all these pages have the newest entry."""
     last = position(house)
     return all(page.of("entry") and page.of("entry")[-1].data["position"] >= last for page in pages)
 

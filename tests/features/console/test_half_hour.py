@@ -20,8 +20,8 @@ WAIT = 180.0
 LOOK = 0.25
 """Seconds between two looks at a page."""
 ROUNDS = 20
+"""Rounds of all scenes in half an hour."""
 LEFT = "visitor.left: goodbye"
-"""Of all scenes, in half an hour."""
 NONSENSE = ("blub <b>blab</b>", "\u202e\u0000", "?" * 200, "{{ visitor }}", "'; drop table visits; --")
 BROKEN = (None, 7, [], {"result": 12}, {"x": "left"}, {"result": "a" * 100_000})
 ALL = """
@@ -65,7 +65,7 @@ class Operator:
         return bool(self._chromium.all(selector))
 
     def sees_it_in(self, state: str) -> None:
-        """One of the innermost states."""
+        """Wait until the page shows that innermost state as active."""
         until(lambda: self.sees_it_now_in(state), WAIT, every=LOOK)
 
     def sees_it_now_in(self, state: str) -> bool:
@@ -93,7 +93,7 @@ class Operator:
         self.sees_it_in("watching")
 
     def raises(self, event: str) -> None:
-        """As a cue."""
+        """Raise an event over the console, as a cue does."""
         assert self._house.browser.command("event", event=event, robot="NAO").data["state"] == "finished"
 
 

@@ -43,7 +43,7 @@ def found(*_):
 job.JOBS["found"] = found
 job.main("found", "", "[]")
 """
-"""A job that answers with the pause between two searches for garbage, and the dear modules that are imported."""
+"""A job that returns its threshold for garbage collection, and which of the expensive modules it imported."""
 
 
 @pytest.fixture(name="gone_wrong")

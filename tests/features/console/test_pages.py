@@ -36,7 +36,7 @@ select.value = arguments[0];
 select.dispatchEvent(new Event("change", { bubbles: true }));
 """
 TOUCH = 44
-"""Of what fingers press, at least [px]."""
+"""Smallest width and height of a control for fingers [px]."""
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +126,7 @@ def test_a_page_is_live_again_with_each_entry_once(viewer: Viewer, served: Serve
 
 
 def positions(viewer: Viewer) -> list[int]:
-    """Those of the entries that the page has taken in."""
+    """The positions of the entries that the page has received."""
     return [int(entry["position"]) for entry in entries(viewer)]
 
 

@@ -61,7 +61,7 @@ class Desk:
         self.silent: list[str] = []
 
     def live(self, trouble: Trouble) -> None:
-        """One trouble, and presses at moments while it begins and lasts."""
+        """Cause one trouble, and press Rest at random moments while it begins and lasts."""
         house, draw = self.house, self.draw
         pressed = draw.sample(self.windows, trouble.presses)
         for window in pressed:

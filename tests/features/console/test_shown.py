@@ -25,7 +25,7 @@ globalThis.fetch = (path, ...more) => {
   return waits ? new Promise((_, fail) => { globalThis.end = fail; }) : before(path, ...more);
 };
 """
-"""No pose comes until `posing`."""
+"""Holds each request for poses until `posing` is set."""
 ASKED = """
 const get = Response.prototype.json;
 Response.prototype.json = async function () {
@@ -34,7 +34,7 @@ Response.prototype.json = async function () {
   return said.numbers ? { ...said, numbers: { ...said.numbers, unanswered: asked } } : said;
 };
 """
-"""An unanswered question is among the numbers of the day."""
+"""Adds an unanswered question to the numbers of the day."""
 DRAWN = "return document.querySelector('canvas')?.scene?.robot.visible"
 
 

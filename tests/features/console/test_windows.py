@@ -21,7 +21,7 @@ LATE = """
 const press = { id: "of-before", robot: "NAO", told: ["finished", { seconds: 0.5 }], at: Date.now() - 60000 };
 sessionStorage.setItem("lumen.pressed", JSON.stringify({ ...press, told: arguments[0] ?? press.told }));
 """
-"""A press whose answer is not yet read, a minute before the next page is there."""
+"""Stores a press of a minute ago whose answer no page has shown for long enough."""
 REPORTS = """
 const button = document.querySelector("rest-button[main]"), robot = { robot: "NAO", connected: true };
 Object.assign(button, { sent: { robot: "NAO", at: Date.now() - 6000 } }).show("finished", { seconds: 5 });
@@ -42,7 +42,7 @@ PIXEL = f"/9j/4AAQSkZJRgABAQEASABIAAD/2wBDAP{'/' * 86}wgALCAABAAEBAREA/8QAFBABAA
 
 @pytest.fixture
 def filmed(hosted: Hosted) -> Iterator[Hosted]:
-    """An exhibition whose robot sees something."""
+    """An exhibition whose robot sends ten images a second."""
     ending = Event()
 
     def film() -> None:

@@ -82,7 +82,7 @@ WITHOUT_BROKER = (
 
 
 def drawn(troubles: Sequence[Trouble], draw: Random, presses: int) -> list[Trouble]:
-    """Troubles in an order by chance, each as often as its weight says, until so many presses are in them."""
+    """Draw troubles in random order, in proportion to their weights, until they have at least `presses` presses."""
     found: list[Trouble] = []
     while sum(one.presses for one in found) < presses:
         round = [one for one in troubles for _ in range(one.weight)]
@@ -93,7 +93,7 @@ def drawn(troubles: Sequence[Trouble], draw: Random, presses: int) -> list[Troub
 
 
 class Happening:
-    """A trouble that begins `after` [s] from now, beside whoever presses meanwhile; `mend` ends it."""
+    """A trouble that begins `after` [s] from now on a thread, while the test presses Rest; `mend` ends it."""
 
     def __init__(self, trouble: Trouble, house: House, after: float) -> None:
         self._trouble, self._house, self._after = trouble, house, after

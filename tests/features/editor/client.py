@@ -15,7 +15,7 @@ ENGINE = ROOT / "engine"
 
 
 class Client:
-    """Starts `lumen lsp` in a project and speaks with it; notifications wait until they are asked for."""
+    """A client of `lumen lsp` in a project; it keeps notifications until the test requests them."""
 
     def __init__(
         self, root: Path, command: list[str] | None = None, encoding: str = "utf-16", path: str = str(ENGINE)

@@ -61,7 +61,7 @@ def test_the_rest_of_the_file_is_known(how: str) -> None:
 
 @for_each("how", BREAKS)
 def test_it_is_one_finding_and_hides_no_other(how: str) -> None:
-    """Of the fault itself one finding, nothing that follows from it, and what is wrong elsewhere besides."""
+    """The fault itself is one finding, without any that follow from it; those of other files are reported, too."""
     analysis = broken(how)
     assert [d.place.file for d in analysis.diagnostics] == [TOUR], [str(d) for d in analysis.diagnostics]
     text = analysis.text(TOUR).replace("{assign: {battery: event", "{assign: {batery: event", 1)

@@ -143,7 +143,7 @@ def test_completion(file: str, old: str, new: str, some: list[str], none: list[s
     ],
 )
 def test_definition(file: str, text: str, where: str) -> None:
-    """Names that come with Lumen are known, and there is no file of the project to go to."""
+    """The definition of a name that comes with Lumen is in no file of the project."""
     found = definitions(PROJECT, *place(PROJECT, file, text))
     name, _, key = where.partition(": ")
     assert [place.file for place in found] == ([name] if name else [])
@@ -210,7 +210,7 @@ def test_a_renaming_reaches_the_keys_of_hears(file: str, text: str, name: str, r
     ],
 )  # fmt: skip
 def test_what_means_something_to_hears_is_no_name(name: str, reason: str) -> None:
-    """Neither of phrases nor of answers."""
+    """Such words can name neither phrases nor answers."""
     for text in ("      dan¦ce: dance", "      fa¦q:"):
         use = renamable(PROJECT, *place(PROJECT, T, text))
         assert use

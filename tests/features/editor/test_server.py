@@ -62,7 +62,7 @@ def test_what_it_can_do(client: Client) -> None:
 
 @pytest.mark.once
 def test_findings_of_what_is_not_saved(client: Client) -> None:
-    """A mistake in an open file is told in every file it concerns, and taken back when it is gone."""
+    """A mistake in an open file is reported in every file it concerns, until it is mended."""
     text = client.open(TOUR)
     assert client.diagnostics(TOUR) == []
     wrong = text.replace("onDone: watching", "onDone: wathing", 1)
