@@ -39,7 +39,7 @@ states:
 
 
 def files(folder: Path, web: Web) -> Path:
-    """Write the files of the exhibition; its interval of 1 ms sends repeated alerts each time."""
+    """Write the files of the exhibition; its alerts have an interval of 1 ms, so repeated ones are sent too."""
     copied_project(BASE, folder)
     main = folder / "lumen.yaml"
     kept = "".join(line for line in main.read_text("utf-8").splitlines(keepends=True))
@@ -118,7 +118,7 @@ class Hall:
         until(condition, meanwhile=lambda: self.live(1), shown=lambda: [body["text"] for body in self.web.bodies])
 
     def told(self, kind: str) -> str:
-        """Wait for the first alert of that kind, and return its text."""
+        """Wait for the first alert of that kind, and return its text without the prefix."""
         self.until(lambda: self.web.of(kind))
         text: str = self.web.of(kind)[0]["text"]
         return text.partition(": ")[2]
@@ -129,7 +129,7 @@ class Hall:
                 node.tick()
 
     def kill(self, node: Node) -> None:
-        """Stop ticking that node, without a notice to any other."""
+        """Stop ticking a node without notice, as if its process had been killed."""
         self.nodes.remove(node)
 
     def close(self) -> None:

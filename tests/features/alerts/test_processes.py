@@ -1,4 +1,4 @@
-"""Alerts of real processes: `lumen run`, and `lumen run --only` on RabbitMQ, up to the delivered alert."""
+"""Alerts that real processes deliver: `lumen run`, and `lumen run --only` on RabbitMQ."""
 
 import os
 import signal

@@ -90,12 +90,12 @@ class House:
         self.await_page()
 
     def stopped_by(self) -> str | None:
-        """The author of the stop, as the robot reports it; empty if it is not stopped, None if it does not answer."""
+        """The source of the stop, as the robot reports it; empty if it is not stopped, None if it does not answer."""
         answer = self.ask_robot("stopped")
         return answer["stopped_by"] if isinstance(answer, dict) else None
 
     def resume(self) -> None:
-        """Let the robot move again, with a message to it instead of the console."""
+        """Let the robot move again, with a message to the robot itself, not through the console."""
         until(lambda: self.ask_robot("resume") == "command finished" and self.stopped_by() == "", HANG)
 
     def ask_robot(self, method: str, **parameter: Any) -> Any:

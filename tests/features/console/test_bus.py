@@ -1,4 +1,4 @@
-"""The bus fails and comes back: the console reconnects, no entry comes twice and none is missing."""
+"""The bus fails and comes back: the console reconnects, and each entry comes exactly once."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""The lead of an exhibition's clock: pages receive it once, count with it, and receive it again only if it changes."""
+"""The offset of an exhibition's clock: pages receive it once, apply it, and receive it again only if it changes."""
 
 from datetime import UTC, datetime, timedelta
 

@@ -1,4 +1,4 @@
-"""Troubles of an exhibition while a user presses Rest: each begins at a random moment, and is mended again."""
+"""Troubles of an exhibition while a user presses Rest: each starts at a random moment, and is repaired again."""
 
 import signal
 from collections.abc import Callable, Sequence
@@ -11,11 +11,11 @@ from tests.features.console.house import CONSOLE, ROBOT, WHOLE, House
 SORRY = 'en: "I am sorry, I did not understand that."'
 PARDON = 'en: "Come again, please?"'
 LONGEST = 2.5
-"""Longest duration of a trouble in seconds, without the time to mend it."""
+"""Longest duration of a trouble in seconds, without the time to repair it."""
 
 
 class Trouble(NamedTuple):
-    """An event that may disturb Rest: its begin, its mending, and its `weight` in the random choice.
+    """An event that may disturb Rest: how it starts, how it is repaired, and its `weight` in the random choice.
 
     `presses` windows press while it lasts.
     """
