@@ -218,6 +218,8 @@ def groups() -> Iterator[Counted]:
     )
     python = [file for file in every if file.endswith(".py")]
     beside = [file for file in python if file.startswith(("scripts/", "benchmarks/"))]
+    tests = [file for file in python if file.startswith("tests/")]
+    yield Counted("docstrings and comments of the tests", TOOLS, _all(comments, tests))
     yield Counted("docstrings and comments of scripts and benchmarks", TOOLS, _all(comments, beside))
     added = changed_lines()
     yield Counted(
