@@ -58,7 +58,7 @@ ENGINE = "engine/lumen"
 TEXTS = "engine/lumen/features/console/pages/texts/en.js"
 LIMIT = 1.0
 """Hits per 1,000 words in all that users read first."""
-OTHER_PAGES, CODE, TOOLS = 5.0, 1.0, 3.0
+OTHER_PAGES, CODE, TOOLS = 2.5, 1.0, 3.0
 """The rates of the rest, which must not grow."""
 CHANGED = 2.0
 """Hits per 1,000 words in changed lines; one is always allowed."""
