@@ -1,8 +1,9 @@
 """The pictures in docs/console.md: a tour, a why, a fall, a refused reload, a day, a phone, and a wall of three robots.
 
-    python -m docs.pictures.console
+    python -m docs.pictures.console [wall]
 
-`lumen run` and `lumen console` in a copy of the project, a visitor who says what stands below, and Chromium.
+Runs `lumen run` and `lumen console` in a copy of the project, with a visitor's words, and takes pictures in Chromium.
+With `wall` only the wall is photographed.
 """
 
 import json
@@ -66,6 +67,15 @@ def robot() -> dict[str, Any]:
         return next(iter(ask("api/now")["robots"]), {})
     except OSError:
         return {}
+
+
+def waiting() -> set[str]:
+    """Return the names of the robots that wait for a visitor's name."""
+    try:
+        robots = ask("api/now")["robots"]
+    except OSError:
+        return set()
+    return {robot["robot"] for robot in robots if "ask_name" in robot.get("configuration", ())}
 
 
 def visit(name: str, mood: str) -> None:
@@ -135,8 +145,9 @@ def main() -> None:
     with ExitStack() as stack:
         camera = Camera()
         stack.callback(camera.driver.quit)
-        with ExitStack() as tour:
-            take_tour(tour, camera)
+        if "wall" not in sys.argv[1:]:
+            with ExitStack() as tour:
+                take_tour(tour, camera)
         take_wall(stack, camera)
 
 
@@ -149,7 +160,7 @@ def take_wall(stack: ExitStack, camera: Camera) -> None:
     for folder in folders:
         stack.enter_context(running(folder, "run", "--robot", "recording", "--speed", "1", "--bus", broker.url))
     stack.enter_context(running(folders[0], "console", "--port", str(PORT), "--bus", broker.url))
-    until("ask_name")
+    wait(lambda: waiting() == {"NAO", "Ani", "Budi"}, "three robots that wait for a name")
     command("rest", robot="Budi")
     camera.look("")
     camera.take("wall")
