@@ -83,7 +83,7 @@ class Stream(Protocol):
 
 
 def probe_of(url: str) -> Probe | None:
-    """Return a connection for questions about the broker at an address; None if there is no broker.
+    """Return a connection for questions about the broker at an address; None if that kind of bus has no broker.
 
     Raises BusError, with advice, if the broker can't be used.
     """

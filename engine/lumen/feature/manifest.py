@@ -233,7 +233,7 @@ class Section(NamedTuple):
 
     @property
     def fixed(self) -> bool:
-        """Whether a change takes effect at the next start."""
+        """Whether a change takes effect only at the next start."""
         return self.risk == "restart"
 
 

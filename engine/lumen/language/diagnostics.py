@@ -94,7 +94,7 @@ class Diagnostic:
         return f"{self.place}: {self.severity} [{self.code}] {self.message}{hint}"
 
     def to_json(self) -> dict[str, Any]:
-        """Return the object of `lumen lint --format json`."""
+        """Return the diagnostic as an object in the output of `lumen lint --format json`."""
         return {
             "file": self.place.file,
             "line": self.place.line,

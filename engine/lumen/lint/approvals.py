@@ -18,7 +18,7 @@ SAFETY = ("stop", "fallen", "motors.hot", "robot.lost", "brain.lost", "motion.lo
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report `approve` on events that a behaviour itself raises or sends, and on urgent events.
+    """Report `approve` on events that the behaviour raises or that any behaviour sends, and on urgent events.
 
     An event from inside is processed within the same step, in which the console can't answer.
     """

@@ -45,7 +45,7 @@ def _memberships(term: Term, xs: list[float]) -> list[float]:
 
 
 def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report: DocumentReport) -> None:
-    """Report each term on the wrong side of the term that precedes it by name."""
+    """Report each term below the one that should precede it by the meaning of their names (`small`, `large`)."""
     places = {term.name: _top(degrees, xs) for term, degrees in rows}
     places |= {term.name: term.parameters[0] for term in variable.terms.values() if term.kind == VALUE_TERMS[0]}
     scale = ranks(tuple(places))

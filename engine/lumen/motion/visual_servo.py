@@ -66,7 +66,7 @@ class JointHistory:
 
 
 class VisualServo:
-    """Computes the turn for a sight, for a controller bound to joints of a body."""
+    """Computes how far to turn for one sighting, with a controller bound to joints of a body."""
 
     def __init__(self, controller: ControllerDefinition, body: Body) -> None:
         self._controller, self._body = controller, body

@@ -244,7 +244,7 @@ class _Builder:
         return found
 
     def known(self, name: str) -> str:
-        """Return the path of a state given by path or id, or `context.KEY` of a known key; empty for neither."""
+        """Return the path of a state given by path or id, or `context.KEY` of a known key, else an empty string."""
         entry = self.outline.entries.get(name) or self.outline.aliases.get(name)
         key = name.removeprefix(f"{CONTEXT_PREFIX}.")
         return entry.path if entry else name if key != name and key in (self.data.get("context") or {}) else ""

@@ -134,7 +134,7 @@ def homes() -> list[Home]:
 
 
 def _locked(file: int) -> bool:
-    """Return True if this process now has an exclusive lock on the file; the lock ends with the process."""
+    """Try to lock the file exclusively, without waiting; return True on success. The lock ends with the process."""
     try:
         if sys.platform == "win32":
             import msvcrt

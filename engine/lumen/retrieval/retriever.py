@@ -29,7 +29,10 @@ class FoundAnswer(NamedTuple):
 
 
 class Retriever:
-    """The passages that one robot may say in one language on one day; `names` has the order of the features' rows."""
+    """The passages that one robot may say in one language on one day.
+
+    `names` lists them in the order of the features' rows.
+    """
 
     def __init__(
         self,

@@ -204,7 +204,7 @@ class BehaviorLoop:
         self._events.append(event)
 
     def approve(self, by: str, *, go: bool) -> str:
-        """Let the event that has waited longest go or stay; return why that can't be done, empty if it was."""
+        """Let the event that has waited longest go or stay; return why that can't be done, or an empty string."""
         return "" if self.runtime.approvals.decide("", by, go=go) else NOTHING_WAITS
 
     def set_autonomy(self, level: Autonomy, by: str) -> None:
@@ -212,7 +212,7 @@ class BehaviorLoop:
         self.runtime.approvals.set(level, by)
 
     def press(self, label: str, by: str) -> str:
-        """Raise the event of a button at the next tick; return why that can't be done, empty if it was."""
+        """Raise the event of a button at the next tick; return why that can't be done, or an empty string."""
         found = pressed(self.project.machine, self.runtime.snapshot, label, self.clock.now(), by)
         if isinstance(found, str):
             return found

@@ -128,7 +128,7 @@ class Module:
         return row.key_for(self.project.robot) if row else default_key(route, self.project.robot)
 
     def tell(self, text: str) -> None:
-        """Report a line to the operator, once until `well`."""
+        """Report a line to the operator, but not again until `well` is called."""
         if text not in self._told and len(self._told) < MAX_REASONS:
             self._told.add(text)
             self._tell(text)

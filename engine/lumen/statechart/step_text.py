@@ -84,7 +84,7 @@ class StepText:
         self.lines.append(_INDENT * self.depth + text)
 
     def end(self) -> None:
-        """Leave the rest to the full algorithm."""
+        """Append the line that leaves the rest to the full algorithm."""
         self.lines.append(_INDENT * self.depth + "return None")
 
     @contextmanager

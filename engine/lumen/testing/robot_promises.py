@@ -65,7 +65,7 @@ def test_a_cancelled_command_ends_soon(trial: RobotTrial) -> None:
 
 
 def test_rest_ends_everything(trial: RobotTrial) -> None:
-    """A rest is done, and what ran before it is answered."""
+    """A rest always ends with `done`, and commands that ran before it are answered too."""
     trial.start("say", Say("x" * 100))
     trial.live(0.3)
     trial.start("rest", Rest())

@@ -11,7 +11,7 @@ from lumen.project.project_folders import kind_of
 
 
 class Hint(NamedTuple):
-    """A text after a place, with a longer explanation."""
+    """A text to show after a place in a file, with a longer explanation."""
 
     place: Place
     text: str

@@ -69,7 +69,7 @@ class ForeignState:
 
 
 def clean_id(text: str) -> str:
-    """Return an id that `#id` can refer to."""
+    """Return the text as an id that `#id` can refer to: blanks, `#` and `*` become `_`."""
     return _UNFIT_ID.sub("_", text)
 
 

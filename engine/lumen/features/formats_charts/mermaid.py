@@ -84,7 +84,7 @@ class _MermaidDrawing:
             yield from self._inside(invoke, f"{self.ids[state.path]}i{number}", depth)
 
     def _inside(self, invoke: Invoke, id: str, depth: int) -> Iterator[str]:
-        """Yield an invoked behaviour, in a box of its own."""
+        """Yield the lines for an invoked behaviour: a box of its own, or only its name if unknown or already drawn."""
         indent, machine = "  " * depth, self.machine.invoked.get(invoke.behavior)
         name = _escaped(invocation(invoke))
         if machine is None or invoke.behavior in self.drawn:

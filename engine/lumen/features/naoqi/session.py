@@ -51,7 +51,7 @@ def address(url: str) -> str:
 
 
 def plain(error: object) -> str:
-    """Return NAOqi's message about an error in one line, without its place in NAOqi's code."""
+    """Return NAOqi's error message as a single line, without the location in NAOqi's code."""
     text = " ".join(str(error).partition("\n\nAt:")[0].split())
     if text in _QI_CONNECTION_LOST:
         return CONNECTION_LOST

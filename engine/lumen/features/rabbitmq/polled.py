@@ -155,7 +155,7 @@ class PolledConnection:
             self.turn(0.5)
 
     def turn(self, seconds: float, pause: float = 0.0) -> None:
-        """Process events for at most `seconds`, or until something happens or `wake` is called.
+        """Wait for events for at most `seconds`, or until `wake` is called; then process those that came.
 
         First wait `pause` [s] for `wake` alone; events of that time are then processed at once.
         """

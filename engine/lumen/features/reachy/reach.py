@@ -43,7 +43,7 @@ def shortest(goal: Mapping[str, float], near: Mapping[str, float], time: float =
 
 
 def worst_of(motion: MotionDefinition, body: Body) -> Shortage | None:
-    """Return the pose of a motion that falls short the most; None if the robot reaches all of it.
+    """Return the joint that falls farthest short in a motion, and when; None if the robot reaches every pose.
 
     Joints that it does not move are as in the posture Stand.
     """

@@ -49,8 +49,9 @@ LIMP_STIFFNESS = 0.5
 class Motors:
     """Drives every joint to its goal within the body's limits and speeds.
 
-    `goal` are the joints' goals, `command` the angles sent to their servos: Shape (joints,), [rad; hands 0..1].
-    `effort` is the greatest torque of each motor [N m], 0 at a joint that shares a motor; `voltage` is the supply [V].
+    `goal` holds the joints' goals and `command` the angles sent to their servos, both of shape (joints,) [rad;
+    hands 0..1]. `effort` is the greatest torque of each motor [N m], 0 for a joint that is moved by another joint's
+    motor; `voltage` is the supply [V].
     """
 
     def __init__(self, world: World, lacking: Imperfections | None = None) -> None:

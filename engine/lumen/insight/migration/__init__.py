@@ -20,10 +20,10 @@ def plan(
     """Return how a behaviour of `old` at that snapshot continues under `new` at `at` [s]; nothing is performed.
 
     Active states keep their identity by path or by `renamed`. A state that still exists is not entered again; its
-    timers keep their deadlines, and its actions continue. A state that is gone runs its old exit actions, and the
-    nearest `onReload` around it names the next state (else a Refusal). If a `do` under way is gone or changed, the
-    result is a MigrationDelay; with `now` the `do` is cancelled instead, and a changed one begins anew. If the content
-    is the same, so is the snapshot.
+    timers continue from when they were set, with a changed delay if there is one, and its actions continue. A state
+    that is gone runs its old exit actions, and the nearest `onReload` around it names the next state (else a
+    Refusal). If a `do` under way is gone or changed, the result is a MigrationDelay; with `now` the `do` is
+    cancelled instead, and a changed one begins anew. If the content is the same, so is the snapshot.
 
     `back` is a rollback: `new` ran before `old`, whose renamings are undone.
     """

@@ -78,7 +78,7 @@ def reader(ending: str) -> Any:
 
 
 def format_tables() -> Mapping[str, FormatTable]:
-    """Return the tables of names of each format: read, lost or meaningless names by the kind of place in a file."""
+    """Return each format's table of names: those that are read, lost or meaningless, by the kind of place in a file."""
     return {name: resolved(owner("format_tables", name), where) for name, where in table("format_tables").items()}
 
 

@@ -90,7 +90,7 @@ class RunDirectory:
     def begin_run(
         self, behavior: LiveBehavior, url: str, reloader: Reloader | None, *, fresh: bool
     ) -> Resumption | FreshStart:
-        """Publish the address of this run and its reloads; return how it resumes the previous run, or begins.
+        """Publish the address of this run and its reloads; return how it resumes the previous run, or starts afresh.
 
         With `fresh` the previous run is ignored, except that a robot at rest stays at rest.
         """

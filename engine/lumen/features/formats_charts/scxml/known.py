@@ -183,5 +183,5 @@ KNOWN: FormatTable = {
 
 
 def plain(name: str) -> str:
-    """Return `lumen:do` for Lumen's own names; names of other namespaces keep these, in braces."""
+    """Return a name with Lumen's namespace as `lumen:`; other names keep their namespace, in braces."""
     return name.replace(f"{{{LUMEN_NAMESPACE}}}", "lumen:", 1)

@@ -33,7 +33,7 @@ def plain_template(element: XmlElement, text: str) -> str:
 
 
 def _parts(tree: ExpressionNode, names: ScriptNames) -> list[ExpressionNode]:
-    """Return the parts between the `+` of a joined text, else the single value."""
+    """Return the operands of a `+` chain that joins text; for any other expression, the expression as the only part."""
     chain: list[ExpressionNode] = []
     rest = tree
     while isinstance(rest, Binary) and rest.sign == "+":

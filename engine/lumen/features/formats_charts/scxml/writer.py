@@ -75,7 +75,7 @@ class _ScxmlWriter:
         return XmlTag("data", {"id": self.vocabulary.keys[key], "expr": self.orders.literal(value)})
 
     def _own(self) -> Iterator[XmlTag]:
-        """Yield elements of Lumen's own for what a whole machine has and SCXML lacks."""
+        """Yield Lumen's own element for the parts of a whole machine that SCXML lacks, if it has any."""
         machine = self.machine
         phrases = {name: plain_phrases(table, anyhow=name in machine.anyhow) for name, table in machine.phrases.items()}
         answers = {
