@@ -62,20 +62,22 @@ def wait(come: Callable[[], bool], what: str) -> None:
         time.sleep(0.2)
 
 
-def robot() -> dict[str, Any]:
+def robots() -> list[dict[str, Any]]:
+    """Return the robots that the console shows; none until it answers."""
     try:
-        return next(iter(ask("api/now")["robots"]), {})
+        return list(ask("api/now")["robots"])
     except OSError:
-        return {}
+        return []
+
+
+def robot() -> dict[str, Any]:
+    """Return the first robot, empty if there is none yet."""
+    return next(iter(robots()), {})
 
 
 def waiting() -> set[str]:
     """Return the names of the robots that wait for a visitor's name."""
-    try:
-        robots = ask("api/now")["robots"]
-    except OSError:
-        return set()
-    return {robot["robot"] for robot in robots if "ask_name" in robot.get("configuration", ())}
+    return {robot["robot"] for robot in robots() if "ask_name" in robot.get("configuration", ())}
 
 
 def visit(name: str, mood: str) -> None:
