@@ -93,7 +93,7 @@ class SenseRow(NamedTuple):
     """
 
     meaning: str
-    """What its route is for."""
+    """The purpose of its route."""
     encode: str = ""
     """An import string of a function from a reading to the body of a message."""
     decode: str = ""
@@ -179,7 +179,7 @@ class VerbRow(NamedTuple):
     result: Mapping[str, Any] = {}
     """The JSON Schema of what the performer returns."""
     takes: str = "0s"
-    """How long it takes: a duration that can contain expressions of the arguments, `{{ times * 0.4 }}s`."""
+    """The time that it takes: a duration that can contain expressions of the arguments, `{{ times * 0.4 }}s`."""
     parts: tuple[str, ...] = ()
     """The parts of the body that it needs to itself (`lumen.language.body_parts`)."""
     moves: bool = False

@@ -45,7 +45,7 @@ class JournalEntry(NamedTuple):
 
 
 class Forgotten(NamedTuple):
-    """How much data about a person was deleted."""
+    """The amount of data about a person that was deleted."""
 
     visitors: int
     """The number of visitors."""
