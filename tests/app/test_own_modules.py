@@ -327,6 +327,19 @@ def test_only_a_program_that_no_other_process_starts_can_be_a_part(
     assert said in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("broken", ["modules: {mood: {command: [python3, mood.py]}}\nrobot: [\n", "modules: 3\n"])
+def test_if_lumen_yaml_is_broken_its_errors_come_before_an_unknown_part(
+    broken: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = copied_project(ROOT / "examples/minimal", tmp_path / "hall")
+    with (root / "lumen.yaml").open("a") as file:
+        file.write(broken)
+    assert main(["run", str(root), "--only", "mood"]) == 1
+    said = capsys.readouterr().err
+    assert "error [" in said
+    assert "there is no part" not in said
+
+
 def test_a_program_on_another_machine_shows_that_it_lives_over_a_broker(
     project: Project, time: Time, broker: RabbitMQ
 ) -> None:

@@ -42,6 +42,7 @@ from lumen.run.reload.reloader import MODES
 from lumen.run.run_start import BegunRun, started
 from lumen.run.services import Services
 from lumen.run.setup import SPEEDS, Setup, robot_kind, robot_names, robot_options
+from lumen.standalone.project import load
 from lumen.upkeep.heap import give_back
 
 PROCESS_GREETING = "You are the visitor: type what you say, or /help. Ctrl-D walks away, Ctrl-C ends.\n"
@@ -140,9 +141,7 @@ def run(options: argparse.Namespace) -> int:
             f" {journal}. `lumen new DIR` makes a project of your own."
         )
     options.robot = robot_kind(options.robot, root)
-    settings = main_settings(root) if options.only else None
-    modules = settings.modules if settings else {}
-    parts, robots = parts_of(options.only, options.robot, modules), robots_of(root, options.robot_name)
+    parts, robots = _parts(options, root), robots_of(root, options.robot_name)
     for extra in run_extras():
         extra.check(options, parts, len(robots))
     if len(robots) > 1:
@@ -157,6 +156,19 @@ def run(options: argparse.Namespace) -> int:
         verdict = _house(options, start, parts) if len(robots) > 1 else _run(options, start, parts)
         say(verdict.to_json(str(root.absolute()), options.story))
         return verdict.code
+
+
+def _parts(options: argparse.Namespace, root: Path) -> tuple[str, ...]:
+    """Return the parts that this process runs.
+
+    Raises UsageError for an invalid choice, ProjectError if the project has errors.
+    """
+    settings = main_settings(root) if options.only is not None else None
+    try:
+        return parts_of(options.only, options.robot, settings.modules if settings else {})
+    except UsageError:
+        load(root)  # a part may be unknown only because lumen.yaml, which names it, has errors: these come first
+        raise
 
 
 def _house(options: argparse.Namespace, start: BegunRun, parts: tuple[str, ...]) -> RunVerdict:
