@@ -21,9 +21,10 @@ from lumen.project.packaged import find_project
 
 
 def check(path: str | Path | None = None) -> list[Diagnostic]:
-    """Return all findings in the project in that folder, by file and line; errors in its files raise nothing.
+    """Return all findings in a project, sorted by file and line; errors in its files raise nothing.
 
-    Raises UsageError if there is no such folder.
+    `path` is the project's folder; None is the project around the working directory (`find_project`). Raises UsageError
+    if there is no such folder.
     """
     root = find_project(path)
     return list(check_files(root, read_files(root))[1])
@@ -65,7 +66,7 @@ def _checked(
 
 
 def _apply(feature: Feature, rule: str, found: ProjectDraft) -> None:
-    """Run a rule. If it belongs to another installed package and is faulty, that becomes a finding."""
+    """Run a rule; a fault of a rule that another installed package provides becomes a finding."""
     returned: object = None
     with faults_reported(feature, f"its rule `{rule}`", found.loose):
         returned = resolve(rule)(found)

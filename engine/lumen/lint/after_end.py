@@ -11,7 +11,7 @@ def check(draft: ProjectDraft) -> None:
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         if any(path and state.name == machine.root.name for path, state in machine.states.items()):
-            continue  # that state may be the one that is meant
+            continue  # the event may belong to that state
         end = f"done.state.{machine.root.name}"
         for state in machine.states.values():
             for transition in state.transitions:

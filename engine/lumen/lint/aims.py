@@ -16,11 +16,13 @@ WRONG_SIGN = Code("wrong-sign", "controllers", WARNING, "the robot turns away fr
 
 
 MAX_GAIN = 2.0
-"""The largest gain. With a delay of 100 to 200 ms, a loop of gain 1.5 does not overshoot, and one of 3 does by 46 %."""
+"""The largest gain that is not reported. With a delay of 100 to 200 ms, a loop of gain 1.5 does not overshoot, and one
+of 3 does by 46 %.
+"""
 
 OPPOSITE = {"left": "right", "right": "left", "up": "down", "down": "up", "forward": "backward", "backward": "forward"}
 GROWING_ANGLE_TURNS = {"yaw": "left", "pitch": "down"}
-"""The direction in which a joint with such a role turns while its angle grows."""
+"""The direction in which a joint turns as its angle grows, by the end of the joint's role."""
 
 
 def check(controller: ControllerDefinition, report: DocumentReport, draft: ProjectDraft) -> None:
@@ -54,7 +56,9 @@ def _sense(controller: ControllerDefinition, output: Variable, report: DocumentR
 
 
 def _trend(controller: ControllerDefinition, variable: Variable, output: Variable) -> int:
-    """Return 1 if the rules from `variable` to `output` rise in the order of the terms, -1 if they fall, else 0."""
+    """Return how `output` changes as `variable` rises, by the rules that relate their terms: 1 rises, -1 falls, 0
+    unknown.
+    """
     asked, said = ranks(tuple(variable.terms)), ranks(tuple(output.terms))
     pairs = [
         (asked[rule.antecedent.term], said[consequent.term])

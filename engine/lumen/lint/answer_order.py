@@ -17,14 +17,15 @@ from lumen.talk.patterns import Form, forms
 
 
 class Asking(NamedTuple):
-    """A transition that looks a table up, and the names of the phrases that transitions before it listen for."""
+    """A lookup of a table in the guard of a transition."""
 
     table: str
     before: tuple[str, ...]
+    """The names of the phrases for which the guards of earlier transitions search the same text."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report rows each of whose phrases matches an earlier guard, before every lookup of their table."""
+    """Report phrases that an earlier row also has, and rows whose phrases earlier guards match before each lookup."""
     owners = {
         id(row): (t.report, name, i)
         for t in word_tables(draft)
@@ -100,5 +101,5 @@ def _taken(
 
 
 def _taker(machine: MachineDefinition, phrase: str, before: tuple[str, ...]) -> str:
-    """Return the first of these names one of whose phrases matches `phrase`; empty if none does."""
+    """Return the first name in `before` that has a phrase which matches `phrase`, else empty."""
     return next((name for name in before if is_taken(phrase, machine.phrases.get(name, {}))), "")

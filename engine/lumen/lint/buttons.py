@@ -94,7 +94,7 @@ def _line(machine: MachineDefinition, state: State) -> list[str]:
 
 
 def _collide(machine: MachineDefinition, one: tuple[State, Button], other: tuple[State, Button]) -> bool:
-    """Return whether two buttons have the same key and are shown together, neither replacing the other."""
+    """Return whether two buttons with the same key are shown together; an inner state's button replaces outer ones."""
     if not one[1].key or one[1].key != other[1].key:
         return False
     inside = one[0].path in _line(machine, other[0]) or other[0].path in _line(machine, one[0])

@@ -15,7 +15,7 @@ _TEXT: Mapping[str, Any] = {"type": "string"}
 def caught_schema(machine: MachineDefinition, row: Hears) -> dict[str, Any]:
     """Return the JSON Schema of `heard` in a row; a slot that only some forms have is not required.
 
-    It is empty for a row with phrases of a list's entry, and for one with a broken phrase, which has its own finding.
+    The schema is empty if the row has phrases of a list's entries, or a broken phrase, which is reported elsewhere.
     """
     phrases = [phrase for _, phrase in row_phrases(machine, row)]
     if any("." in name for name in row.names) or any(is_broken(machine, phrase) for phrase in phrases):
@@ -39,7 +39,7 @@ def row_phrases(machine: MachineDefinition, row: Hears) -> Iterator[tuple[str, s
 
 
 def is_broken(machine: MachineDefinition, phrase: str) -> bool:
-    """Return whether a phrase has a slot that can't be read, or that can catch nothing."""
+    """Return whether a phrase can't be read, or has a slot of an unknown type."""
     if "{" not in phrase:
         return False
     try:

@@ -1,4 +1,4 @@
-"""The shared data of all chains of one machine: answers about its states and transitions, and the remaining work."""
+"""Cached answers about the states and transitions of one machine, for all its chains, and the work done on them."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ MAX_WORK = 30_000
 """The greatest number of states that are visited for the chains of one behaviour; further chains are not followed."""
 
 TRANSITIONS_PER_WORK = 10
-"""The number of transitions that are compared with an event in the time of one visit."""
+"""The number of transitions compared with an event that count as one visit."""
 
 
 class UncertainError(Exception):
@@ -32,7 +32,7 @@ class ChainSurvey:
         self.ends = ends
         """Whether an invoked machine ends as soon as it begins, by its `id()` and the depth; None if uncertain."""
         self.order = {path: number for number, path in enumerate(machine.states)}
-        """The place of each path in the document."""
+        """The position of each state in the document, by its path."""
         self.seen: set[tuple[object, ...]] = set()
         self.work = 0
         self.children = {path: frozenset(state.children) for path, state in machine.states.items()}

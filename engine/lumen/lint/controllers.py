@@ -12,7 +12,7 @@ from lumen.project.poses import ANGLE_OUT_OF_RANGE, UNKNOWN_JOINT
 from lumen.project.roles import RoleNames
 
 LIMIT_TOLERANCE = 2e-3
-"""The tolerance for a limit outside the joint's own [rad], because people round."""
+"""The tolerance [rad] by which a limit may exceed the joint's own, because people round."""
 
 
 def check(draft: ProjectDraft) -> None:

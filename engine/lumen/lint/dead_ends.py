@@ -29,13 +29,15 @@ A region that waits for one is a watching region; events that it raises are alar
 
 
 GraphNode = tuple[str, str]
-"""A node of the graph, with the path of a state: `in` it, on entry (`to`), or in `any` state below it."""
+"""A node of the graph: a relation and the path of a state. `in` is being in it, `to` entering it, `any` being in any
+state below it.
+"""
 
 _RESTLESS = (ENDLESS_ALWAYS, ALWAYS_LOOP, ENDLESS_CHAIN)
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report what keeps the robot in a state forever, in files that were read as a whole and have no endless loops."""
+    """Report states that the robot may never leave, in files that were read as a whole and have no endless loops."""
     events = {r.event for r in draft.settings.routes.values() if r.event} if draft.settings else set[str]()
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -68,11 +70,13 @@ def _ended(machine: MachineDefinition, report: DocumentReport) -> None:
 
 @dataclass
 class _Graph:
-    """Which nodes follow each node in one move (`after`), and precede it (`before`); guards are assumed to hold."""
+    """The possible moves between the states of a machine; guards are assumed to hold."""
 
     machine: MachineDefinition
     after: dict[GraphNode, list[GraphNode]] = field(default_factory=dict)
+    """The nodes to which one move leads from each node."""
     before: dict[GraphNode, list[GraphNode]] = field(default_factory=dict)
+    """The nodes from which one move leads to each node."""
 
     def __post_init__(self) -> None:
         for path, state in self.machine.states.items():
@@ -233,7 +237,7 @@ class _Ways:
         self.report(DEAD_END, state.where, message, hint, key=True, related=self.from_where(path))
 
     def lost(self, track: State, home: State, lost: list[str], dead: Iterable[str]) -> None:
-        """Report states from which no way leads home; of states that lead to one another only the first."""
+        """Report states from which no transitions lead to `home`; of states that lead to one another only the first."""
         ends = [("in", path) for path in dead]
         ends += [("in", p) for p in track.children if self.machine.states[p].kind is StateKind.FINAL]
         ended = spread(ends, self.graph.before)
@@ -275,7 +279,9 @@ class _Ways:
         )
 
     def late(self, state: State, transition: Transition) -> bool:
-        """Return whether only a time of day ends an outer state, so that a later state within may last for hours."""
+        """Return whether a transition is the `at` of an outer state, and so may be hours away from a later state within
+        it.
+        """
         within_others = state.parent is not None and state.path not in self.machine.states[state.parent].initial
         return transition.schedule is not None and transition.source != state.path and within_others
 

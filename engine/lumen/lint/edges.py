@@ -69,7 +69,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Ways:
-    """The ways on which a behaviour can lead the robot from its start, each walk once on a way.
+    """Follows the ways on which a behaviour can lead the robot from its start; each walk is made once on a way.
 
     Guards are assumed to hold. After a walk that may be interrupted, or that another behaviour may request, the robot's
     position is unknown: nothing is reported for later walks.

@@ -52,7 +52,9 @@ def _reload(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _ways(machine: MachineDefinition, report: DocumentReport) -> None:
-    """Report a `reenter` that exits no additional state, and an `onError` without anything that can fail."""
+    """Report a `reenter` without an effect, keys of a state that `always` leaves at once, and an `onError` without a
+    `do`.
+    """
     for state in machine.states.values():
         for transition in state.transitions:
             path = (*transition.where, "reenter")

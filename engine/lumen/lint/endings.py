@@ -34,7 +34,7 @@ def _begins(descriptor: str, name: str) -> bool:
 
 
 def _able(machine: MachineDefinition, family: str) -> set[str] | None:
-    """Return the names that can follow this family; None if the family is not about states or invokes."""
+    """Return the states or invokes that can raise an event of a family; None if the family is not about either."""
     states = machine.states.values()
     match family:
         case "done.state":

@@ -41,7 +41,7 @@ _REASON = {"type": "object", "properties": {"reason": {"type": "string"}}, "requ
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report events that are waited for and never raised, or raised and never waited for."""
+    """Report events that are awaited but never raised, raised but never awaited, or named like a part of the robot."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         _waited(draft, machine, report)
@@ -65,7 +65,7 @@ def descriptors(machine: MachineDefinition) -> tuple[str, ...]:
 def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
     """Return the events that can come from outside this machine, with the JSON Schema of their data.
 
-    The schema is None for any data.
+    The schema is None if the data can be anything.
     """
     found: dict[str, Any] = {}
     routes = draft.settings.routes.values() if draft.settings else ()
@@ -82,7 +82,7 @@ def declared(draft: ProjectDraft, machine: MachineDefinition) -> dict[str, Any]:
 def outcome(machine: MachineDefinition, transition: Transition) -> dict[str, Any] | None:
     """Return the event of an `onDone` or `onError` of an invoke, with the schema of its data; else None.
 
-    A `do` counts as well, if it ends with a verb of a feature that has a result.
+    The `onDone` of a `do` counts as well if the last action of the `do` has a result.
     """
     state = machine.states[transition.source]
     if transition.event == f"done.do.{state.name}" and (result := _result(state.do)):
@@ -190,30 +190,33 @@ def _hint(settings: Settings, event: str, known: Set[str], lost: Set[str]) -> st
 
 
 def _prefixes(event: str) -> list[str]:
-    """Return the event, and its beginnings of whole words."""
+    """Return the event and its dotted prefixes, the shortest first."""
     return [event[:at] for at, letter in enumerate(event) if letter == "."] + [event]
 
 
 class _Misspelt:
-    """The transitions of a machine by their event, its raised events, and those of them without a transition."""
+    """The events that a machine raises and awaits, to find misspelt `raise` actions."""
 
     def __init__(self, machine: MachineDefinition) -> None:
         self.waiting: dict[str, list[Transition]] = {}
+        """The transitions of each event."""
         for transition in (t for state in machine.states.values() for t in state.transitions):
             self.waiting.setdefault(transition.event, []).append(transition)
         self.sent: dict[str, list[NodePath]] = {}
+        """The places of the `raise` actions of each event."""
         for site in action_sites(machine):
             if isinstance(action := site.step.action, Raise):
                 self.sent.setdefault(action.event, []).append(site.step.where)
         heard = {descriptor.removesuffix(".*") for descriptor in descriptors(machine) if descriptor != "*"}
         everything = "*" in descriptors(machine)
         self.lost = {name for name in self.sent if not everything and heard.isdisjoint(_prefixes(name))}
+        """The raised events for which no transition waits."""
 
 
 def _misnamed(event: str, misspelt: _Misspelt, report: DocumentReport) -> bool:
-    """Return whether a `raise` is probably misspelt instead of the event that transitions wait for; report it if so.
+    """Report a `raise` that probably misspells an event for which transitions wait; return whether there is one.
 
-    That is assumed if fewer actions raise the similar name than transitions wait for this one.
+    An event counts as misspelt if fewer actions raise the similar name than transitions wait for `event`.
     """
     waiting = misspelt.waiting[event]
     name = nearest(event, misspelt.lost)

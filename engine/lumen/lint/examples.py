@@ -32,7 +32,10 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Examples(HeardRows):
-    """Tries the phrases of one behaviour. Tables in `looked` are left out: expressions look them up, by other rules."""
+    """Tries the phrases of one behaviour as examples.
+
+    Tables in `looked` are skipped, because `lookup` in expressions matches by other rules.
+    """
 
     def __init__(self, draft: ProjectDraft, behavior: str, looked: Collection[str]) -> None:
         super().__init__(draft, behavior)
@@ -72,7 +75,7 @@ class _Examples(HeardRows):
             order = self.order(row.state.path, example.text)
             both = (*order.first, *order.late)
             if all(one.number not in row.numbers for one in both):
-                continue  # a slot does not catch the word that was said for it
+                continue  # a slot does not match the word that the example has for it
             if taker := self.taker(both, row):
                 taken.setdefault(example.written and (example.written.report, example.written.path), (example, taker))
             else:
@@ -166,7 +169,7 @@ class _Examples(HeardRows):
         )
 
     def hiding(self, outer: str) -> str:
-        """Describe the transition that handles every sentence in all inner states; empty if there is none."""
+        """Describe the transition that handles every sentence in all inner states; else empty."""
         takers = [
             next((t for state in self.between(leaf, outer) for t in state.transitions if _takes_all(t)), None)
             for leaf in self.leaves(outer)

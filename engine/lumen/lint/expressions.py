@@ -138,7 +138,10 @@ class _Expressions:
             self.report.diagnostics.append(found)
 
     def truth(self, spot: ExpressionSite, finding: ExpressionFinding, part: str, place: Place) -> bool:
-        """Return whether the type mismatch comes from `no` for `false` in the context; it is reported there, once."""
+        """Return whether a word such as `no`, written for `false` in the context, causes a type mismatch.
+
+        Such a mismatch is reported once, at the value in the context.
+        """
         for key in re.findall(r"\bcontext\.(\w+)", part) if "true or false" in finding.message else ():
             there = self.report.document.place(("context", key))
             told = next((d for d in self.report.diagnostics if d.code in _TRUTHS and d.place == there), None)

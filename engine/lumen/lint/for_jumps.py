@@ -15,7 +15,7 @@ JUMP_INTO_FOR = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report transitions from outside a state with `for` to a state within it."""
+    """Report transitions from outside a state with `for` to a state within it; a target with a history is exempt."""
     for name, machine in draft.behaviors.items():
         loops = [path for path, state in machine.states.items() if state.for_each]
         if loops:

@@ -39,7 +39,7 @@ def covered(parts: Iterable[Obstacle], point: GroundPoint) -> bool:
 
 
 def reach(parts: Iterable[Obstacle]) -> str:
-    """Describe the extent of the ground under the start."""
+    """Describe the extent of the ground below the start [m]; there must be ground there."""
     part = next(part for part in parts if part.distance(GroundPoint(0.0, 0.0)) < 1e-6)
     length, width = part.length + part.round, part.width + part.round
     x, y = (part.x - length, part.x + length), (part.y - width, part.y + width)

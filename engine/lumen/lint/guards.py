@@ -27,7 +27,7 @@ SHADOWED_TRANSITION = Code(
 )
 
 MAX_COMPARED_CANDIDATES = 60
-"""The number of candidates of a state that are compared with one another."""
+"""The number of candidates of a state that are compared with one another; later ones are not checked."""
 
 
 class HeardCall(NamedTuple):
@@ -38,7 +38,7 @@ class HeardCall(NamedTuple):
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report constant guards, and candidates that are never or only partly reached."""
+    """Report constant guards, and candidates that an earlier one makes wholly or partly unreachable."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for guard in dict.fromkeys(spot.text for spot in expression_sites(machine) if spot.guard):
@@ -101,7 +101,7 @@ def _late(machine: MachineDefinition, state: State, report: DocumentReport) -> N
 
 
 def _taken_within(machine: MachineDefinition, state: State, report: DocumentReport) -> None:
-    """Report ends of invoked behaviours that the inner states always handle first."""
+    """Report `onDone` and `onError` of invoked behaviours whose event the inner states always handle first."""
     ends = [t for t in state.transitions if t.where[len(state.where) :][:1] == ("invoke",)]
     inner = list(_below(machine, state)) if ends else []
     leaves = [s for s in inner if s.kind in (StateKind.ATOMIC, StateKind.FINAL)]
@@ -126,22 +126,22 @@ def _below(machine: MachineDefinition, state: State) -> Iterator[State]:
 
 
 def _takes(transition: Transition, end: Transition) -> bool:
-    """Return whether a transition is always taken at the event of an end."""
+    """Return whether a transition is always taken when the event of `end` occurs."""
     return not (transition.guard or transition.hears or transition.approve) and covers(transition, end)
 
 
 def _turn(transition: Transition) -> int:
-    """Return the rank of a transition among those of its state: `hears` comes after `heard`, before `*` and `else`."""
+    """Return the rank of a transition within its state: other events, then rows of `hears`, then `*`, then `else`."""
     if transition.hears:
         return 3 if transition.hears.way == "else" else 1
     return 2 if transition.event == "*" else 0
 
 
 def covers(earlier: Transition, later: Transition) -> bool:
-    """Return whether every event that matches the later transition matches the earlier one first.
+    """Return whether the earlier transition is selected by every event that selects the later one; guards do not count.
 
-    Among rows of `hears` the words of their phrases decide, except between candidates of one row. The end of a `do`, of
-    nested states and of an invoked behaviour is also an event, which `*` and `done` match; the end of a timer is not.
+    A row of `hears` covers only other candidates of the same row, because phrases decide between rows. `*` and `done`
+    also match the end of a `do`, of nested states and of an invoked behaviour; they do not match the end of a timer.
     """
     if earlier.timed != later.timed:
         return False
@@ -155,9 +155,8 @@ def covers(earlier: Transition, later: Transition) -> bool:
 
 
 def _takes_all(earlier: Transition, later: Transition, machine: MachineDefinition, report: DocumentReport) -> bool:
-    """Return whether the earlier transition leaves nothing for the later one.
-
-    That is reported, and so is an earlier transition that leaves only a part.
+    """Report a transition that an earlier one makes wholly or partly unreachable; return whether nothing is left for
+    it.
     """
     related = [(earlier.where, "the earlier one is here")]
     if earlier.guard is None:

@@ -8,14 +8,14 @@ from typing import NamedTuple
 from lumen.lint.mjcf_elements import ModelElement, mjcf_elements
 
 ROBOT_HEIGHT, TOE_HEIGHT = 0.6, 0.02
-"""Heights above the stage [m]: objects that begin above the first or end below the second are in no robot's way."""
+"""Heights above the stage [m]: objects that begin above the first or end below the second block no robot."""
 
 STAGE_SITE = "stage"
 """The site at which the robot starts."""
 
 
 class GroundPoint(NamedTuple):
-    """A point of the ground [m], in the frame of the stage."""
+    """A point of the ground [m] in the frame of the stage: x forward, y to the left."""
 
     x: float
     y: float
@@ -48,23 +48,27 @@ class Obstacle(NamedTuple):
 
 
 class _Frame(NamedTuple):
-    """The position of a body [m]; `yaw` [rad] is None if it is also turned about another axis than the vertical."""
+    """The frame of a body in the hall: its position [m] and its turn to the left [rad]."""
 
     x: float = 0.0
     y: float = 0.0
     z: float = 0.0
     yaw: float | None = 0.0
+    """Unknown (None) if the body is also turned about another axis than the vertical."""
 
 
 def obstacles(content: bytes) -> tuple[Obstacle, ...]:
-    """Return the solid boxes, cylinders, spheres and capsules of a hall; none if it is unreadable or has no stage."""
+    """Return the solid objects of a hall that can block a robot; none if the hall is unreadable or has no stage.
+
+    Boxes, cylinders, spheres, capsules and planes are read; meshes and height fields are not.
+    """
     stage, found = _solids(content)
     low, high = stage.z + TOE_HEIGHT, stage.z + ROBOT_HEIGHT
     return tuple(_from(stage, shape) for shape, bottom, top in found if top > low and bottom < high)
 
 
 def ground(content: bytes) -> tuple[Obstacle, ...]:
-    """Return a hall's surfaces at the height of its stage, where the robot can stand; none if they are unknown."""
+    """Return a hall's surfaces at the height of its stage, on which the robot can stand; none if they are unknown."""
     stage, found = _solids(content)
     return tuple(_from(stage, shape) for shape, _, top in found if abs(top - stage.z) < TOE_HEIGHT)
 
@@ -74,7 +78,10 @@ def _from(stage: _Frame, shape: Obstacle) -> Obstacle:
 
 
 def _solids(content: bytes) -> tuple[_Frame, list[tuple[Obstacle, float, float]]]:
-    """Return the frame of the stage, and the solid objects with their bottom and top [m]; none without a stage."""
+    """Return the frame of the stage, and the solid objects with their bottom and top [m] in the frame of the hall.
+
+    If the hall is unreadable or has no stage, there are no objects.
+    """
     elements, fault = mjcf_elements(content)
     if fault:
         return _Frame(), []
@@ -130,9 +137,10 @@ def _placed(around: _Frame, said: Mapping[str, str], degrees: bool) -> _Frame:
 
 
 def _shape(around: _Frame, said: Mapping[str, str], degrees: bool) -> tuple[Obstacle, float, float] | None:
-    """Return the outline of a solid geom, its bottom and its top [m]; None if nothing collides with it.
+    """Return the outline of a solid geom, its bottom and its top [m]; None if it has no collisions or an unknown shape.
 
-    A geom that is turned about another axis than the vertical becomes the ball around it.
+    A geom that is turned about another axis than the vertical becomes the ball around it. Raises ValueError or
+    IndexError if its numbers are malformed.
     """
     if said.get("contype", "1") == "0" and said.get("conaffinity", "1") == "0":
         return None
@@ -170,7 +178,10 @@ def _numbers(text: str) -> list[float]:
 
 
 def nearest(shapes: tuple[Obstacle, ...], begin: GroundPoint, end: GroundPoint, step: float = 0.02) -> float:
-    """Return the smallest distance between a straight walk and any object [m], checked every `step` [m]."""
+    """Return the smallest distance [m] of a straight walk from any object, checked about every `step` [m].
+
+    Infinite if there are no objects.
+    """
     count = max(1, round(hypot(end.x - begin.x, end.y - begin.y) / step))
     points = [
         GroundPoint(begin.x + (end.x - begin.x) * i / count, begin.y + (end.y - begin.y) * i / count)

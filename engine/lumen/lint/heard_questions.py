@@ -21,7 +21,7 @@ SHADOWED_QUESTION = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report questions that match a row which does not answer, in each state whose `else` leads to an `ask`."""
+    """Report questions that match a row which does not answer them, in each state whose `else` leads to an `ask`."""
     files = [passage.file for passage in draft.knowledge.values()]
     for name in hearing_behaviors(draft) if files else ():
         remembered(draft, ("heard questions", name), name, files, None, _Questions(draft, name).check)
@@ -65,7 +65,7 @@ class _Questions(HeardRows):
         finds = hearing_of(self.machine).read(text).finds
         for path in active:
             if self.names[path].isdisjoint(finds) and not (path == state.path and self.slots & self.names[path]):
-                continue  # most sentences contain none of its phrases
+                continue  # a sentence without these phrases can't match
             order = self.order(path, text)
             if order.first:
                 yield order.first[0]
@@ -73,7 +73,7 @@ class _Questions(HeardRows):
                 yield order.late[0]
 
     def answers(self, row: SaidRow) -> bool:
-        """Return whether a sentence that matches this row gets an answer, or may do so depending on a guard."""
+        """Return whether a sentence that matches this row gets an answer; True if a guard decides that."""
         guarded = any(t.guard for t in row.candidates)
         return guarded or self.asks(row) or self.machine.answers.keys() >= set(row.hears.names)
 
@@ -103,7 +103,7 @@ class _Questions(HeardRows):
         question.report.diagnostics.append(found)
 
     def remedy(self, question: WrittenPhrase, find: Find, row: SaidRow, state: State) -> str:
-        """Return the hint for a question that matches a row: add a row `asked NAME`, or lengthen the phrase."""
+        """Return the hint for a question that matches a row: add a row `asked NAME`, or change the row's phrase."""
         name, words = find.entry.name, self.words(question.text, find)
         asked = hearing_of(self.machine).read(question.text).is_asked(find)
         if asked and (within(row.state.path, state.path) or within(state.path, row.state.path)):

@@ -1,6 +1,6 @@
 """The rows of `hears` of a behaviour, and which of them a sentence matches, for rules that try sentences.
 
-No statechart runs for that: `Hearing` is used directly, state by state.
+No statechart runs: the rules call `Hearing` directly, state by state.
 """
 
 from collections.abc import Callable, Collection, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -55,11 +55,14 @@ class SaidRow(NamedTuple):
 
 
 class SaidPhrase(NamedTuple):
-    """A form of a phrase as a sentence; `written` is the phrase in its file, None if it comes with Lumen."""
+    """A form of a phrase as a sentence."""
 
     text: str
+    """The sentence."""
     name: str
+    """The name of the phrases or of the table of answers."""
     written: WrittenPhrase | None
+    """The phrase in its file; None if it comes with Lumen."""
 
 
 class HeardRows:
@@ -80,7 +83,7 @@ class HeardRows:
         return hearing_of(self.machine).order(min(self.by_state[path][0].numbers), text, {})
 
     def taker(self, taken: Sequence[Taken], row: SaidRow) -> Taken | None:
-        """Return the first match if it is certain and not `row`; None if it is `row`, or if a guard decides."""
+        """Return the first match if it is another row without a guard and with another effect than `row`; else None."""
         for one in taken:
             other = self.by_number[one.number]
             if one.number in row.numbers or any(t.guard for t in other.candidates) or _alike(other, row):
@@ -126,7 +129,7 @@ class HeardRows:
             at = self.machine.states[at].parent
 
     def between(self, leaf: str, outer: str) -> list[State]:
-        """Return a state and its ancestors up to, but without, the state `outer`."""
+        """Return a state and its ancestors, from the inside out, up to but without the state `outer`."""
         return [state for state in self.around(leaf) if within(state.path, outer) and state.path != outer]
 
     def leaves(self, outer: str) -> list[str]:
@@ -150,7 +153,7 @@ def hearing_behaviors(draft: ProjectDraft) -> list[str]:
 def remembered(
     draft: ProjectDraft, slot: Hashable, behavior: str, other: Collection[str], given: object, find: Callable[[], None]
 ) -> None:
-    """Add the findings of `find` in the files of a behaviour's phrases and in the `other` files.
+    """Add the findings of `find` in the files of a behaviour and its words, and in the `other` files.
 
     If all these files and `given` are the same as in the last call with this `slot`, its findings are reused.
     """

@@ -1,7 +1,7 @@
 """Findings that the author has reviewed and does not want to see again: `# lumen: ignore[CODE] reason` in the YAML.
 
-A comment at the end of a line is about that line; a comment on its own line is about the next line with content. Only
-warnings can be ignored: errors keep the exhibition from starting in any case.
+A comment at the end of a line applies to that line; a comment on its own line applies to the next line with content.
+Errors can't be ignored: they prevent the start in any case.
 """
 
 import re
@@ -28,7 +28,7 @@ class Ignore(NamedTuple):
     place: Place
     """The place of the comment."""
     line: int
-    """The number of the line that it is about."""
+    """The number of the line to which it applies."""
     codes: tuple[tuple[str, Place], ...]
     """The codes that it names, each with its place."""
     reason: str
@@ -95,7 +95,7 @@ def _spot(diagnostic: Diagnostic) -> tuple[str, int, str]:
 def _faults(
     comment: Ignore, gone: set[tuple[str, int, str]], codes: Mapping[str, Code], *, whole: bool
 ) -> Iterator[Diagnostic]:
-    """Yield the faults of a comment; that it hides nothing is certain only if the `whole` project was checked."""
+    """Yield the faults of a comment; only if the `whole` project was checked, a comment that hides nothing is one."""
     if not comment.codes:
         yield _fault(UNKNOWN_CODE, comment.place, "this comment names no code", "write `ignore[CODE] reason`")
     elif not comment.reason:

@@ -1,4 +1,4 @@
-"""A machine that is followed while no time passes and each next transition is certain."""
+"""The course of a machine while no time passes, followed as long as each next transition is certain."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
@@ -27,10 +27,10 @@ MAX_STEPS = 1000
 """The greatest number of events and transitions of a chain that are followed, as in the engine."""
 
 STATES_PER_WORK = 10
-"""The number of states, regions or actions that are looked at in the time of one visit."""
+"""The number of states, regions or actions looked at that count as one visit."""
 
 EVENTS_PER_WORK = 100
-"""The number of waiting events that are copied in the time of one visit."""
+"""The number of waiting events copied that count as one visit."""
 
 MAX_INVOKED = 4
 """The depth of invoked behaviours that are followed."""
@@ -44,7 +44,10 @@ TakenTransition = tuple[Transition, str]
 
 @dataclass
 class InstantChain:
-    """A machine that is followed while no time passes and each next transition is certain."""
+    """The course of a machine while no time passes, followed as long as each next transition is certain.
+
+    Each method may raise UncertainError.
+    """
 
     survey: ChainSurvey
     """The data that all chains of the machine share."""
@@ -59,13 +62,16 @@ class InstantChain:
     internal: tuple[str, ...] = ()
     """The raised events that wait to be processed."""
     timers: list[Transition | str] = field(default_factory=list)
-    """Each `after: 0s` and each sent event, in their order: they come after the internal events, in the same moment."""
+    """Each `after: 0s` and each sent event, in their order.
+
+    They are processed after the internal events, at the same time.
+    """
     taken: list[TakenTransition] = field(default_factory=list)
     """The transitions taken so far."""
     asked: list[tuple[int, str]] = field(default_factory=list)
-    """Guards of `always` that are assumed false, each with the number of transitions taken before it, and as shown."""
+    """Guards of `always` that are assumed to be false: the number of transitions taken before it, and its text."""
     assigned: int = -1
-    """The number of transitions taken before the last change of the context."""
+    """The number of transitions taken before the last change of the context; -1 without a change."""
     over: bool = False
     """Whether the machine has ended."""
 
@@ -80,7 +86,7 @@ class InstantChain:
         return frozenset(self.active), frozenset(self.begun), self.internal, timers
 
     def stand_around(self, path: str) -> None:
-        """Mark the ancestors of a state as active, as if they had been active for a while."""
+        """Mark the ancestors of a state as active and begun; other regions of parallel ancestors become unknown."""
         while (outer := self.machine.states[path].parent) is not None:
             if self.machine.states[outer].kind is StateKind.PARALLEL:
                 regions = self.survey.regions(outer)
@@ -150,7 +156,7 @@ class InstantChain:
         return True
 
     def take(self, transitions: Sequence[Transition], event: str) -> None:
-        """Take these transitions in one step; of two that leave the same states only the inner or the earlier one."""
+        """Take these transitions in one step; of two that conflict, only the inner or else the earlier one."""
         kept: list[Transition] = []
         for transition in transitions:
             self.survey.spend(len(kept) // STATES_PER_WORK)
@@ -230,7 +236,10 @@ class InstantChain:
         return not self.active.isdisjoint(self.survey.final(path))
 
     def selected(self, event: str) -> list[Transition]:
-        """Return the first transition that the event selects for each innermost active state, in it or around it."""
+        """Return for each innermost active state the first transition that the event selects.
+
+        It may belong to the state or to an ancestor.
+        """
         states, found, asked = self.machine.states, list[Transition](), set[str]()
         self.survey.spend(len(self.unknown) // STATES_PER_WORK)
         if event and any(self.survey.is_heard(region, event) for region in self.unknown):
@@ -251,8 +260,8 @@ class InstantChain:
     def _holds(self, transition: Transition) -> bool:
         """Return whether a selected transition is taken; False for a guard of `always` that uses only the context.
 
-        Such a guard is only assumed to be false. Raises UncertainError for any other guard, for rows of `hears` and for
-        transitions that wait for approval.
+        Such a guard is assumed to be false, and added to `asked`. Raises UncertainError for any other guard, for rows
+        of `hears` and for transitions that wait for approval.
         """
         if transition.hears or transition.approve:
             raise UncertainError
@@ -286,7 +295,10 @@ class InstantChain:
 
 
 def round_of(chain: InstantChain) -> list[TakenTransition]:
-    """Return the transitions of a loop that returns to a situation or grows without end; empty if none is certain."""
+    """Return the transitions of a loop that returns to a situation or grows without end.
+
+    Empty if no loop is certain.
+    """
     seen: dict[tuple[object, ...], int] = {}
     try:
         for _ in range(MAX_STEPS):
@@ -302,14 +314,17 @@ def round_of(chain: InstantChain) -> list[TakenTransition]:
     except UncertainError:
         return []
     if not chain.taken:
-        return []  # more events wait than are followed, and none selects a transition
-    *before, last = chain.taken  # the number of events grows without end
+        return []  # MAX_STEPS events were processed without selecting a transition
+    *before, last = chain.taken  # the queue of events grows without end
     back = next((i for i, (other, _) in enumerate(reversed(before)) if other is last[0]), 0)
     return _settled(chain, chain.taken[-back - 1 :])
 
 
 def _settled(chain: InstantChain, around: list[TakenTransition]) -> list[TakenTransition]:
-    """Return a round, unless it changes the context of a guard, or has only `always` of atomic states."""
+    """Return the transitions of a loop; empty if the loop changes the context of a guard on which it depends.
+
+    Also empty for a loop of only `always` of atomic states without a guard, which another rule reports.
+    """
     asked = asked_guards(chain, len(around))
     if asked and chain.assigned > len(chain.taken) - len(around):
         return []

@@ -16,7 +16,7 @@ LONG_ANSWER = Code("long-answer", "knowledge", WARNING, "an answer is too long f
 UNKNOWN_ROBOT = Code("unknown-robot", "references", ERROR, "a name refers to a robot that is not in lumen.yaml")
 
 MAX_ANSWER = 400
-"""The greatest number of characters that a robot should say at once: about half a minute."""
+"""The greatest number of characters that a robot should say at once: about half a minute of speech."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -40,7 +40,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _claims(passage: Passage, report: DocumentReport, claims: dict[tuple[str, str], tuple[Passage, Place]]) -> None:
-    """Report questions that an earlier passage for the same robots has: the same words in the same order."""
+    """Report questions that an earlier passage for the same robots has, with the same words in the same order."""
     for language, questions in passage.questions.items():
         for i, question in enumerate(questions):
             here = report.document.place(first(report, ("questions", language, i), ("questions", language)))

@@ -18,7 +18,7 @@ POSTURE = "Stand"
 """The posture around which the style moves."""
 
 MAX_LEG_SWAY = 0.05
-"""The greatest sway of a leg joint [rad], at which the weight stays over the soles whatever the other joints do."""
+"""The greatest sway of a leg joint [rad] at which the weight stays over the soles, however the other joints move."""
 
 _Fault = tuple[Code, NodePath, str, str]
 
@@ -42,7 +42,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 class _Judge:
-    """Checks one style; `units` are those of its file."""
+    """Yields the faults of one style; `units` are those of its file."""
 
     def __init__(self, style: LifeStyle, body: Body, units: JointUnits) -> None:
         self._style, self._body, self._units = style, body, units

@@ -41,10 +41,11 @@ def listed_texts(
 
 
 def is_torn(report: DocumentReport, path: NodePath, value: Mapping[str, Any], entries: Entries) -> bool:
-    """Return whether a map is a text by language with parts of its texts as other keys, rather than a map of data.
+    """Return whether a map in a list is a text by language that YAML has split at a colon or comma.
 
-    Such a key without a colon is certain. With a colon it counts if it can't be a name, or if other entries have a text
-    by language in this place and none has a map with the same key.
+    Then the map has parts of the text as keys beside the languages. Such a key without a value is certain. One with a
+    value counts if it can't be a name, or if other entries have a text by language in this place and none has a map
+    with the same key.
     """
     name = str(path[-1])
     others = [entry[name] for entry in entries if name in entry and entry[name] is not value]
@@ -61,7 +62,7 @@ def is_torn(report: DocumentReport, path: NodePath, value: Mapping[str, Any], en
 def entry_schema(entries: Entries) -> dict[str, Any]:
     """Return the JSON Schema of an entry of a list, in which every key is required.
 
-    Entries that lack a key have their own finding.
+    Entries that lack a key are reported by `check`.
     """
     fields = {key: _field([e[key] for e in entries if key in e]) for entry in entries for key in entry}
     return {"type": "object", "properties": fields, "required": sorted(fields)}

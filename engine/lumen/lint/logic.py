@@ -20,18 +20,18 @@ MAX_ALTERNATIVES = 24
 _OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
 _TURNED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
 _COUNTS = {"hour": (0, 23), "minute": (0, 59), "size": (0, inf)}
-"""Functions that return whole numbers between two bounds."""
+"""Functions that return whole numbers, each with its least and greatest result."""
 
 
 class Claim(NamedTuple):
-    """A claim about `subject`, a value as the expression writes it: `sign` is a comparison with `value`, or `is`.
-
-    With `is` the `value` is True or False.
-    """
+    """A claim about a value."""
 
     subject: str
+    """The value, as the expression writes it."""
     sign: str
+    """A comparison with `value`, or `is`."""
     value: object
+    """A literal; with `is`, True or False."""
 
 
 Alternative = frozenset[Claim]
@@ -54,7 +54,7 @@ def never(*conditions: ExpressionNode) -> bool:
 
 
 def always(condition: ExpressionNode) -> bool:
-    """Return whether a condition can't be false, unless it raises an error."""
+    """Return whether a condition is certain to be true, unless it raises an error."""
     return never(Unary("!", condition))
 
 
@@ -98,7 +98,9 @@ def _alternatives(node: ExpressionNode, value: bool) -> list[Alternative] | None
 
 
 def _compared(left: ExpressionNode, sign: str, right: ExpressionNode) -> list[Alternative] | None:
-    """Return the single alternative in which a comparison holds; none if it compares literals and is false."""
+    """Return the alternative in which a comparison holds, in a list; the list is empty for literals that don't compare
+    so.
+    """
     if isinstance(left, Literal) and isinstance(right, Literal):
         claim = Claim("", sign, right.value)
         return [frozenset()] if _holds(left.value, claim) else []
@@ -141,7 +143,10 @@ def _agree(claims: list[Claim]) -> bool:
 
 
 def _bound(claims: list[Claim], strict: str, loose: str, start: float) -> tuple[float, bool]:
-    """Return the tightest bound on one side, and whether the bound itself is allowed."""
+    """Return the tightest bound on one side, and whether the bound itself is allowed.
+
+    The lower bound if `start` is negative, else the upper one.
+    """
     bounds = [(c.value, c.sign == loose) for c in claims if c.sign in (strict, loose) and is_number(c.value)]
     values = [start, *(value for value, _ in bounds if isinstance(value, int | float))]
     tightest = max(values) if start < 0 else min(values)

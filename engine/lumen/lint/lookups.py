@@ -1,4 +1,4 @@
-"""Names of files that a rule looks up, and paths in a document."""
+"""Lookup of names of files for the rules, and of paths in a document."""
 
 from collections.abc import Mapping
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 from xml.parsers import expat
 
 MAX_ELEMENT_DEPTH = 100
-"""The number of nested levels: MuJoCo and the parsers before it recurse at each."""
+"""The greatest number of nested levels: MuJoCo's parser recurses at each."""
 MAX_ELEMENTS = 20_000
-"""The number of elements of a file, and of repetitions of one of them."""
+"""The greatest number of elements of a file, and of repetitions of one element."""
 
 _BOUNDS: Mapping[str, tuple[tuple[tuple[str, ...], float], ...]] = {
     "replicate": ((("count",), MAX_ELEMENTS),),
@@ -22,7 +22,7 @@ _BOUNDS: Mapping[str, tuple[tuple[tuple[str, ...], float], ...]] = {
 
 
 class ModelElement(NamedTuple):
-    """The start tag of an XML element, with its place; the outermost element has the depth 0."""
+    """The start tag of an XML element, with its place."""
 
     name: str
     """The name of the tag."""
@@ -33,7 +33,7 @@ class ModelElement(NamedTuple):
     column: int
     """Its column, from 1."""
     depth: int = 0
-    """The number of elements around it."""
+    """The number of elements around it; 0 for the outermost element."""
 
 
 class ModelFault(NamedTuple):
@@ -56,7 +56,7 @@ class _EnoughError(Exception):
 
 
 def mjcf_elements(content: bytes) -> tuple[list[ModelElement], ModelFault | None]:
-    """Return the elements of a model and its first fault, invalid XML or an exceeded limit; None if it has none."""
+    """Return the elements of a model, and its first fault: invalid XML or an exceeded limit; None if it has none."""
     reader = _Reader()
     try:
         reader.parser.Parse(content, True)
@@ -105,7 +105,7 @@ class _Reader:
 
 
 def _too_many(name: str, attributes: Mapping[str, str]) -> str:
-    """Return the attributes whose product exceeds the limit of the element, in words; empty if none does."""
+    """Return in words the attributes whose product exceeds the limit of the element; empty if there are none."""
     for keys, most in _BOUNDS.get(name, ()):
         words = (word for key in keys for word in attributes.get(key, "").split())
         if (product := prod(abs(_number(word)) or 1.0 for word in words)) > most:
@@ -114,7 +114,7 @@ def _too_many(name: str, attributes: Mapping[str, str]) -> str:
 
 
 def _number(word: str) -> float:
-    """Return the number that a word is; 1.0 for any other word, which MuJoCo reports."""
+    """Return the number in a word; 1.0 for any other word, because MuJoCo reports those."""
     try:
         return float(word)
     except ValueError:

@@ -20,7 +20,7 @@ from lumen.project.units import JointUnits, joint_units
 TOO_FAST = Code("too-fast", "motions", ERROR, "a joint would have to move faster than it can")
 
 
-"""The folder of the motions between postures."""
+"""Gestures that are too fast have this code as well."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -59,7 +59,7 @@ def _by_key(fast: Iterable[Excess]) -> list[list[Excess]]:
 
 
 def _keyframe(where: NodePath) -> NodePath:
-    """Return the path of the keyframe that contains a key."""
+    """Return the path of the keyframe that contains a key; the path itself if it is not inside one."""
     return where[: max((n for n, step in enumerate(where) if step == "keyframes"), default=len(where)) + 2]
 
 
@@ -85,7 +85,10 @@ def _too_fast(report: DocumentReport, excesses: Sequence[Excess], units: JointUn
 
 
 def more_time(factor: float) -> str:
-    """Return in words how much longer a movement must be that is `factor` times too fast, rounded up to two digits."""
+    """Return in words how much longer a movement must last that is `factor` times too fast.
+
+    The value is rounded up to two digits.
+    """
     if factor >= 2:
         digits = 10.0 ** (len(str(int(factor))) - 2)
         return f"{ceil(factor / digits) * digits:g} times as much time"

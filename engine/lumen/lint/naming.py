@@ -24,19 +24,18 @@ from lumen.talk.patterns import slots_of
 
 
 class Named(NamedTuple):
-    """The names that a behaviour uses.
-
-    `keys` of the context and `lists` are None if an expression may read any of them. `texts` are all texts in quotes,
-    the names in rows of `hears`, and the lists of the slots of phrases.
-    """
+    """The names that a behaviour uses."""
 
     keys: frozenset[str] | None
+    """Keys of the context; None if an expression may read any of them."""
     lists: frozenset[str] | None
+    """Lists; None if an expression may read any of them."""
     texts: frozenset[str]
+    """All texts in quotes, the names in rows of `hears`, and the lists of the slots of phrases."""
 
 
 def named_in(machine: MachineDefinition) -> Named:
-    """Return the names that a behaviour uses, whose expressions are known to be valid."""
+    """Return the names that a behaviour uses; its expressions must be valid."""
     keys, lists, texts = set[str | None](), set[str | None](), set[str]()
     for root in _trees(machine):
         keys |= {*read_names(root, "context")}
@@ -48,7 +47,7 @@ def named_in(machine: MachineDefinition) -> Named:
 
 
 def looked_up(draft: ProjectDraft) -> set[str]:
-    """Return the tables of answers that expressions look up with `lookup`, in which the first row that matches wins."""
+    """Return the tables of answers that are arguments of `lookup` in expressions: their first row that matches wins."""
     calls = (
         node.arguments[-1]
         for machine in draft.behaviors.values()
@@ -80,7 +79,7 @@ def _trees(machine: MachineDefinition) -> Iterator[ExpressionNode]:
 
 
 def trees(text: Expression | Template) -> Iterator[ExpressionNode]:
-    """Yield the expression, or each of the expressions in a text, which must be valid."""
+    """Yield the tree of an expression, or of each expression in a text; all of them must be valid."""
     if isinstance(text, Expression):
         yield tree(text.source)
     elif "{{" in text.text:

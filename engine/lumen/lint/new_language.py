@@ -12,12 +12,12 @@ from lumen.project.draft import ProjectDraft
 
 
 def with_language(draft: ProjectDraft, files: Mapping[str, bytes], language: str, source: str) -> dict[str, bytes]:
-    """Return the files with an entry for the language beside every one for `source`, whose words are copied into it.
+    """Return the files with an entry for a language beside each entry for `source`: the same words, marked as to do.
 
-    If the project had one language, a text without a language becomes a text in both. Everything else in the files,
-    including comments, stays as it is.
+    If `source` was the only language, a `say` text without a language becomes a text in both. Everything else in the
+    files, including comments, stays as it is.
     """
-    assert draft.main is not None  # the caller has checked the project
+    assert draft.main is not None  # the caller must have checked the project
     edits: dict[str, list[Edit]] = {}
     for report, path, by_language in language_entries(draft):
         if source in by_language and language not in by_language:

@@ -1,4 +1,4 @@
-"""The project's own code that lumen.yaml names: programs that it starts or waits for, and the robot's driver."""
+"""Code of the project that lumen.yaml names: the programs of its modules, and the robot's driver."""
 
 from lumen.feature import rows
 from lumen.language.diagnostics import ERROR, WARNING, Code, did_you_mean
@@ -15,7 +15,7 @@ MISSING_DRIVER = Code("missing-driver", "robot", ERROR, "the driver of the robot
 
 _SCRIPTS = (".py", ".js", ".mjs", ".ts", ".sh", ".rb", ".pl", ".lua", ".jar")
 SHORTEST_HEALTH = 1.0
-"""The shortest time between two signs of life that can be monitored [s]: programs send two a second."""
+"""The shortest interval between two signs of life that can be monitored [s]: programs send two a second."""
 
 
 def check(draft: ProjectDraft) -> None:

@@ -20,11 +20,11 @@ DEAD_SLOT = Code("dead-slot", "hearing", WARNING, "a slot of a phrase can never 
 FOREIGN_PATTERN = Code("foreign-pattern", "hearing", WARNING, "a phrase uses the syntax of another tool")
 
 _SIGNS = re.compile(r"[()\[\]{}|<>/\\*^$@%,;\n]")
-"""Characters without which a phrase can't be wrong here."""
+"""The signs of which a phrase must have one to be wrong here."""
 
 _PATTERN_SIGNS = re.compile(r"[()\[\]{}|]")
 _MIN_PARTS = 3
-"""The number of parts between commas from which they count as alternatives; fewer may be a sentence."""
+"""The least number of parts between commas that count as alternatives; fewer may be a sentence."""
 _SAME_BEGINNING = 3
 """The number of equal letters at the beginning of two words that counts as two forms of one: "dance, dancing"."""
 
@@ -110,7 +110,7 @@ def _read(tables: WordTables) -> None:
 
 
 def _bad(phrase: WrittenPhrase, error: PatternError) -> None:
-    """Report a phrase that is not a valid pattern; the parts of one that a comma has split become one finding."""
+    """Report a phrase that is not a valid pattern; the parts of a pattern that a comma splits share one cause."""
     hint, cause = f"{error.hint}; until then, the phrase is read as plain words", ""
     if (torn := _torn(phrase)) is not None:
         cause = f"{phrase.report.document.file} torn {torn}"
@@ -119,7 +119,9 @@ def _bad(phrase: WrittenPhrase, error: PatternError) -> None:
 
 
 def _torn(phrase: WrittenPhrase) -> NodePath | None:
-    """Return the path of a phrase whose bracket is closed in a later one, if this phrase is either or between them."""
+    """Return the path of the phrase that opens a bracket which a later one closes, if this phrase is among them; else
+    None.
+    """
     *around, place = phrase.path
     if not isinstance(place, int):
         return None
@@ -153,7 +155,8 @@ def _foreign(phrase: WrittenPhrase) -> None:
 def _separator(phrase: WrittenPhrase) -> str:
     """Return the sign that separates alternatives in one text; empty if the text is a single phrase.
 
-    A single comma in a phrase of a list may belong to a sentence: the author already uses a list for several phrases.
+    A single comma in an entry of a list may belong to a sentence, because the author already separates phrases by the
+    list.
     """
     text = phrase.text
     if "\n" in text.strip():
@@ -170,7 +173,7 @@ def _separator(phrase: WrittenPhrase) -> str:
 
 
 def _slots(phrase: WrittenPhrase, machines: list[MachineDefinition]) -> None:
-    """Report slots of a phrase that can catch nothing in a behaviour that knows it."""
+    """Report slots of a phrase that can catch nothing in one of these behaviours, which know the phrase."""
     listed = phrase.path[0] == "lists"
     for slot in slots_of(phrase.text):
         faults = (_fault(slot, machine) for machine in machines)

@@ -28,7 +28,7 @@ _ENTRY = re.compile(r"\{\{\s*(?:in_language\()?context\.(?P<key>\w+)\.entry\.(?P
 _LIST = re.compile(r"lists\.(\w+)")
 
 SOLE_REACH = 0.1
-"""The extent of a sole from the point between the feet [m]."""
+"""The distance from the point between the feet to the edge of a sole [m]."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -80,7 +80,7 @@ def _named(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath, str]
 
 
 def _listed(draft: ProjectDraft, machine: MachineDefinition) -> Iterator[tuple[DocumentReport, NodePath, str]]:
-    """Yield the places named in a list's entries to which a `for` walks."""
+    """Yield the places in entries of lists to which a walk inside a `for` leads."""
     loops = {state.for_each.key: state.for_each for state in machine.states.values() if state.for_each}
     walks = {step.to for site in action_sites(machine) if isinstance(step := site.step.action, GoTo)}
     for found in filter(None, map(_ENTRY.fullmatch, sorted(walks))):

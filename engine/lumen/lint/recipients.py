@@ -24,7 +24,9 @@ def check(draft: ProjectDraft) -> None:
 
 
 def recipients(draft: ProjectDraft, name: str, send: Send) -> list[MachineDefinition]:
-    """Return the behaviours that receive what this behaviour sends; empty if they could not be read."""
+    """Return the behaviours that receive an event that the behaviour `name` sends; those that were not read are left
+    out.
+    """
     if send.to == PARENT:
         return [machine for machine in draft.behaviors.values() if name in set(_invoked(machine).values())]
     behavior = _invoked(draft.behaviors[name]).get(send.to)

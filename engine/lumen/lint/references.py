@@ -21,7 +21,9 @@ WRONG_DIRECTION = Code("wrong-direction", "routes", WARNING, "a route is used in
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report every unknown name in lumen.yaml and in the behaviours' actions."""
+    """Report unknown names in lumen.yaml and in the behaviours' actions, and publishing on a route for incoming
+    messages.
+    """
     references = References(draft)
     _main(draft, references)
     for name, machine in draft.behaviors.items():

@@ -39,9 +39,9 @@ def _regions(machine: MachineDefinition) -> dict[str, dict[str, str]]:
 def _crossing(
     machine: MachineDefinition, transition: Transition, regions_of: dict[str, dict[str, str]], report: DocumentReport
 ) -> None:
-    """Report a transition whose domain would be a parallel state.
+    """Report a transition whose targets are in a parallel state, but not in all its regions.
 
-    A parallel state is never a domain (findLCCA in SCXML), so the transition exits and enters all of it.
+    A parallel state is never a transition's domain (findLCCA in SCXML), so the transition exits and enters all of it.
     """
     path: str | None = transition.source
     while path is not None:

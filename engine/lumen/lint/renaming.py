@@ -9,7 +9,7 @@ STILL_THERE = Code("still-there", "statecharts", ERROR, "`renamed` names a state
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report renamings of states and keys that still have their old name; two may exchange their names."""
+    """Report entries whose old name still exists; two states or keys may exchange their names."""
     for name, machine in draft.behaviors.items():
         _check(machine, draft.report("behaviors", name))
 

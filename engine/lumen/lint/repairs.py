@@ -18,9 +18,9 @@ _HIDING = frozenset((TAB, YAML_SYNTAX, DUPLICATE_KEY))
 """Faults that hide the rest of a file, so that their repair may reveal more findings."""
 
 MAX_REPAIR_ROUNDS = 100
-"""The greatest number of rounds.
+"""The greatest number of rounds, because a repair may reveal further findings.
 
-Of findings with one cause only the first is reported, so a repair may reveal others.
+Of several findings with one cause only the first is reported.
 """
 
 
@@ -44,7 +44,7 @@ def repaired(
         before = len(done)
         steps = _steps(found, files, wanted)
         while steps:
-            step = [r for r in steps.pop() if r.diagnostic in found]  # else it was repaired, or has moved
+            step = [r for r in steps.pop() if r.diagnostic in found]  # else it was repaired or has moved
             after = applied(files, step)
             then = check(after) if step else found
             if step and _better(found, then, step):
@@ -60,7 +60,9 @@ def repaired(
 def _steps(
     found: Sequence[Diagnostic], files: ProjectFiles, wanted: Callable[[Diagnostic], bool]
 ) -> list[list[Repair]]:
-    """Return the repairs to try, from the end: the likeliest fix of each finding together, then the others singly."""
+    """Return the repairs to try, the last first: the likeliest fix of every finding together, then the other fixes
+    singly.
+    """
     proposals = [(d, fixes(d, files)) for d in found if wanted(d)]
     others = [[Repair(d, fix)] for d, proposed in proposals for fix in proposed[1:]]
     return [*reversed(others), [Repair(d, proposed[0]) for d, proposed in proposals if proposed]]
@@ -76,7 +78,7 @@ def applied(files: ProjectFiles, repairs: Iterable[Repair]) -> dict[str, bytes]:
 
 
 def _better(before: Sequence[Diagnostic], after: Sequence[Diagnostic], step: Sequence[Repair]) -> bool:
-    """Return whether a step's findings have disappeared, and each new finding may have been hidden by them before."""
+    """Return whether the findings of `step` are gone, and no new finding appeared, except formerly hidden ones."""
     then, now = Counter(map(_what, before)), Counter(map(_what, after))
     if any(now[_what(r.diagnostic)] >= then[_what(r.diagnostic)] for r in step):
         return False
@@ -86,8 +88,8 @@ def _better(before: Sequence[Diagnostic], after: Sequence[Diagnostic], step: Seq
 def _hidden(code: str, file: str, before: Sequence[Diagnostic], step: Sequence[Repair]) -> bool:
     """Return whether a new finding may have existed before, hidden by a fault that the step repaired.
 
-    Unused and unreachable parts are searched for only if there are no errors. A word that could not be used may hide
-    findings in its file, and an unreadable file those in the project; but a new fault of form was not hidden.
+    Warnings such as those about unused parts appear only without errors. A repaired word may reveal errors in its file,
+    and a repaired syntax error may reveal errors anywhere; but a new fault of syntax or shape was not hidden.
     """
     if code in codes() and codes()[code].severity is not Severity.ERROR:
         return has_errors(before)
@@ -96,5 +98,5 @@ def _hidden(code: str, file: str, before: Sequence[Diagnostic], step: Sequence[R
 
 
 def _what(diagnostic: Diagnostic) -> tuple[str, str, str]:
-    """Return a finding without its place, which an edit above it moves."""
+    """Return the file, code and message of a finding, without its place and numbers, which an edit may change."""
     return diagnostic.place.file, diagnostic.code, re.sub(r"\d+", "0", diagnostic.message)

@@ -16,7 +16,7 @@ MOVES_AT_REST = Code(
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report the first action of each state that moves a joint while the robot rests."""
+    """Report the first action of each state that moves the robot after a `rest` in the same state."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for state in machine.states.values():

@@ -1,6 +1,7 @@
-"""Routes with keys of 2015, rewritten so that their keys contain the robot's name; the old key becomes their alias.
+"""Rewriting of routes with keys of 2015: their new keys contain the robot's name, and the old key becomes the alias.
 
-No version of the vocabulary requires that: for one robot the old keys are right. Two robots on one broker need it.
+No version of the vocabulary requires the new keys: for one robot the old keys are right. Two robots on one broker need
+the new ones.
 """
 
 from collections.abc import Mapping
@@ -15,13 +16,13 @@ from lumen.project.project_folders import MAIN_FILE
 from lumen.project.yaml_reader import parse
 
 NEW_KEYS: Mapping[str, str] = {alias: DEFAULT_KEYS[name] for name, alias in DEFAULT_ALIASES.items()}
-"""Today's key by the key of 2015."""
+"""The present key by the key of 2015."""
 
 
 def with_robot_keys(files: Mapping[str, bytes]) -> tuple[dict[str, bytes], list[Rewriting]]:
-    """Return the files with `{robot}` in the keys of their routes, and the rewritten places.
+    """Return the files with `{robot}` in the keys of their routes, and the rewritten places, as they were before.
 
-    Raises UsageError if lumen.yaml can't be read, or its layout must be changed by hand.
+    Raises UsageError if lumen.yaml can't be read, or its layout requires rewriting by hand.
     """
     document, old = _main(files), old_keys(files)
     done = {name: _rewriting(document, name, key) for name, key in old.items()}
@@ -32,7 +33,7 @@ def with_robot_keys(files: Mapping[str, bytes]) -> tuple[dict[str, bytes], list[
 
 
 def old_keys(files: Mapping[str, bytes]) -> dict[str, str]:
-    """Return the keys of 2015 that have neither a robot nor an alias, by the names of their routes.
+    """Return the routes of a project that have a key of 2015 and no alias, as keys by the names of the routes.
 
     Raises UsageError if lumen.yaml can't be read.
     """
@@ -65,7 +66,7 @@ def _rewriting(document: Document, name: str, key: str) -> Rewriting:
 
 
 def _check(content: bytes, before: Document, old: Mapping[str, str]) -> None:
-    """Raise UsageError if the edited text does not have the wanted meaning, which is possible with anchors."""
+    """Raise UsageError if the edited text does not have the intended meaning, which happens with YAML anchors."""
     now = parse(MAIN_FILE, content)[0]
     wanted = dict(before.data)
     if old:

@@ -92,7 +92,7 @@ def _password(bus: str, report: DocumentReport) -> None:
 
 
 def _carried(report: DocumentReport, route: Route) -> None:
-    """Report options of a route that contradict each other."""
+    """Report a time to live that is too long for a command, and limits of a journal."""
     where = route.where
     if route.carried in (Carried.COMMAND, Carried.STOP) and (route.ttl or 0.0) > LONGEST_COMMAND_TTL:
         message = f"a {route.carried} may be performed {route.ttl:g} s late, when it is no longer wanted"
@@ -128,7 +128,7 @@ def _pictures(report: DocumentReport, route: Route) -> None:
 
 
 def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentReport) -> None:
-    """Report missing routes that a behaviour needs without naming them."""
+    """Report routes that a behaviour needs without naming them: `joint` for `track`, and `heard` for its event."""
     if has_errors(draft.diagnostics):
         return
     for behavior, machine in draft.behaviors.items():
@@ -145,12 +145,12 @@ def _missing(draft: ProjectDraft, routes: Mapping[str, Route], report: DocumentR
 
 
 def _meant(route: Route) -> Iterator[str]:
-    """Yield the names of Lumen's own routes whose key a route has."""
+    """Yield the names of Lumen's own routes that have the same key as a route."""
     return (name for keys in (DEFAULT_KEYS, DEFAULT_ALIASES) for name, key in keys.items() if key == route.key)
 
 
 def _moves_joints(draft: ProjectDraft, action: object) -> bool:
-    """Return whether an action switches a controller that moves joints."""
+    """Return whether an action switches a controller that moves joints; True for an unknown controller."""
     controller = draft.controllers.get(action.controller) if isinstance(action, Track) else None
     return isinstance(action, Track) and not (controller and controller.signals and not controller.output_bindings)
 
@@ -169,11 +169,11 @@ def _ways(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
 
 
 def _event(draft: ProjectDraft, report: DocumentReport, route: Route) -> None:
-    """Report an incoming route whose event no behaviour waits for."""
+    """Report an incoming route whose event no behaviour waits for, and from which no controller reads."""
     if route.direction is Direction.OUT or not draft.behaviors or has_errors(draft.diagnostics):
         return
     if route == BUILT_IN_ROUTES.get(route.name):
-        return  # `lumen new` writes such rows, and without its row the route would not exist
+        return  # `lumen new` writes this row, and without the row the route would not exist
     bound = {b.route for c in draft.controllers.values() for b in c.input_bindings}
     if route.name not in bound and not any(
         hears(d, route.event) for m in draft.behaviors.values() for d in descriptors(m)

@@ -24,7 +24,7 @@ _WORD = re.compile(r"[^\s.*#{}]+|\{robot\}")
 
 
 def check_key(report: DocumentReport, route: Route, settings: Settings) -> bool:
-    """Return whether the key is valid and free for a message of that exhibition; report faults and near misses."""
+    """Return whether a route's key is valid and not one of Lumen's own; report faults, near misses and shared keys."""
     path = (*route.where, "key")
     for key, name in ((route.key, "key"), (route.alias, "alias")):
         message, hint = _fault(key) if key or name == "key" else ("", "")
@@ -90,7 +90,7 @@ def _owners(settings: Settings) -> Mapping[str, str]:
 
 
 def _shared(report: DocumentReport, route: Route, settings: Settings) -> None:
-    """Report a key without a robot if several robots share a broker, because the message must name its robot."""
+    """Report a key without `{robot}` if robots share a broker, because the message must say which robot it is about."""
     ours = route.name in DEFAULT_KEYS
     if settings.aliases is not False or "{robot}" in route.key or not (ours or route.event):
         return

@@ -121,16 +121,17 @@ def _joined(node: Antecedent, kind: type) -> Iterator[Antecedent]:
 
 
 def _conjunction(node: Antecedent) -> frozenset[Proposition]:
-    """Return the propositions of an antecedent that only uses `and`; empty for any other."""
+    """Return the propositions of an antecedent that combines them only by `and`; empty for any other antecedent."""
     parts = list(_joined(node, Conjunction))
     found = frozenset(part for part in parts if isinstance(part, Proposition))
     return found if len(found) == len(parts) else frozenset()
 
 
 def _order(block: RuleBlock, controller: ControllerDefinition, first: Rule, second: Rule) -> tuple[Rule, Rule]:
-    """Return two rules with the same condition as (the one that probably has a wrong condition, the other one).
+    """Return two rules with the same condition: first the one whose condition is probably wrong, then the other one.
 
-    Rules usually follow the order of the terms: it is the first one if a term without a rule would fit in its place.
+    Rules usually follow the order of the terms. The first rule is the wrong one if a term without a rule fits in its
+    place, else the second.
     """
     asked = first.antecedent
     if isinstance(asked, Proposition) and (variable := controller.inputs.get(asked.variable)):
@@ -143,7 +144,9 @@ def _order(block: RuleBlock, controller: ControllerDefinition, first: Rule, seco
 
 
 def _clash(first: Rule, second: Rule) -> tuple[Proposition, Proposition] | None:
-    """Return two different consequents, without hedges, for the same variable; None if there are none."""
+    """Return two consequents that conclude different terms of one variable, both without hedges; None if there are
+    none.
+    """
     for one, other in product(first.consequents, second.consequents):
         if one.variable == other.variable and one.term != other.term and not one.hedges and not other.hedges:
             return one, other
@@ -161,7 +164,7 @@ def _subsumed(found: list[tuple[frozenset[Proposition], Rule]], report: Document
 
 
 def _missing(block: RuleBlock, controller: ControllerDefinition, report: DocumentReport) -> None:
-    """Report the cells without a rule in tables of terms of which more than half have one."""
+    """Report the cells without a rule, in tables of terms of which more than half have a rule."""
     tables: dict[tuple[str, tuple[str, ...]], list[tuple[Rule, Mapping[str, str]]]] = {}
     for rule in block.rules:
         cell = _cell(rule)
@@ -185,7 +188,7 @@ def _missing(block: RuleBlock, controller: ControllerDefinition, report: Documen
 
 
 def _cell(rule: Rule) -> Mapping[str, str]:
-    """Return term by variable if the antecedent is `a is x and b is y and …` without hedges; else empty."""
+    """Return each variable's term if the antecedent is `a is x and b is y and …` without hedges; else empty."""
     parts = _conjunction(rule.antecedent)
     cell = {part.variable: part.term for part in parts if not part.hedges}
     return cell if len(cell) == len(parts) else {}

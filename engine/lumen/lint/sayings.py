@@ -31,7 +31,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying) -> set[tuple[str, ...]]:
-    """Report the faults of a saying; return the paths of the reported keys, so that each is reported once."""
+    """Report the faults of a saying; return the paths of unknown states and rows, so that each is reported once."""
     behavior, state, key = where = saying.behavior, saying.state, saying.row
     try:
         rows = rows_around(machine, path_of(machine, state))
@@ -63,7 +63,7 @@ def _refused(report: DocumentReport, machine: MachineDefinition, saying: Saying)
 
 
 def _named(machine: MachineDefinition) -> set[str]:
-    """Return the known names of phrases, to which those of a list's entries do not belong."""
+    """Return the names of phrases and answers; those of the phrases in a list's entries are not included."""
     return {*machine.phrases, *machine.answers}
 
 

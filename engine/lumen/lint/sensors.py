@@ -51,7 +51,7 @@ def _ears(draft: ProjectDraft, body: Body) -> None:
 
 
 def _asked(guard: ExpressionNode) -> Iterator[str]:
-    """Yield the texts that the event's sensor is compared with."""
+    """Yield the texts with which a guard compares the event's sensor."""
     for node, _ in walk(guard):
         if isinstance(node, Binary) and node.sign in ("==", "!=", "in"):
             for one, other in ((node.left, node.right), (node.right, node.left)):

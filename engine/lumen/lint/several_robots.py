@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from lumen.language.diagnostics import Diagnostic
 
 NEEDED_ONCE = ("unused-", "idle-", "silent-", "unreachable-")
-"""The first letters of codes about parts that need to be used by only one robot."""
+"""The beginnings of codes about parts that need to be used by only one robot."""
 
 
 def together(views: Sequence[Sequence[Diagnostic]]) -> tuple[Diagnostic, ...]:
-    """Return the findings of any robot, each once; those about unused parts only if all robots have them."""
+    """Return the findings of all robots, each once, sorted; those about unused parts only if all robots have them."""
     counted: dict[Diagnostic, int] = {}
     for view in views:
         for diagnostic in dict.fromkeys(view):

@@ -45,7 +45,7 @@ def _memberships(term: Term, xs: list[float]) -> list[float]:
 
 
 def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report: DocumentReport) -> None:
-    """Report each term below the one that should precede it by the meaning of their names (`small`, `large`)."""
+    """Report terms whose order contradicts the meaning of their names (`small`, `large`)."""
     places = {term.name: _top(degrees, xs) for term, degrees in rows}
     places |= {term.name: term.parameters[0] for term in variable.terms.values() if term.kind == VALUE_TERMS[0]}
     scale = ranks(tuple(places))
@@ -62,7 +62,7 @@ def _order(variable: Variable, rows: list[SampledTerm], xs: list[float], report:
 
 
 def _top(degrees: list[float], xs: list[float]) -> float:
-    """Return the middle of the points at which a term has its greatest membership."""
+    """Return the middle of the points `xs` at which a term has its greatest membership."""
     most = max(degrees)
     tops = [x for x, degree in zip(xs, degrees, strict=True) if degree >= most - 1e-9]
     return sum(tops) / len(tops)

@@ -32,7 +32,10 @@ from lumen.project.draft import ProjectDraft
 def field_schema(
     draft: ProjectDraft, report: DocumentReport, path: NodePath, route: str, field: Sequence[str]
 ) -> Mapping[str, Any] | None:
-    """Return the schema of a field; None if it is unknown. An unknown route or field is reported at `path`."""
+    """Return the schema of a field of a route's messages; None if it is unknown.
+
+    An unknown route or field is reported at `path`.
+    """
     if not known_route(draft, report, path, route) or draft.settings is None:
         return None
     schema: Any = draft.messages.get(draft.settings.routes[route].schema)
@@ -102,7 +105,9 @@ def _signal(
 def _field(
     draft: ProjectDraft, report: DocumentReport, variable: Variable | None, binding: InputBinding | MessageBinding
 ) -> Mapping[str, Any] | None:
-    """Return the schema of the bound field; None if it is unknown. A field that can't hold a number is reported."""
+    """Return the schema of the bound field; None if it is unknown. Report a field that is no number or has another
+    unit.
+    """
     path = first(report, (*binding.where, "message"), binding.where)
     found = field_schema(draft, report, path, binding.route, binding.path)
     if isinstance(binding, MessageBinding):
@@ -231,14 +236,14 @@ def _twice(draft: ProjectDraft) -> None:
 
 
 def _never_off(draft: ProjectDraft) -> set[str]:
-    """Return the controllers that some action switches on and no action switches off."""
+    """Return the controllers that some action switches on and none switches off."""
     actions = [site.step.action for machine in draft.behaviors.values() for site in action_sites(machine)]
     tracks = [action for action in actions if isinstance(action, Track)]
     return {t.controller for t in tracks if t.on} - {t.controller for t in tracks if not t.on}
 
 
 def _target(signal: SignalBinding) -> str:
-    """Return the target of a signal in words; empty for an event, which several signals may raise.
+    """Return the target of a signal in words; empty for an event, because several signals may raise the same event.
 
     Messages with different constants count as different targets.
     """

@@ -38,14 +38,18 @@ UNREACHABLE_LANGUAGE = Code(
 
 
 MIN_TEXTS_FOR_LANGUAGE = 4
-"""With fewer texts, each text lacks the language; with at least as many, the language lacks texts."""
+"""The number of texts from which a language without any is reported as a whole; with fewer texts, each of them is
+reported.
+"""
 
 MAX_COMPARED_ROWS = 200
 """The number of rows of an answers table that are compared with one another."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report texts that are missing in a language, and languages that lumen.yaml does not name."""
+    """Report texts that are missing in a language or empty, and languages that lumen.yaml does not name or nothing
+    uses.
+    """
     if draft.settings is None or draft.main is None or not draft.settings.languages:
         return
     if any(path[:1] == ("languages",) for path in draft.main.pruned):
@@ -96,9 +100,9 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _heard_tables(draft: ProjectDraft) -> set[str]:
-    """Return the tables of answers used only by rows of `hears`, in which the longest match wins, not the first row.
+    """Return the tables of answers that only rows of `hears` use: in these the longest match wins, not the first row.
 
-    If a behaviour can't be read, any table that the others do not look up may be one.
+    If a behaviour can't be read, every table that the other behaviours do not look up is included.
     """
     heard = {name for machine in draft.behaviors.values() for row in heard_rows(machine) for name in row.names}
     if COMMON_FILE in draft.files and draft.behaviors.keys() != draft.names["behaviors"]:
@@ -109,9 +113,9 @@ def _heard_tables(draft: ProjectDraft) -> set[str]:
 def _silent(
     draft: ProjectDraft, languages: tuple[str, ...]
 ) -> tuple[dict[str, tuple[str, list[Related]]], dict[str, str]]:
-    """Return the languages with hardly any texts, if others have some, and how many of all texts these have.
+    """Return the languages with hardly any texts, if others have texts, and their share of all texts.
 
-    Each is mapped to the language that was probably meant, with a place of its texts, empty if there is none. The
+    The first mapping has for each the language that was probably meant (else empty), with a place of its texts. The
     second mapping has counts such as `2 of 16`, empty if a language has no text at all.
     """
     found: dict[str, Place] = {}
@@ -140,7 +144,7 @@ def _silent(
 
 
 def _spoken(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
-    """Yield the places of texts that are said or given as answers."""
+    """Yield the places of texts that the robot says or that are given as answers."""
     for name, machine in draft.behaviors.items():
         said = (s.step.where for s in action_sites(machine) if isinstance(s.step.action, SayText))
         yield from ((draft.report("behaviors", name), (*where, "say")) for where in said)
@@ -194,7 +198,7 @@ class _Speech:
             self.texts(report, path, {language: text for language, text in texts.items() if language not in parts})
 
     def phrases(self, tables: WordTables) -> None:
-        """Report phrases in fewer languages than the project speaks; each language is reported once."""
+        """Report names of phrases that lack one of the project's languages; those of one language have one cause."""
         for name, phrases in tables.phrases.items():
             if name in WORD_LISTS:
                 continue
@@ -222,20 +226,22 @@ class _Speech:
                 draft.main(UNREACHABLE_LANGUAGE, path, message, hint)
 
     def texts(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> None:
-        """Report a text that is given by language and lacks one of the languages."""
+        """Report a text that is given by language and lacks one of the languages, is empty in one, or has an unknown
+        one.
+        """
         self.each(report, path, texts)
         self.empty(report, path)
         said = {language for language in texts if not _is_rest(report, (*path, language))} | _written(report, path)
         astray = {language for language in self.languages if (*path[:-1], language) in report.pruned}
         if any(language not in self.languages for language in said - {"", "any"}):
-            return  # that one was probably meant
+            return  # the text was probably meant to be in the missing language
         missing = [language for language in self.languages if language not in said | astray]
         if missing and said.isdisjoint(("", "any")):
             message = f"this text is missing in {_listed(missing)}"
             report(MISSING_LANGUAGE, path, message, f"add `{missing[0]}:` with the text", key=True)
 
     def split(self, report: DocumentReport, path: NodePath, texts: Mapping[str, Any]) -> set[str]:
-        """Return the keys that are parts of texts split by a comma; report each text once."""
+        """Report texts that YAML splits at a comma, each once; return the keys that are parts of them."""
         wholes = {key: whole_text(report.document, (*path, key), by_language=True) for key in texts}
         for key, whole in wholes.items():
             if whole:
@@ -268,7 +274,7 @@ class _Speech:
 
 
 def _written(report: DocumentReport, path: NodePath) -> set[str]:
-    """Return the languages of a text as written in the file, including broken ones."""
+    """Return the languages of a text as written in the file, including those whose value is broken."""
     gone = {str(lost[-1]) for lost in report.pruned if lost[:-1] == path}
     found = gone.union(_mapping_at(report, path)) - {"gestures", ANYHOW}
     return {language for language in found if not _is_rest(report, (*path, language))}
@@ -280,13 +286,13 @@ def _mapping_at(report: DocumentReport, path: NodePath) -> Mapping[str, Any]:
 
 
 def _is_rest(report: DocumentReport, path: NodePath) -> bool:
-    """Return whether a key of a text by language is a part of a text instead of a language."""
+    """Return whether a key of a text by language is the rest of a text that YAML has split, instead of a language."""
     name = str(path[-1])
     return bool(whole_text(report.document, path)) or not (is_language_tag(name) or name.isidentifier() or not name)
 
 
 def _is_missed(draft: ProjectDraft, language: str) -> bool:
-    """Return whether a text is reported as missing in that language, which must be solved first."""
+    """Return whether a text is reported as missing in that language, because that must be solved first."""
     found = (d for report in draft.reports.values() for d in report.diagnostics if d.code == MISSING_LANGUAGE)
     return any(f"`{language}`" in diagnostic.message for diagnostic in found)
 
@@ -296,7 +302,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _late(report: DocumentReport, table: str, rows: Sequence[Answer]) -> None:
-    """Report rows of an answers table each of whose phrases contains a phrase of an earlier row: the first row wins."""
+    """Report rows of an answers table each of whose phrases contains a phrase of an earlier row, which wins."""
     for i, row in enumerate(rows[:MAX_COMPARED_ROWS]):
         phrases = [phrase for texts in row.phrases.values() for phrase in texts]
         takers = [next((j for j in range(i) if is_taken(p, rows[j].phrases)), None) for p in phrases]

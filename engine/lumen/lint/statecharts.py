@@ -21,7 +21,7 @@ MAX_FOLLOWED_ALWAYS = 4
 """The number of guarded `always` of one state that are followed."""
 
 _LEADS = frozenset(("on", "hears", "always", "after", "at", "onDone", "onError", "onReload", "target", "initial"))
-"""Keys whose values name states: if one of them was unreadable, it may have named any state."""
+"""Keys whose values name states; an unreadable value of one may have named any state."""
 
 Onward = Mapping[str, Sequence[tuple[Transition, str]]]
 
@@ -68,7 +68,7 @@ def _next(state: State) -> Iterator[str]:
 
 
 def _unreachable(machine: MachineDefinition, report: DocumentReport) -> None:
-    """Report states that no transition leads to, unless an unreadable part may have named them."""
+    """Report states to which no transition leads, unless an unreadable part of the file may have named them."""
     meant = {text.rpartition(".")[2].lstrip("#") for text in report.lost | report.missed}
     missed = meant & report.missed if len(report.missed) <= MAX_COMPARED_NAMES else set()
     found = reachable(machine)
@@ -78,7 +78,7 @@ def _unreachable(machine: MachineDefinition, report: DocumentReport) -> None:
             found |= reachable(machine, path)
     for path, state in machine.states.items():
         if path not in found:
-            found |= reachable(machine, path)  # don't report states that only this one leads to
+            found |= reachable(machine, path)  # don't report states that can be reached only from this one
             hint = "add a transition to it, or delete it"
             report(UNREACHABLE_STATE, state.where, f"no transition leads to `{path}`", hint, key=True)
 
@@ -99,7 +99,9 @@ def _endless(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _at_once(machine: MachineDefinition, path: str) -> tuple[Transition, str] | None:
-    """Return the `always` that leaves an atomic state on entry, and the atomic state that follows, else None."""
+    """Return the `always` that leaves an atomic state on entry, and the path of the atomic state that follows; else
+    None.
+    """
     state = machine.states[path]
     always = next((t for t in state.transitions if not t.event), None)
     if state.kind is not StateKind.ATOMIC or always is None or always.guard or len(always.targets) != 1:
@@ -136,7 +138,10 @@ def _loops(machine: MachineDefinition, report: DocumentReport) -> None:
 def _rounds(
     machine: MachineDefinition, onward: Onward, begin: str, path: str, way: tuple[Transition, ...]
 ) -> Iterator[tuple[Transition, ...]]:
-    """Yield the loops of at most MAX_ALWAYS_LOOP transitions back to `begin` whose guards can all be true at once."""
+    """Yield the loops of at most MAX_ALWAYS_LOOP transitions back to `begin` whose guards can all be true at once.
+
+    `way` has the transitions from `begin` to `path`.
+    """
     for transition, target in onward.get(path, ())[:MAX_FOLLOWED_ALWAYS]:
         longer = (*way, transition)
         if _assigns(machine.states[target].entry) or _assigns(machine.states[path].exit):
@@ -150,7 +155,7 @@ def _rounds(
 
 
 def _settled(machine: MachineDefinition, transition: Transition) -> str:
-    """Return the atomic state that a transition ends in; empty if it is not a single one."""
+    """Return the path of the atomic state to which a transition leads; empty if it leads to several states."""
     if not transition.targets:
         return transition.source
     if len(transition.targets) > 1:

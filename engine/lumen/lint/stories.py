@@ -99,9 +99,9 @@ class _Script:
             known_route(self.draft, self.report, place, expected.published)
 
     def state(self, path: NodePath, name: str) -> None:
-        """Report an unknown state.
+        """Report the name of a state that does not exist.
 
-        It is named by its id or path; `quiz/ask` is a state of the behaviour invoked as `quiz`.
+        The name is an id or a path; `quiz/ask` is the state `ask` of the behaviour invoked as `quiz`.
         """
         if (
             self.machine is None
@@ -173,7 +173,7 @@ class _Script:
             self.fits((*where, "body"), body, self.draft.messages.get(self.draft.settings.routes[route].schema))
 
     def fits(self, path: NodePath, data: Any, schema: Any) -> None:
-        """Report data of the story that does not fit the schema of real data."""
+        """Report data in the story that does not fit the schema of the real data."""
         if isinstance(schema, Mapping):
             for complaint in faults(data, schema):
                 place = (*path, *complaint.path)
@@ -193,7 +193,7 @@ def _has(machine: MachineDefinition, name: str) -> bool:
 
 
 def _names(machine: MachineDefinition, prefix: str) -> set[str]:
-    """Return the states of a machine and of those that it invokes, as they are named from outside."""
+    """Return the names of a machine's states with `prefix`, and those of the machines that it invokes."""
     names = {prefix + state.name for state in machine.states.values() if state.path}
     for invoke in (invoke for state in machine.states.values() for invoke in state.invoke):
         if other := machine.invoked.get(invoke.behavior):

@@ -23,13 +23,15 @@ SURFACE_STEP = Code("surface-step", "controllers", WARNING, "an output jumps whi
 
 
 STEP_SHARE, TURN_SHARE, REST_SHARE = 0.1, 0.02, 0.02
-"""Shares of an output's range: the smallest step, the smallest reversal, and the largest value that counts as 0."""
+"""Shares of an output's range: the least step and the least reversal to report, and the greatest value that counts as
+0.
+"""
 
 MIN_RANGE_SHARE = 0.2
 """The share of the declared range that an output should use at least."""
 
 RESOLUTION_FACTOR = 4
-"""The factor by which the resolution is raised to estimate its error."""
+"""The factor by which the resolution is raised to estimate the error of the original resolution."""
 
 CORNERS = 5, 400
 """The number of points in each input's range, and the greatest number of their combinations."""
@@ -43,13 +45,13 @@ class SurfaceSamples(NamedTuple):
     steps: list[tuple[Slice, SurfaceJump]]
     """The slices with a jump of more than STEP_SHARE, and the jump."""
     neutral_inputs: dict[str, float]
-    """The outputs at the neutral point of all inputs, by name."""
+    """The outputs by name if all inputs are neutral."""
     reach: dict[str, tuple[float, float]]
     """The least and the greatest value of each output."""
     silent: dict[str, dict[str, float]]
-    """For each output that may be undefined, the inputs at which that happens."""
+    """For each output that is undefined for some inputs, the first such inputs."""
     off: dict[str, float]
-    """The greatest error of each output with an `accuracy`, against a finer resolution."""
+    """For each output with an `accuracy`, the greatest difference from its value at a finer resolution."""
 
 
 def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
@@ -77,7 +79,7 @@ def sample_surface(controller: ControllerDefinition) -> SurfaceSamples:
 
 
 def _corners(controller: ControllerDefinition) -> Iterator[dict[str, float]]:
-    """Yield combinations of the inputs, for controllers in which several inputs decide about one output."""
+    """Yield combinations of the inputs, if several inputs decide about one output; none if there would be too many."""
     names = [n for n, v in controller.inputs.items() if abs(v.minimum) < 1e300 and abs(v.maximum) < 1e300]
     points, most = CORNERS
     while len(names) > 1 and points > 1 and points ** len(names) > most:
@@ -101,7 +103,9 @@ def _all(
 
 
 def _off(controller: ControllerDefinition, slices: list[Slice]) -> dict[str, float]:
-    """Return the greatest error of each output with an `accuracy`, against RESOLUTION_FACTOR times the resolution."""
+    """Return for each output with an `accuracy` the greatest error, compared with RESOLUTION_FACTOR times the
+    resolution.
+    """
     exact = {
         n: v for n, v in controller.outputs.items() if v.accuracy is not None and v.defuzzifier in INTEGRAL_DEFUZZIFIERS
     }
@@ -181,7 +185,7 @@ def _coarse(variable: Variable, report: DocumentReport, seen: SurfaceSamples) ->
 
 
 def _turns(controller: ControllerDefinition, found: Slice, report: DocumentReport) -> None:
-    """Report an output that both rises and falls over an input with a neutral point."""
+    """Report an output that both rises and falls over an input."""
     output = controller.outputs[found.output]
     least = TURN_SHARE * (output.maximum - output.minimum)
     extremes = list(_extremes(found, least))

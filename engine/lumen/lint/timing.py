@@ -19,7 +19,7 @@ CUT_SHORT = Code("cut-short", "statecharts", WARNING, "an `after` ends a state b
 
 
 SECONDS_PER_TEXT, SECONDS_PER_CHARACTER, SECONDS_PER_POSTURE, WALKING_SPEED = 0.4, 0.06, 2.0, 0.1
-"""The times of the recording robot: per text [s], per character [s], per posture [s]; and its speed [m/s]."""
+"""The recording robot's times per text, per character and per posture [s], and its walking speed [m/s]."""
 
 
 def check(draft: ProjectDraft) -> None:
@@ -48,9 +48,9 @@ def _cut(
 
 
 def duration(block: Iterable[PlacedAction], motions: Mapping[str, MotionDefinition]) -> float:
-    """Return the duration of these actions in sequence [s]; it is never too long, except for alternatives of a text.
+    """Return the least duration of these actions in sequence [s], except that of alternative texts the longest counts.
 
-    Of these the longest counts. Unknown times, such as of an expression's text or of a walk's turn, count as 0.
+    Unknown durations, such as of an expression's text or of a walk's turn, count as 0.
     """
     return sum(_one(step, motions) for step in block)
 
@@ -79,7 +79,7 @@ def _one(step: PlacedAction, motions: Mapping[str, MotionDefinition]) -> float:
 
 
 def _taken(command: Do) -> float:
-    with suppress(BadCommandError):  # an argument that only a step can fill in
+    with suppress(BadCommandError):  # an argument that only a running step can fill in
         return time_taken(command)
     return 0.0
 

@@ -19,7 +19,7 @@ _ENDED = (".", "!", "?", "…", ":", '"', "'", ")")
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report texts that end at a comment without a space after its `#`, and alternatives that are parts of one text."""
+    """Report texts that YAML cuts off at a ` #`, and texts in lists that it splits at a comma or a colon."""
     for file, report in draft.reports.items():
         if file.startswith("behaviors/"):
             report.memoize(("torn texts", file), None, partial(_texts, report))
@@ -49,7 +49,7 @@ def _cut(report: DocumentReport) -> None:
 
 
 def _torn(report: DocumentReport) -> None:
-    """Report lists of sentences in which one has no end and the next begins with a small letter."""
+    """Report lists of sentences in which one has no final mark and the next one begins with a small letter."""
     lines = lines_of(report.document.text)
     lists: dict[NodePath, list[str]] = {}
     for path in report.document.spans:
@@ -60,7 +60,7 @@ def _torn(report: DocumentReport) -> None:
             continue
         if len(texts) > 1 and any(text.endswith((".", "!", "?")) for text in texts):
             places = [report.document.place((*path, i)) for i in range(len(texts))]
-            # the line of each plain text; a quoted text can't be torn, and gets a number of its own
+            # the line of each plain text; quoted texts can't be split, so each gets a different negative number
             plain = [p.line if lines[p.line - 1][p.column - 1] not in "\"'" else -i for i, p in enumerate(places)]
             for first, last in _parts(texts, plain):
                 *before, end = [f"`{text}`" for text in texts[first:last]]
@@ -73,7 +73,7 @@ def _torn(report: DocumentReport) -> None:
 
 
 def _mapped(report: DocumentReport) -> None:
-    """Report texts in a list of answers that became maps by a colon; a map in braces is intended."""
+    """Report texts in a list of answers that became maps because of a colon; a map in braces is intended."""
     lines = report.document.text.split("\n")
     for path in report.document.spans:
         if "answers" not in path or "value" not in path[:-1] or not isinstance(path[-1], int):
@@ -87,9 +87,9 @@ def _mapped(report: DocumentReport) -> None:
 
 
 def _parts(texts: list[str], lines: list[int]) -> Iterator[tuple[int, int]]:
-    """Yield the first index and the end index of each torn text, in texts that begin in these lines.
+    """Yield the first index and the end index of each text that a comma has split; `lines` are the texts' lines.
 
-    Each part but the last has no full stop, and each but the first begins with a small letter in the same line.
+    Each part but the last has no final mark, and each but the first begins with a small letter in the same line.
     """
     first = 0
     for i in range(1, len(texts) + 1):

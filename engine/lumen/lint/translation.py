@@ -21,7 +21,7 @@ TO_DO = "TODO "
 
 
 class LanguageEntry(NamedTuple):
-    """A value given once for each language: a text, alternatives of one, or phrases."""
+    """A value given once for each language: a text, alternative texts, or phrases."""
 
     report: DocumentReport
     path: NodePath
@@ -29,14 +29,16 @@ class LanguageEntry(NamedTuple):
 
 
 class Untranslated(NamedTuple):
-    """A text that is missing in a language or not translated yet: its place, and the text in another language."""
+    """A text that is missing in a language, or not translated yet."""
 
     place: Place
+    """The place of the text, or of the value that lacks the language."""
     text: str
+    """The text in another language; alternatives are joined by `; `."""
 
 
 def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
-    """Return all values by language of a project, file by file, each once; values for every language are left out."""
+    """Return all values by language of a project, each once; values that apply to every language are left out."""
     found = {(report.document.file, path): report for report, path in _places(draft)}
     entries = []
     for (_, path), report in found.items():
@@ -48,7 +50,7 @@ def language_entries(draft: ProjectDraft) -> list[LanguageEntry]:
 
 
 def plain_texts(draft: ProjectDraft) -> Iterator[tuple[DocumentReport, NodePath]]:
-    """Yield the place of each one-line `say` text that has words outside its expressions, but no language."""
+    """Yield the place of each one-line `say` without languages that has words outside its expressions."""
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
         for site in action_sites(machine):
@@ -77,14 +79,14 @@ def untranslated(entries: Sequence[LanguageEntry], language: str) -> Iterator[Un
 
 
 def begun(entries: Sequence[LanguageEntry], language: str) -> Iterator[tuple[DocumentReport, NodePath]]:
-    """Yield the path of each text in another language that is still behind TODO in that language."""
+    """Yield the path of each text that has a copy marked with TODO in place of a translation into that language."""
     for report, path, by_language in entries:
         if _is_begun(by_language.get(language)):
             yield report, (*path, language)
 
 
 def is_empty(value: Any) -> bool:
-    """Return whether a translation is empty: it has no text, or one of its texts has no words."""
+    """Return whether a translation has no text, or a text without words."""
     texts = value if isinstance(value, list) else [value]
     return not texts or any(text is None or (isinstance(text, str) and not text.strip()) for text in texts)
 

@@ -31,7 +31,7 @@ _PAIRS = {"“": "”", "”": "”", "„": "“”", "‘": "’", "«": "»"}
 _DATA = ("context", "data", "body", "robot")
 _HALF = re.compile(r"(?<!\{)\$?\{\s*((?:context|event|state)\.[\w.]+)\s*\}(?!\})")
 _SIGNS = re.compile(r"(?:<|%|\[)\s*((?:context|event|state)\.[\w.]+)\s*(?:>|%|\])")
-"""A placeholder in the form of other programs."""
+"""A placeholder for a value of Lumen in another program's brackets."""
 _OF_OTHERS = re.compile(
     r"\{%.*?%\}|\{#.*?#\}|[$#]\{\s*(?P<certain>\w+)\s*\}|(?<!\{)\{\s*(?P<braces>[^\W\d]\w*)\s*\}(?!\})"
     r"|%\((?P<percent>\w+)\)s|%(?P<signs>\w+)%|\$(?P<dollar>\w+)|<(?P<angles>\w+)>|\[(?P<square>\w+)\]"
@@ -75,7 +75,7 @@ def _plain(report: DocumentReport, wanted: set[int]) -> Iterator[tuple[NodePath,
 
 
 def _truth(report: DocumentReport, path: NodePath, source: str, value: object) -> None:
-    """Report a word for true or false in data only: among phrases, `no` is a word."""
+    """Report a word such as `no` in data, where true or false may be meant; among phrases it is an ordinary word."""
     if isinstance(value, str) and (meant := _TRUTHS.get(value.lower())) and any(key in _DATA for key in path[:-1]):
         hint = f'write `{meant}`, or put it in quotes if you mean the text: "{value}"'
         report(LOOKS_LIKE_TRUTH, path, f"this is the text `{value}`, not `{meant}`", hint)
@@ -94,7 +94,7 @@ def _quotes(report: DocumentReport, path: NodePath, source: str, value: object) 
     closing = _PAIRS.get(source[:1], "")
     place = report.document.place(path)
     if any(d.place.line == place.line and d.place.column == place.column for d in report.diagnostics):
-        return  # it has a finding already
+        return  # the value has a finding already
     if isinstance(value, str) and len(source) > 1 and source[-1] in closing and not _CURLY.search(source[1:-1]):
         hint = f'write straight quotes: "{source[1:-1]}"'
         report(CURLY_QUOTES, path, "these quotes are part of the text: YAML accepts only straight ones", hint)
@@ -128,7 +128,7 @@ def _holes(machine: MachineDefinition, report: DocumentReport) -> None:
 
 
 def _foreign(found: re.Match[str], machine: MachineDefinition) -> tuple[str, str] | None:
-    """Return a placeholder in another tool's form, and the hint; None if it may be meant as text."""
+    """Return a placeholder in another tool's form, and the hint; None if it may be meant as ordinary text."""
     if found[0].startswith("{%"):
         return found[0], "texts have no `{% … %}`: write `{{ CONDITION ? 'one text' : 'another' }}`"
     if found[0].startswith("{#"):

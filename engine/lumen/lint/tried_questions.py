@@ -1,4 +1,4 @@
-"""Test questions for passages that test nothing: of an unknown passage, or in words that are already used."""
+"""Test questions for passages: those for an unknown passage, and those whose words another question already has."""
 
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
@@ -22,7 +22,7 @@ class _Text(NamedTuple):
 
     @property
     def key(self) -> tuple[str, str]:
-        """The value that equal questions have in common."""
+        """The language and the words, which equal questions have in common."""
         return self.language, words_of(self.said)
 
 
@@ -66,5 +66,5 @@ def _texts(path: NodePath, texts: Mapping[str, tuple[str, ...]]) -> Iterator[_Te
 
 
 def _place(report: DocumentReport, text: _Text) -> Place:
-    """Return the place of a text; for a single text of a language it is the place of that language's value."""
+    """Return the place of a text; if a language has one text instead of a list, the place of the language's value."""
     return report.document.place(first(report, text.path, text.path[:-1]))

@@ -20,7 +20,7 @@ UNHEARD_NAME = Code("unheard-name", "hearing", WARNING, "a row with `not` or `as
 UNUSED_SLOT = Code("unused-slot", "hearing", WARNING, "no row uses the value of a slot")
 
 Reads = dict[str, dict[int, set[str | None]]]
-"""For each behaviour the names that each row, by its number, reads from `heard`; None stands for any name."""
+"""For each behaviour, the names that each row reads from `heard`, by the row's number; None means any name."""
 
 _NO_SLOTS = frozenset(("text", "phrase", "answer"))
 
@@ -40,7 +40,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _unheard(rows: HeardRows, row: SaidRow) -> None:
-    """Report the names of a row with `not` or `asked` that no other row in its state or around it has."""
+    """Report the names of a row with `not` or `asked` that no other row of its state or of an ancestor has."""
     around = [*rows.around(row.state.path)]
     others = [other.hears for state in around for other in rows.by_state.get(state.path, ())]
     heard = {name for other in others if not other.way for name in other.names}
@@ -71,16 +71,16 @@ def _reads(machine: MachineDefinition) -> dict[int, set[str | None]]:
 
 
 def _unread(draft: ProjectDraft, tables: WordTables, name: str, reads: Reads) -> None:
-    """Report each slot of the phrases of a name that no row with the name reads, at its first phrase."""
+    """Report each slot in the phrases of a name that no row with the name reads, once, at its first phrase."""
     users = known_by(draft, tables.report)
     if not reads.keys() >= {user for user in users if any(heard_rows(draft.behaviors[user]))}:
-        return  # a behaviour that is unreadable may read it
+        return  # an unreadable behaviour may read the slot
     users = [user for user in users if user in reads]
     rows = [(user, row) for user in users for row in heard_rows(draft.behaviors[user]) if name in row.names]
     read = {key for user, row in rows for key in reads[user].get(row.number, ())}
     known = {key for user, row in rows for key in caught_schema(draft.behaviors[user], row).get("properties", ())}
     if not rows or not read <= known:
-        return  # all of it is read, or something that does not exist: this slot may be meant
+        return  # a row reads all of `heard`, or a slot that does not exist, which may be a misspelt one
     paths = [("phrases", name), *(("answers", name, i, "phrases") for i in range(len(tables.answers.get(name, ()))))]
     phrases = (phrase for path in paths for phrase in written_phrases(tables.report, path))
     sound = (p for p in phrases if "{" in p.text and not any(is_broken(draft.behaviors[u], p.text) for u in users))

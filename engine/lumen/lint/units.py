@@ -21,14 +21,16 @@ MAX_WALK_DISTANCE = 20.0
 """The longest walk at an exhibition [m]."""
 
 SPEED_TOLERANCE = 1.05
-"""The tolerance factor for a speed above the limit, because people round."""
+"""The factor by which a speed may exceed the limit, because people round."""
 
 HALF_TURN_PARTS = frozenset(round(pi / n, digits) for n in (1, 2, 3, 4, 6) for digits in (2, 3, 4))
 """Fractions of a half turn as people write them in radians."""
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report angles in radians among degrees, turns of more than one round, and walks that are too far or too fast."""
+    """Report angles in radians among degrees, head turns and walks beyond their limits, and turns of more than one
+    round.
+    """
     for name in draft.motions:
         _radians(draft.report("motions", name), draft.body)
     stage = draft.settings.stage if draft.settings else None
@@ -37,7 +39,7 @@ def check(draft: ProjectDraft) -> None:
 
 
 def _radians(report: DocumentReport, body: Body | None) -> None:
-    """Report angles such as 1.57 in a file in degrees."""
+    """Report angles that look like radians, such as 1.57, in a file in degrees."""
     if report.document.find(("units", "angle")) != "deg":
         return
     angles = [(path, angle) for path, angle in _angles(report.document.data, (), body) if angle]

@@ -43,16 +43,16 @@ _ASKED = {
     ),
     "lists": ("nothing uses the list `{}`", "write `for: {{each: lists.{}, as: …}}` in a state", UNUSED_LIST),
 }
-"""The tables, each with the message and the hint for an unused name, and its code."""
+"""For each kind of table, the message and the hint for an unused name, and its code."""
 
 _NO_MEANINGS = {"phrases": WORD_LISTS, "answers": TABLES}
-"""Names that are used to understand sentences, even if no expression names them."""
+"""Names that Lumen uses to understand sentences, even if no expression names them."""
 
 _EXPRESSION_CODES = {c for c in vars(expression_findings).values() if isinstance(c, Code)} - {UNKNOWN_STATE}
 
 
 def check(draft: ProjectDraft) -> None:
-    """Report unused names, but only if nothing that could use them is broken: in a file, and in the whole project."""
+    """Report unused names, but only if nothing that could use them is broken, and names that differ only in case."""
     sound = set()
     for name, machine in draft.behaviors.items():
         report = draft.report("behaviors", name)
@@ -86,7 +86,7 @@ def _inside(draft: ProjectDraft, name: str, machine: MachineDefinition, report: 
 
 
 def _words(draft: ProjectDraft, sound: Collection[str]) -> None:
-    """Report words files that no behaviour names, and names in the others that no behaviour uses."""
+    """Report words files that no behaviour names, and unused names in the other words files."""
     for name, words in draft.own_words.items():
         report, users = draft.report(WORDS_FOLDER, name), [n for n, m in draft.behaviors.items() if name in m.words]
         if not users and report.whole and draft.whole_behaviors:
@@ -103,7 +103,7 @@ def _unasked(
 ) -> None:
     """Report phrases, answers and lists of a file whose name is in no expression and no row of `hears`.
 
-    Word lists are exempt; `hears` is whether a behaviour that knows the file has rows.
+    Word lists are exempt. With `hears`, a behaviour that knows the file has rows, and the hints suggest to write one.
     """
     texts = {text for each in named for text in each.texts}
     lists = None if any(each.lists is None for each in named) else {n for each in named for n in each.lists or ()}
@@ -128,12 +128,12 @@ def _context(machine: MachineDefinition, report: DocumentReport, read: Collectio
 
 
 def _states_of(report: DocumentReport) -> str:
-    """Return the root cause to report if much is unused or missed by stories: a part of the statechart is missing."""
+    """Return the root cause of unused names: part of the statechart may be missing. Stories report the same cause."""
     return f"the states of {report.document.file}"
 
 
 def _looked_at(draft: ProjectDraft, name: str) -> set[str]:
-    """Return the context keys that stories and controllers read."""
+    """Return the context keys that controllers read, or stories of this behaviour expect."""
     main = draft.settings.behavior if draft.settings else ""
     stories = [story for story in draft.stories.values() if (story.behavior or main) == name]
     expected = {

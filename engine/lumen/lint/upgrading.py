@@ -1,7 +1,4 @@
-"""Files of an older vocabulary, rewritten word by word for a newer one: a pure function from files to files.
-
-Everything else, including comments and spaces, stays as it is.
-"""
+"""Files of an older vocabulary, rewritten word by word for a newer one: a pure function from files to files."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import PurePosixPath
@@ -18,7 +15,7 @@ from lumen.project.yaml_reader import parse
 
 
 class Rewriting(NamedTuple):
-    """A place of a file that is rewritten: the reason in words, and the new text."""
+    """A place of a file that is rewritten, with the reason in words and the new text."""
 
     place: Place
     why: str
@@ -39,8 +36,8 @@ def upgraded(
 ) -> tuple[dict[str, bytes], list[Rewriting]]:
     """Return the files of a project in `vocabulary`, and the rewritten places, as they were before.
 
-    lumen.yaml then has the new number. Raises UsageError if a file can't be read, if the files are newer than that, or
-    if the old and the new word for the same thing are both in use.
+    lumen.yaml then has the new number. Raises UsageError if a file can't be read, if the files are of a newer
+    vocabulary, or if the old and the new word for the same thing are both in use.
     """
     now, done = dict(files), list[Rewriting]()
     said = _said(_document(now, MAIN_FILE))
@@ -62,9 +59,9 @@ def upgraded(
 
 
 def renamed_key(files: str, path: Sequence[str], name: str) -> Migration:
-    """Return a migration that renames a key in matching files, at every matching path.
+    """Return a migration that renames a key in the files that match the pattern `files`, at every matching path.
 
-    A `*` in a path matches any one step.
+    A `*` in `path` matches any one step. The migration raises UsageError if a map has both the old and the new key.
     """
 
     def migrate(document: Document) -> Iterator[Rewriting]:
@@ -101,7 +98,10 @@ def _said(main: Document) -> int:
 
 
 def _numbered(main: Document, vocabulary: int, line_break: str) -> Rewriting | None:
-    """Return the rewriting that writes the number into lumen.yaml; None if it is there already."""
+    """Return the rewriting that writes the number into lumen.yaml; None if it is there already.
+
+    Raises UsageError if lumen.yaml is empty, or its first key is inside braces with other content before it.
+    """
     said = main.data.get(VOCABULARY_KEY)
     if said == vocabulary:
         return None

@@ -45,7 +45,7 @@ class ExpressionSite(NamedTuple):
     guard: bool = False
     """Whether it is a condition."""
     key: str = ""
-    """The context key to which `assign` assigns its value; empty for others."""
+    """The context key to which `assign` assigns its value; empty for other expressions."""
     expected: Mapping[str, Any] | None = None
     """The JSON Schema that its value must fit, if neither `guard` nor `key` implies one."""
 
@@ -87,7 +87,9 @@ def _expressions(machine: MachineDefinition) -> Iterator[ExpressionSite]:
 
 
 def _made(where: NodePath) -> bool:
-    """Return whether an element was generated from a `for`: it has the path of the `for`, and is not in the file."""
+    """Return whether an element was generated from a `for`: it has the path of the `for`, and is not in the file
+    itself.
+    """
     return where[-1:] == ("for",)
 
 

@@ -18,7 +18,7 @@ BLOCKED_PLACE = Code(
 BLOCKED_WAY = Code("blocked-way", "robot", WARNING, "the straight way from one place to the next is blocked")
 
 ROOM_TO_STAND, ROOM_TO_PASS = 0.4, 0.2
-"""The free distance that the robot needs to set out from a place, and to pass an object with its arms [m]."""
+"""The free distance [m] that the robot needs to set out from a place, and to pass an object with its arms."""
 
 START = ""
 """The name of the robot's start."""
@@ -78,9 +78,9 @@ def _ways(
 
 
 def _followers(machine: MachineDefinition) -> set[tuple[str, PlacedWalk]]:
-    """Return each place, or the start, with each walk that may be the next after it.
+    """Return pairs of a place, or the start, and a walk that may be the next one from there.
 
-    Guards are ignored. After a walk whose place is computed the position is unknown, so nothing is returned for it.
+    Guards are ignored. After a walk to a computed place the position is unknown, so there are no pairs for it.
     """
     walks = {path: _walks(state) for path, state in machine.states.items()}
     found: set[tuple[str, PlacedWalk]] = set()

@@ -19,21 +19,25 @@ class WordTables(NamedTuple):
 
     report: DocumentReport
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]]
+    """The phrases of each name by language; the empty language is every language."""
     answers: Mapping[str, tuple[Answer, ...]]
+    """The rows of each table of answers."""
     lists: Mapping[str, tuple[Mapping[str, Any], ...]]
+    """The entries of each list."""
 
 
 class WrittenPhrase(NamedTuple):
-    """A phrase in its file; its language is empty if it is for every language."""
+    """A phrase in its file."""
 
     report: DocumentReport
     path: NodePath
     language: str
+    """Empty if the phrase is for every language."""
     text: str
 
 
 def word_tables(draft: ProjectDraft) -> Iterator[WordTables]:
-    """Yield the tables of each file of the project; a behaviour's do not include those from words files."""
+    """Yield the tables of each behaviour and each words file; a behaviour's do not include those that it borrows."""
     for name, machine in draft.behaviors.items():
 
         def own(key: str, table: Mapping[str, Any], borrowed: Any = machine.borrowed) -> dict[str, Any]:
@@ -60,7 +64,7 @@ def written_phrases(report: DocumentReport, path: NodePath) -> Iterator[WrittenP
 
 
 def is_taken(phrase: str, other: Mapping[str, tuple[str, ...]]) -> bool:
-    """Return whether each form of a phrase contains another of these phrases; False for a form with a slot."""
+    """Return whether every form of a phrase contains one of the phrases in `other`; False if a form has a slot."""
     return all(form.plain and is_heard(" ".join(form.literals), other) for form in forms(phrase))
 
 
@@ -77,14 +81,14 @@ def _listed(value: Any) -> list[Any]:
 
 
 def known_by(draft: ProjectDraft, report: DocumentReport) -> list[str]:
-    """Return the behaviours that know the names of a file: its own, or those that name the file under `words`."""
+    """Return the behaviours that can use the names of a file: its own, or those that name the file under `words`."""
     folder, _, file = report.document.file.rpartition("/")
     name = file.removesuffix(".yaml")
     return [n for n, m in draft.behaviors.items() if (name in m.words if folder == WORDS_FOLDER else n == name)]
 
 
 def slot_place(phrase: WrittenPhrase, slot: Slot) -> Place:
-    """Return the place of a slot of a phrase."""
+    """Return the place of a slot in a phrase, with its braces."""
     signs = (f"{{{slot.type}:{slot.name}}}", f"{{{slot.type}}}")
     sign = next(sign for sign in signs if sign in phrase.text)
     return place_within(phrase.report.document, phrase.path, phrase.text, phrase.text.index(sign), len(sign))

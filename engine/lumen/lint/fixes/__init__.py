@@ -1,7 +1,7 @@
 """Repairs that need no decision: from findings to edits of the text that leave comments and layout alone.
 
-A fix is a proposal: its user lints again, and keeps it only if the finding has disappeared and no other has appeared
-(`lint.repairs`).
+A fix is a proposal: the caller lints the edited files, and keeps the fix only if the finding has disappeared and no
+other has appeared (`lint.repairs`).
 """
 
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ from lumen.project.broken_features import blaming, faulty, shown
 __all__ = ["Edit", "FileText", "Fix", "edited", "fixes"]
 
 SLIP = "lumen.lint.fixes.misspellings:slip"
-"""The repair of an unknown or wrong word, if its code has no other."""
+"""The repair of codes that begin with `unknown-` or `wrong-` and have no repair of their own."""
 
 
 def fixes(diagnostic: Diagnostic, files: Mapping[str, bytes]) -> list[Fix]:

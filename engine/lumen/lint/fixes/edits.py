@@ -17,7 +17,7 @@ class Edit(NamedTuple):
 
 
 class Fix(NamedTuple):
-    """The effect of a fix in words, and its edits."""
+    """A repair: its effect in words for people, and its edits."""
 
     title: str
     edits: tuple[Edit, ...]
@@ -33,7 +33,7 @@ class FileText:
         self.lines, self.breaks = lines_and_breaks(self.text)
 
     def line(self, number: int) -> str:
-        """Return the line of this number, from 1; empty if there is none."""
+        """Return the line of this number, from 1; empty for any other number."""
         return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
 
     def at(self, place: Place) -> str:
@@ -48,13 +48,13 @@ class FileText:
         return Place(self.file, number, 1, number, len(self.line(number)) + 1)
 
     def offset(self, line: int, column: int) -> int:
-        """Return the index of a line and column, both from 1, in the text."""
+        """Return the index in the text of a line and column, both from 1; the length of the text if it is shorter."""
         before = sum(len(t) + len(b) for t, b in zip(self.lines[: line - 1], self.breaks, strict=False))
         return min(before + column - 1, len(self.text))
 
 
 def edited(content: bytes, edits: Sequence[Edit]) -> bytes:
-    """Return the file after these edits; of two that overlap, only the later one in the file is made."""
+    """Return the file after these edits; of two that overlap, only the one that begins later in the file is made."""
     source = FileText("", content)
     spans = [(source.offset(*e.place[1:3]), source.offset(*e.place[3:5]), e.text) for e in dict.fromkeys(edits)]
     text, done = source.text, len(source.text) + 1

@@ -22,7 +22,10 @@ def spaces(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
 
 
 def once(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Return a fix that deletes one of two equal lines: the one without a comment if only one has a comment."""
+    """Return a fix that deletes one of two equal lines; no fix if both have different comments.
+
+    If only one line has a comment, the other one is deleted.
+    """
     number = diagnostic.place.line
     line = source.line(number)
     if line[: diagnostic.place.column - 1].strip() or _deeper(source, number):
@@ -45,7 +48,7 @@ def _said(line: str) -> str:
 
 
 def _deeper(source: FileText, number: int) -> bool:
-    """Return whether the value of that line continues below it."""
+    """Return whether the value of a line, which counts from 1, continues below it."""
 
     def depth(line: str) -> int:
         return len(line) - len(line.lstrip())

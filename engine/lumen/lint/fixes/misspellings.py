@@ -12,7 +12,7 @@ _SAYS = re.compile(r"`([^`]+)`")
 
 
 def slip(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Return the fix that writes the word from the hint, if it is similar enough to leave no doubt."""
+    """Return the fix that writes the word from the hint; no fix if the word is not similar enough to be certain."""
     there = source.at(diagnostic.place)
     if instead := _INSTEAD.search(diagnostic.hint):
         new = instead[1] or instead[2]
@@ -43,7 +43,7 @@ def _count(word: str, files: Mapping[str, bytes]) -> int:
 def near(word: str, meant: str) -> bool:
     """Return whether two words differ by one slip: letter case, one letter added, missing or wrong, or two exchanged.
 
-    It is False if they could be two different names: in short words, in the first letter (`left`, `reft`), in a digit.
+    Return False if they could be two different names: short words, words with different first letters or digits.
     """
     a, b = word.lower(), meant.lower()
     if a == b:
@@ -66,7 +66,7 @@ def _one_slip(a: str, b: str) -> bool:
 
 
 def straight_quotes(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Return a fix that replaces curly quotes around a text by straight ones; none if it has quotes or backslashes."""
+    """Return a fix that makes the quotes around a text straight; no fix if the text contains quotes or backslashes."""
     there = source.at(diagnostic.place)
     if len(there) < 2 or there[0] not in "“”„‟" or there[-1] not in "“”‟" or any(c in '"\\' for c in there):
         return []
@@ -74,13 +74,13 @@ def straight_quotes(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
 
 
 def point(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Return a fix that writes the number with a point instead of its only comma."""
+    """Return a fix that writes a number with a point instead of its comma; no fix if it has several commas."""
     there = source.at(diagnostic.place)
     return [Fix("write a point", (Edit(diagnostic.place, there.replace(",", ".")),))] if there.count(",") == 1 else []
 
 
 def filled_in(diagnostic: Diagnostic, source: FileText) -> list[Fix]:
-    """Return a fix that writes double braces around a placeholder."""
+    """Return a fix that writes double braces around a placeholder; no fix if its place in the text is not certain."""
     there, said, right = source.at(diagnostic.place), _SAYS.search(diagnostic.message), _SAYS.search(diagnostic.hint)
     if said is None or right is None or there.count(said[1]) != 1 or not right[1].startswith("{{"):
         return []

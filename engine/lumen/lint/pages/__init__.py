@@ -33,16 +33,18 @@ class MarkedWord(NamedTuple):
 
 
 class Example(NamedTuple):
-    """A file of an example. `note` is for a special case: `latin-1`, or `folder` in place of the file.
-
-    With `installed` the file is a module of another installed package, with an entry point for its `FEATURE`.
-    """
+    """A file of an example."""
 
     file: str
     language: str
+    """The language of its code block, such as `yaml`."""
     text: str
     mark: MarkedWord | None = None
+    """The word that lint marks; None in a right example."""
     note: str = ""
+    """A special case: `latin-1` is the encoding, `folder` replaces the file by a folder; with `installed` the file is a
+    module of another installed package, with an entry point for its `FEATURE`.
+    """
 
 
 class Page(NamedTuple):
