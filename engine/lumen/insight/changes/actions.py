@@ -36,7 +36,7 @@ def block_changes(
     """Yield the changes between two versions of a block of actions.
 
     `title` names the owner of the block, `when` is when it runs (` on entering`, or empty). Each change has in `where`
-    the path of the new action; of the old one if the action was removed.
+    the path of the new action, or of the old one if the action was removed.
     """
     places = {id(step.action): step.where for step in (*old, *new)}
     for one, other in paired([s.action for s in old], [s.action for s in new], lambda action: type(action).__name__):
@@ -57,8 +57,8 @@ def _pair(old: Action | None, new: Action | None, title: str, when: str, file: s
 def paired(old: Sequence[T], new: Sequence[T], sort: Callable[[T], object]) -> Iterator[Pair[T]]:
     """Yield the differences between two sequences as pairs (before, after); None is a missing item.
 
-    Items that are equal and in place are not yielded. Where the sequences differ, items are paired in order; if one
-    side is longer, an item whose `sort` differs from its partner's is yielded as removed or added instead.
+    Items that are equal and in place are not yielded. If the sequences differ, items are paired in order; if one side
+    is longer, an item whose `sort` differs from its partner's is yielded as removed or added instead.
     """
     pool: list[T] = []
     before_tags, after_tags = _tags(old, pool), _tags(new, pool)

@@ -9,7 +9,7 @@ from lumen.language.diagnostics import NodePath
 
 
 class Risk(IntEnum):
-    """The reach of a change in a running exhibition; a greater risk includes the effects of the smaller ones."""
+    """The reach of a change in a running exhibition, from the smallest to the greatest."""
 
     COSMETIC = 0
     """Texts, stories, names: the same things happen."""
@@ -45,7 +45,7 @@ class Change:
     was: str = field(default="", compare=False)
     """The whole text before the change; empty if the change is not about a text."""
     now: str = field(default="", compare=False)
-    """The whole text after the change."""
+    """The whole text after the change; empty if the change is not about a text."""
 
     def __str__(self) -> str:
         return self.sentence
@@ -79,7 +79,7 @@ def entry_changes(
 
 
 MAX_SHOWN_CHARACTERS = 60
-"""Characters of a text that are shown; a longer text is cut."""
+"""The greatest number of characters of a text that are shown; a longer text is cut."""
 
 
 def seconds(time: float | None) -> str:

@@ -23,7 +23,7 @@ class _Comparison:
         self.images = {path: identity.state(path) if path else "" for path in old.states}
 
     def change(self, kind: str, about: str, sentence: str, risk: Risk = Risk.BEHAVIOR, part: str = "") -> Change:
-        """Return a change of the behaviour's file, or of the words file that provides `about` under the key `part`."""
+        """Return a change in the behaviour's file, or in the words file that provides `about` under the key `part`."""
         words = self.new.borrowed.get((part, about)) or self.old.borrowed.get((part, about))
         return Change(kind, about, sentence, risk, f"behaviors/words/{words}.yaml" if words else self.file)
 
@@ -44,7 +44,9 @@ class _Comparison:
         yield from self.named("event", self.old.events, self.new.events)
 
     def presence(self) -> Iterator[Change]:
-        """Yield states that were removed, added or renamed; of nested ones only the outermost."""
+        """Yield the states that were removed, added, renamed or moved; of nested removed or added states only the
+        outermost.
+        """
         known = set(self.images.values())
         gone = {path: None for path, image in self.images.items() if image is None}
         fresh = {path: None for path in self.new.states if path not in known}

@@ -12,7 +12,7 @@ from lumen.language.routes import Route
 
 
 def controller_changes(old: ControllerDefinition, new: ControllerDefinition) -> Iterator[Change]:
-    """Yield the changes of rules, variables and terms one by one, of everything else by its name."""
+    """Yield the changes of a controller: rules, variables and terms are named one by one."""
     for sentence in _controller(old, new):
         yield Change("controller", new.name, sentence, Risk.MOTION, f"fuzzy/{new.name}.yaml")
 

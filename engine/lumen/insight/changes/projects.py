@@ -13,7 +13,7 @@ from lumen.insight.changes.sections import AT_NEXT_START, RESTART_FIELDS, sectio
 from lumen.language.projects import Project
 
 MAX_SUMMARY_CHANGES = 4
-"""Up to this number of changes, a summary names each; above it, kinds with more than two changes are counted."""
+"""The number of changes up to which a summary names each; with more, kinds with more than two changes are counted."""
 
 _SELF = ("root", "hash", "documents")
 

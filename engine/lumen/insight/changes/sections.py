@@ -13,7 +13,7 @@ MAIN_FILE = "lumen.yaml"
 
 
 def section_changes(old: Project, new: Project, among: Callable[[Section], bool]) -> Iterator[Change]:
-    """Yield the changes of the sections whose rows `among` accepts."""
+    """Yield the changes of the sections whose row in the table of sections `among` accepts."""
     for key, row in table("sections").items():
         before, after = _both(old, new, key)
         if before == after or not among(row):
@@ -67,7 +67,7 @@ RESTART_FIELDS: Mapping[str, str] = {
     "bus": "the broker's address",
     "modules": "the settings of the modules",
 }
-"""Fields of `Project` that take effect only at the next start, with their names for people."""
+"""Fields of `Project` whose changes take effect only at the next start, with their names for people."""
 
 
 def live(old: Project, new: Project) -> Project:

@@ -59,8 +59,8 @@ class WhyNotAnswer:
 def why(steps: Iterable[RecordedStep], what: str = "", until: float | None = None) -> WhyAnswer:
     """Return why `what` happened, the last time up to `until` [s, on the exhibition's clock]; None means the end.
 
-    `what` is a text that was said (or words of it), a state, a motion, the id of a command, or empty for the last thing
-    that happened. Raises UsageError, with a hint, if it did not happen.
+    `what` is a text that was said (or some of its words), a state, a motion, the id of a command, or empty for the last
+    thing that happened. Raises UsageError, with a hint, if it did not happen.
     """
     history = _history(steps, until)
     found = effect(history, what)
@@ -82,10 +82,11 @@ def _needs(history: StepHistory, number: int, links: tuple[Link, ...]) -> Iterat
 def why_not(
     steps: Iterable[RecordedStep], what: str, until: float | None = None, back: float = LOOKED_BACK
 ) -> WhyNotAnswer:
-    """Return why `what`, a state, a motion or a text, did not happen: a reason for each way that would have led there.
+    """Return the reasons why a state, a motion or a text did not happen, one for each way that would have led to it.
 
-    The period is the `back` [s] before `until` [s, on the exhibition's clock]; None means the time of the last step.
-    Raises UsageError, with a hint, if nothing has that name, or if the state is active at that time.
+    Decisions are searched for in the last `back` [s] before `until` [s, on the exhibition's clock]; None is the time of
+    the last step. Raises UsageError, with a hint, if nothing is named `what`, if the journal has no steps from that
+    time, or if the state is active then.
     """
     history = _history(steps, until)
     if not history.steps:

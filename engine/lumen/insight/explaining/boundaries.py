@@ -20,15 +20,19 @@ from lumen.language.machines import MachineDefinition
 ValuePath = tuple[str, ...]
 """The keys that lead to a value: `("context", "tries")`, `("event", "data", "result")`."""
 ABSENT = object()
-"""The value at a path that leads nowhere."""
+"""Returned for a path that does not exist."""
 MAX_VALUES = 24
 """The most values that are tried for one path."""
 FIRST = 6
-"""Values from the guard that are tried before plain ones: a text may be compared with a hundred phrases."""
+"""The number of values mentioned in the guard that come before plain ones, because there may be very many."""
 
 
 def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope) -> dict[ValuePath, list[Any]]:
-    """Return other values that may decide, for each path of the context and of the event's data; the nearest first."""
+    """Return for each path of the context and of the event's data that guards read, other values that may change a
+    guard.
+
+    The values nearest to the present one come first.
+    """
     found: dict[ValuePath, list[Any]] = {}
     trees = [parse_expression(source) for source in sources]
     for tree in trees:
@@ -42,7 +46,7 @@ def boundaries(machine: MachineDefinition, sources: Iterable[str], scope: Scope)
 
 
 def value_at(path: ValuePath, scope: Scope) -> Any:
-    """Return the value at a path; ABSENT if there is none."""
+    """Return the value at a path; ABSENT if the path does not exist."""
     value: Any = {"context": scope.context, "event": scope.event}
     for key in path:
         if not isinstance(value, Mapping) or key not in value:
@@ -52,7 +56,10 @@ def value_at(path: ValuePath, scope: Scope) -> Any:
 
 
 def _nearest(path: ValuePath, values: Iterable[Any], scope: Scope) -> list[Any]:
-    """Return the values of the kind that is there now, each once; numbers by their distance from the present one."""
+    """Return the values of the same kind as the present one, each once; numbers by their distance from the present one.
+
+    At most MAX_VALUES are returned, and not the present value itself.
+    """
     now = value_at(path, scope)
     fitting = [v for v in values if v is not ABSENT and (now is ABSENT or now is None or _kind(v) == _kind(now))]
     unique = list({repr(v): v for v in fitting if now is ABSENT or not _same(v, now)}.values())
@@ -101,7 +108,7 @@ def _mentioned(machine: MachineDefinition, tree: ExpressionNode, scope: Scope) -
 
 
 def _compared(sign: str, one: ExpressionNode, other: ExpressionNode, scope: Scope) -> Iterator[tuple[ValuePath, Any]]:
-    """Yield values of the paths in `one` at which `one` equals `other`, or nearly does."""
+    """Yield values of the paths in `one` for which it would equal `other`, or nearly so."""
     paths = list(_paths(one))
     if not paths:
         return

@@ -19,16 +19,16 @@ from lumen.statechart.command_ids import CommandAnswer, answer_of, inner_id
 from lumen.statechart.values import Timer
 
 LinkWalk: TypeAlias = Iterator["Link | partial[LinkWalk]"]
-"""Links, and at the end a continuation if there is one: a chain may be longer than Python's stack allows."""
+"""Links, and at most one continuation at the end, because a chain may be longer than Python's stack allows."""
 
 MAX_LINKS = 2_000
 """The number of links at which the search stops."""
 SHOWN_FIRST, SHOWN_LAST = 60, 20
-"""Links that are shown at each end of a long chain: behaviours that set a timer again and again have endless ones."""
+"""The numbers of links that are shown at each end of a long chain, because restarted timers make endless chains."""
 
 
 def chain(history: StepHistory, effect: Effect) -> list[Link]:
-    """Return the links, from the effect to the cause; in a long chain one link counts those left out in the middle."""
+    """Return the links from the effect to the cause; in a long chain one link replaces those in the middle."""
     found: list[Link] = []
     ways: list[partial[LinkWalk]] = [partial(Chain(history).of, effect)]
     while ways and len(found) < MAX_LINKS:
@@ -45,9 +45,9 @@ def chain(history: StepHistory, effect: Effect) -> list[Link]:
 
 
 class Chain:
-    """The search from an effect back to its cause; each method yields links and the method that continues.
+    """The search from an effect back to its cause; each method yields links and the method that continues the search.
 
-    Every link lies in an earlier step, or earlier in the same one.
+    Every link lies in an earlier step than the link before it, or earlier in the same step.
     """
 
     def __init__(self, history: StepHistory) -> None:
@@ -132,7 +132,7 @@ class Chain:
             yield self._link(
                 number, "activity", f"the `do` of {prefix_of(owner)}{name} {_ended(kind)}", values=brought(event)
             )
-            until = raised.microstep  # it has none if the `do` has run since an earlier step
+            until = raised.microstep  # it has no microstep if the `do` has run since an earlier step
             go_on = partial(self.doing, number, owner, name, until)
             yield go_on if until else partial(self.trigger, number, owner)
         elif thing == "invoke" and not raised.where:

@@ -1,4 +1,4 @@
-"""Proposed changes: edits of an event or of a context, which are applied and then tried by taking a step."""
+"""Proposed changes: edits of an event or of a context, which are proved by taking a step."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -17,14 +17,15 @@ and `wait` is how long nothing else may happen [s].
 
 
 class StepSituation(NamedTuple):
-    """The snapshot from which a step is taken, its event, and the behaviour whose context is edited (`owner`)."""
+    """The start of a step that is tried: the snapshot and the event."""
 
     snapshot: Snapshot
     event: Event | None
     owner: str = ""
+    """The ids of the behaviour whose context is edited; empty for the outermost."""
 
     def edited(self, change: ProposedChange) -> "StepSituation":
-        """Return the situation with those edits; a new `event` has no data but that of the change."""
+        """Return the situation with these edits; a new `event` has only the data that the change gives it."""
         snapshot, event = self.snapshot, self.event
         if "event" in change:
             event = Event(change["event"], None, snapshot.at)

@@ -27,7 +27,11 @@ def needed(history: StepHistory, number: int) -> tuple[int, ...]:
 
 
 def directly_needed(history: StepHistory, number: int) -> Iterator[int]:
-    """Yield the steps that set what a step depended on: its active states, context, timer or command."""
+    """Yield the steps that set what a step depended on: its active states, the context that it read, its timer or
+    command.
+
+    Yields 0 for anything that the first step set; a number may occur several times.
+    """
     one = history.steps[number]
     before, event = one.before, one.step.event
     if before is None:
@@ -49,7 +53,7 @@ def directly_needed(history: StepHistory, number: int) -> Iterator[int]:
 
 
 def _last(history: StepHistory, number: int, made: Callable[[RecordedStep], bool]) -> int:
-    """Return the last earlier step for which `made` is true; 0 if there is none."""
+    """Return the last earlier step for which `made` is true, else 0."""
     return next((n for n in reversed(range(number)) if made(history.steps[n])), 0)
 
 

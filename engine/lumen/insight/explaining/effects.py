@@ -30,7 +30,7 @@ class Link:
     at: float
     """When it happened [s since 1970, in UTC]."""
     place: Place | None = None
-    """The place in the files that defines it; None if there is none."""
+    """The place in the files that defines it; None if no file does."""
     id: str = ""
     """The id of the command, timer or message; empty if it has none."""
     values: Mapping[str, Any] = field(default_factory=dict)
@@ -92,7 +92,9 @@ def _effects(history: StepHistory, what: str) -> Iterator[Effect]:
 
 
 def is_meant(command: Command, what: str) -> bool:
-    """Return whether `what` means a command: by its id, by part of its text, or by a name in it. Empty means any."""
+    """Return whether `what` means a command: its id, part of its text, or a name in it; an empty `what` means any
+    command.
+    """
     match command:
         case Start(id, wanted):
             if not what or what == id:

@@ -12,7 +12,7 @@ from lumen.statechart.stepping import step
 from lumen.statechart.values import Snapshot
 
 MAX_DEEDS = 8
-"""The most deeds that are listed."""
+"""The greatest number of commands that are listed."""
 
 
 def foreseen(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> list[dict[str, Any]]:

@@ -25,7 +25,7 @@ class TriedExample(NamedTuple):
     call: str
     """The call as it would be written in an expression."""
     wrong: str
-    """The difference from the expected value, in words; empty if there is none."""
+    """The difference from the expected value, in words; empty if the values are equal."""
 
 
 def tried_examples(functions: Iterable[FunctionDefinition]) -> Iterator[TriedExample]:

@@ -10,7 +10,7 @@ from lumen.talk.finder import Find
 from lumen.talk.hearing import Dropped, hearing_of, said_in
 
 RowFate = Literal["taken", "not found", "guard", "better row"] | Dropped
-"""The fate of a row. `taken` is the best row of its state, even if another state's row has priority."""
+"""Whether a row is taken, and if not, why. `taken` is the best row of its state, even if another state has priority."""
 MAX_QUOTED = 80
 """Characters of a sentence that are shown."""
 
@@ -33,7 +33,7 @@ class HeardRow(NamedTuple):
     strength: int = 0
     """The number of words of the phrase."""
     late: bool = False
-    """Whether the row is tried only if no state has taken another."""
+    """Whether the row is tried only if no state has taken another row."""
     better: Hears | None = None
     """The row that is taken instead, if the fate is `better row`."""
     caught: Mapping[str, Any] = {}
@@ -68,12 +68,15 @@ class HeardRow(NamedTuple):
 
 
 def heard_rows(machine: MachineDefinition, state: str, scope: Scope) -> tuple[HeardRow, ...]:
-    """Return the fate of each row of the state at a path, in the order written; guards are evaluated in `scope`."""
+    """Return the result of each row of a state for the sentence of the scope's event, in the order of the file.
+
+    `state` is a path; guards are evaluated in `scope`.
+    """
     return tuple(_rows(machine, state, scope))
 
 
 def heard_row(machine: MachineDefinition, transition: Transition, scope: Scope) -> HeardRow:
-    """Return the fate of one row, given by its transition."""
+    """Return the result of one row, given by its transition."""
     return next(row for row in heard_rows(machine, transition.source, scope) if row.row is transition.hears)
 
 
@@ -107,7 +110,10 @@ def _rows(machine: MachineDefinition, state: str, scope: Scope) -> Iterator[Hear
 
 
 def _found(machine: MachineDefinition, row: HeardRow, find: Find, text: str) -> HeardRow:
-    """Return the row with the words that were found. A row that counts shows the whole sentence, others the clause."""
+    """Return the row with the words that were found, and the part of the sentence that explains its fate.
+
+    That is the whole sentence if the phrase counts, else the clause.
+    """
     reading = hearing_of(machine).read(text)
     inside = [i for i, clause in enumerate(reading.clauses) if clause == reading.clauses[find.start]]
     clause = text if row.fate in ("taken", "guard", "better row") else reading.said(inside[0], inside[-1] + 1)

@@ -20,7 +20,7 @@ OPERATOR_GOTO = "operator.goto"
 class RecordedStep(NamedTuple):
     """A step with the machine and the snapshot from which it was taken.
 
-    A step without an event, other than the first, is a reload: the machine did not decide it.
+    A step without an event, other than the first, is a reload, which the machine did not decide.
     """
 
     machine: MachineDefinition
@@ -44,7 +44,7 @@ class RecordedStep(NamedTuple):
 
     @property
     def is_decided(self) -> bool:
-        """Whether the machine decided the step, so that it can be taken again."""
+        """Whether the machine decided the step, so that taking it again gives the same result."""
         return not self.is_reload and not (self.step.event and self.step.event.name == OPERATOR_GOTO)
 
     def place(self, machine: MachineDefinition, where: NodePath) -> Place | None:
@@ -64,7 +64,7 @@ class StepHistory:
         self._traces: dict[int, Trace] = {}
 
     def trace(self, number: int) -> Trace:
-        """Return the trace of the step of that number; empty if the machine did not decide the step."""
+        """Return the trace of a step by its number; the trace is empty if the machine did not decide the step."""
         if number not in self._traces:
             one = self.steps[number]
             before = one.before or _before_the_first(one)
@@ -73,7 +73,7 @@ class StepHistory:
 
     @cached_property
     def started(self) -> dict[str, list[int]]:
-        """The numbers of the steps that started a command, by its id; a list, because ids begin anew with each run."""
+        """The numbers of the steps that started a command, by the command's id; ids repeat after a restart."""
         found: dict[str, list[int]] = {}
         for number, one in enumerate(self.steps):
             for command in one.step.commands:
@@ -82,7 +82,7 @@ class StepHistory:
         return found
 
     def deed(self, number: int, command: Any) -> Deed | None:
-        """Return the action that issued a command of that step; None if there is none."""
+        """Return the action that issued a command of that step, else None."""
         return next((deed for deed in self.trace(number).deeds if deed.what == command), None)
 
 
@@ -94,7 +94,7 @@ def _before_the_first(first: RecordedStep) -> Snapshot:
 
 
 def ended_timer(before: Snapshot | None, event: Event) -> Timer | None:
-    """Return the timer whose end is that event, in whichever behaviour it ran; None if there is none."""
+    """Return the timer whose end is that event, in any of the behaviours that run, else None."""
     id, owner = inner_id(event.sendid)
     inner = within(before, owner)
     return next((t for t in inner.timers if (t.id, t.event) == (id, event.name)), None) if inner and id else None
@@ -108,7 +108,7 @@ def sets_timer(one: RecordedStep, sendid: str, timer: Timer) -> bool:
 
 
 def within(snapshot: Snapshot | None, owner: str) -> Snapshot | None:
-    """Return the snapshot of the behaviour that runs under these ids; None if none does."""
+    """Return the snapshot of the behaviour that runs under the ids `owner`, as in `hint@quiz`; else None."""
     for id in reversed(owner.split("@")) if owner else ():
         child = snapshot.invoked.get(id) if snapshot else None
         snapshot = child.snapshot if child else None
@@ -116,7 +116,7 @@ def within(snapshot: Snapshot | None, owner: str) -> Snapshot | None:
 
 
 def machine_within(one: RecordedStep, owner: str) -> MachineDefinition:
-    """Return the machine that runs under these ids."""
+    """Return the machine of the behaviour that runs under the ids `owner`, as in `hint@quiz`."""
     machine, around = one.machine, one.before
     for id in reversed(owner.split("@")) if owner else ():
         behaviors = [i.behavior for s in machine.states.values() for i in s.invoke if i.id == id]

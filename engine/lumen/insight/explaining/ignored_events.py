@@ -42,7 +42,7 @@ class IgnoredEvent(NamedTuple):
     event: Event
     """The event."""
     deaf: tuple[str, ...]
-    """The innermost active states of the regions that listen to it only in other states."""
+    """The innermost active states that do not listen to it, although other states of their regions do."""
     refused: tuple[FalseGuard, ...]
     """The guards that were false."""
     unheard: tuple[str, ...] = ()
@@ -90,7 +90,7 @@ def _within(node: StateNode, region: StateNode | None) -> bool:
 
 
 def _listens(node: StateNode, name: str) -> bool:
-    """Return whether a state has a transition for that event; one for any event (`*`) does not count."""
+    """Return whether a state has a transition for that event; a transition for every event (`*`) does not count."""
     return any(transition.definition.event != "*" and transition.matches(name) for transition in node.transitions)
 
 
@@ -125,7 +125,7 @@ def _unheard(prefix: str, machine: MachineDefinition, step: Step, event: Event) 
 
 
 def _scope(chart: Chart, node: StateNode, standing: Configuration, now: Snapshot, event: Event) -> Scope:
-    """Return the scope that the guard saw: nothing has changed since."""
+    """Return the scope in which the guard was evaluated; nothing has changed since."""
     machine, seen = chart.definition, {"name": event.name, "data": event.data}
     return Scope(
         now.context, seen, node.view(now.language, now.place), standing.known.__contains__, now.at, now.language,

@@ -75,9 +75,9 @@ def _plain(text: str) -> str:
 
 
 def state_named(machine: MachineDefinition, name: str) -> str:
-    """Return the outside name of a state, given by its name, its path or the end of its path; empty if there is none.
+    """Return the outside name of a state, given by its name, its path or the last part of its path; empty if unknown.
 
-    Raises UsageError if several paths end so.
+    Raises UsageError if several states match.
     """
     found = [
         (prefix_of(owner), state)

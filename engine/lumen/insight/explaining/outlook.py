@@ -19,11 +19,14 @@ from lumen.statechart.values import Snapshot, Timer
 
 
 class GuardTruth(NamedTuple):
-    """A guard at this moment: the values that it reads, and its result; None if that depends on the event."""
+    """A guard at this moment."""
 
     text: str
+    """The guard as written."""
     holds: bool | None
+    """Its result; None if that depends on the event."""
     values: Mapping[str, Any]
+    """The values that it reads, by their names in it."""
 
 
 class WayOut(NamedTuple):
@@ -36,13 +39,13 @@ class WayOut(NamedTuple):
     transition: Transition
     """The transition."""
     open: bool
-    """False if something is known to prevent it."""
+    """False if it can't be taken now, whatever event comes."""
     guard: GuardTruth | None
     """Its guard at this moment; None if it has none."""
     why: str
-    """The condition that prevents it or that it waits for, in words."""
+    """The condition that prevents the transition or that it waits for, in words."""
     due: float | None = None
-    """When its timer ends [s]; None if it has none."""
+    """When its timer ends, on the exhibition's clock [s]; None if it has none."""
 
 
 class Running(NamedTuple):
@@ -94,7 +97,7 @@ def _ranked(
 ) -> Iterator[tuple[CompiledTransition, CompiledTransition | None]]:
     """Yield each transition of the active states once, with the rival that is always taken instead, or None.
 
-    A rival counts only if there is one for each active atomic state below the transition.
+    A rival counts only if each active atomic state below the transition has one.
     """
     rivals: dict[CompiledTransition, CompiledTransition | None] = {}
     for leaf in configuration.leaves:
@@ -136,7 +139,7 @@ class _Asked:
         self._known: dict[CompiledTransition, tuple[GuardTruth | None, str]] = {}
 
     def truth(self, transition: CompiledTransition) -> bool | None:
-        """Return whether its guard holds; None if that depends on the event."""
+        """Return whether a transition's guard holds; None if that depends on the event."""
         guard, why = self._guard(transition)
         hears = transition.definition.hears
         if hears and hears.way != "else" and not why:
@@ -158,7 +161,9 @@ class _Asked:
         )
 
     def _guard(self, transition: CompiledTransition) -> tuple[GuardTruth | None, str]:
-        """Return the guard's truth and the part that is false for any event; that text is empty if there is none."""
+        """Return the truth of a transition's guard, and why it is false for any event; the text is empty if it may be
+        true.
+        """
         found = self._known.get(transition)
         if found is None:
             found = self._known[transition] = self._looked_at(transition)

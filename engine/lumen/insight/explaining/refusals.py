@@ -1,4 +1,4 @@
-"""Why a transition was not taken: its state, its event or its guard prevented it; and what would help."""
+"""Why a transition was not taken: its state, its event or its guard prevented it; and a change that would help."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class Reason:
     place: Place | None = None
     """The place in the files of the guard or transition; None if unknown."""
     false: GuardPart | None = None
-    """The first part of the guard that was not true."""
+    """The first part of the guard that was not true; None if the guard is not the reason."""
     change: ProposedChange | None = None
     """The smallest change found after which it would have happened; None if none was found.
 
@@ -131,7 +131,9 @@ class TransitionRefusals:
         return Reason("preempted", f"{after}, {who}", at, place, None, change, note, number)
 
     def _rival(self, number: int, moment: Moment, found: CompiledTransition) -> Transition | None:
-        """Return the transition taken instead: of an inner state, earlier in the same state, or in another region."""
+        """Return the transition that was taken instead: one of the same candidates, else any one; None if none was
+        taken.
+        """
         taken_then = [t for s in self.history.trace(number).microsteps if s.moment is moment for t in s.transitions]
         group = next((group for group in moment.groups if found in group), ())
         own = [t.definition for t in group]
@@ -192,7 +194,7 @@ def _coming(
 
 
 def _dropped(row: HeardRow, false: GuardPart | None, scope: Scope) -> GuardPart | None:
-    """Return the false part of a row of `hears`: its guard, or the search for its phrases; None if all are true."""
+    """Return the false part of a row of `hears`: its guard, or the search for its phrases; None if both are true."""
     if row.fate == "guard":
         return false
     if row.fate in ("taken", "better row"):
@@ -207,7 +209,7 @@ def _fields(data: Any) -> Mapping[str, Any]:
 
 
 def _names(machine: MachineDefinition, descriptor: str) -> Iterator[str]:
-    """Yield the names of events that match a descriptor and can come from outside."""
+    """Yield the names of events that match a descriptor and can come from outside; none if the engine raises them."""
     if descriptor.startswith(("done.", "error.")) or not descriptor:
         return
     prefix = descriptor.removesuffix("*").removesuffix(".")

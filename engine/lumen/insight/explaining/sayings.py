@@ -19,9 +19,9 @@ class TriedSaying(NamedTuple):
     saying: Saying
     """The saying."""
     took: str
-    """The key of the row that matches it; empty if none does."""
+    """The key of the row that matches it; empty if no row does."""
     wrong: str
-    """The difference from the expected result, in words; empty if there is none."""
+    """The difference from the expected result, in words; empty if it is as expected."""
 
 
 def tried(sets: Iterable[SayingSet], machines: Mapping[str, MachineDefinition]) -> Iterator[TriedSaying]:
@@ -37,7 +37,7 @@ def tried(sets: Iterable[SayingSet], machines: Mapping[str, MachineDefinition]) 
 
 
 def path_of(machine: MachineDefinition, name: str) -> str:
-    """Return the path of the state with that id or path. Raises KeyError if there is none."""
+    """Return the path of the state with that id or path. Raises KeyError if no state has it."""
     found = next((state.path for state in machine.states.values() if name == state.alias), name)
     return machine.states[found].path
 
@@ -73,7 +73,9 @@ def _guard(row: ExplainedRow) -> str:
 
 
 def _same(caught: Any, wanted: Any) -> bool:
-    """Return whether a value was caught; one phrase of a list's entry is enough, and one of several answers."""
+    """Return whether a slot caught the expected value; one phrase of a list's entry, or one of several answers,
+    suffices.
+    """
     if isinstance(caught, Mapping) and isinstance(wanted, str):
         return any(folded(wanted) == folded(one) for texts in phrases_in(caught).values() for one in texts)
     return bool(caught == wanted or (isinstance(caught, list | tuple) and wanted in caught))
@@ -86,7 +88,7 @@ def _shown(value: Any) -> str:
 
 
 def caught_text(value: Any) -> str:
-    """Return what a slot caught as text: the first phrase of a list's entry, all of several answers."""
+    """Return a slot's value as text: the first phrase of a list's entry, or all of several answers."""
     if isinstance(value, list | tuple):
         return " | ".join(map(str, value))
     texts = [text for several in phrases_in(value).values() for text in several] if isinstance(value, Mapping) else []

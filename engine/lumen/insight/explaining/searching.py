@@ -72,7 +72,10 @@ def smallest_change(
 def _proposals(
     moment: Moment, node: StateNode, wanted: Transition, others: tuple[Transition, ...], owner: str
 ) -> Iterator[ProposedChange]:
-    """Yield edits after which the guard holds, fewest first; the data of an event comes before the context."""
+    """Yield edits after which the guard holds, the fewest first; the data of the event comes before the context.
+
+    At most MAX_EDITS are evaluated.
+    """
     definition, checks = moment.machine.chart.definition, moment.machine.chart.checks
     scope = moment.scope_of(node)
     guards = [t.guard.source for t in (wanted, *others) if t.guard]
@@ -106,7 +109,7 @@ def literals_in(guard: Expression | None) -> list[Any]:
 
 
 def edited_scope(scope: Scope, edits: Mapping[tuple[str, ...], Any]) -> Scope:
-    """Return the scope with other values at these paths."""
+    """Return the scope with other values at these paths, which begin with `context` or `event`."""
     seen: dict[str, Any] = {"context": scope.context, "event": scope.event}
     for path, value in edits.items():
         seen = with_value(seen, path, value)

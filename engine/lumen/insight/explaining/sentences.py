@@ -32,7 +32,7 @@ class FoundPhrase(NamedTuple):
     words: int
     """The number of words that count."""
     alone: bool | None
-    """Whether it is a whole clause; None if it need not be one."""
+    """Whether it is a whole clause; None if it need not be a whole clause."""
     negated: bool
     """Whether it is negated."""
     asked: bool
@@ -76,7 +76,7 @@ class ExplainedRow(NamedTuple):
         return {k: v for k, v in self.caught.items() if k not in ("text", "phrase") and (k, v) != ("answer", None)}
 
     def because(self, taken: "ExplainedRow | None") -> str:
-        """Return in a few words why this row is taken or not; `taken` is the row that is."""
+        """Return in a few words why this row is taken or not; `taken` is the row that is, else None."""
         hears, found = self.transition.hears, self.found
         if self.taken:
             return "taken"
@@ -99,7 +99,7 @@ class ExplainedSentence(NamedTuple):
 
     @property
     def taken(self) -> ExplainedRow | None:
-        """The row that is taken; None if there is none."""
+        """The row that is taken, else None."""
         return next((row for row in self.rows if row.taken), None)
 
 
@@ -114,7 +114,7 @@ def explained(
 
 
 def first_context(machine: MachineDefinition) -> Mapping[str, Any]:
-    """Return the initial context; for a `for`, with the first entry of its list."""
+    """Return the initial context; a state with `for` has the first entry of its list."""
     context = dict(machine.context)
     for loop in (state.for_each for state in machine.states.values() if state.for_each):
         try:
@@ -160,7 +160,10 @@ class _Sentence:
         return ExplainedSentence(tuple(self.row(one, one is taken) for one in waiting))
 
     def first(self, waiting: list[CompiledTransition]) -> CompiledTransition | None:
-        """Return the transition that is taken: rows of slots alone only if no other is, and `else` only after those."""
+        """Return the transition that is taken, else None.
+
+        Rows with only slots are tried if no other row is taken, and `else` after those.
+        """
         rows = [one for one in waiting if not one.is_otherwise]
         passes = (
             [(one, one.guard) for one in rows],

@@ -1,4 +1,4 @@
-"""A machine compiled so that each action reports its path before it runs, for steps that are taken again."""
+"""A machine compiled so that each action records its path while it runs, for steps that are taken again."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ from lumen.statechart.plans import MicrostepPlanner
 
 
 def traced(definition: MachineDefinition) -> CompiledMachine:
-    """Return the machine compiled for tracing; it is compiled on first use and kept on its definition."""
+    """Return the machine compiled for tracing; the definition keeps it for the next call."""
     machine: CompiledMachine | None = definition.__dict__.get("_traced")
     if machine is None:
         chart = Chart(definition)
@@ -37,7 +37,7 @@ def traced(definition: MachineDefinition) -> CompiledMachine:
         planner = MicrostepPlanner(chart)
         invoked = {name: traced(other) for name, other in definition.invoked.items()}
         machine = CompiledMachine(chart, planner, FastPaths(planner), invoked)
-        object.__setattr__(definition, "_traced", machine)  # frozen, but every holder of the definition shares it
+        object.__setattr__(definition, "_traced", machine)  # frozen, but all holders share it
     return machine
 
 
@@ -95,7 +95,7 @@ def _deed(action: Action, step: PlacedAction) -> CompiledAction:
 
 def _making(where: NodePath, make: CommandFactory) -> CommandFactory:
     def making(context: Any) -> Any:
-        context.acting = where  # until the command has started
+        context.acting = where  # the path stays until the command has started
         return make(context)
 
     return making

@@ -45,7 +45,7 @@ class Moment(NamedTuple):
 
     @property
     def candidates(self) -> Candidates:
-        """The transitions that were considered, for each active atomic state innermost first; late ones apart."""
+        """The transitions that were considered, innermost first for each active atomic state; later ones apart."""
         if self.eventless or self.event is None:
             return self.configuration.eventless
         if timed := self.configuration.timed(self.event.name):
@@ -67,7 +67,9 @@ class TracedMicrostep:
     moment: Moment
     transitions: tuple[Transition, ...]
     exited: tuple[str, ...] = ()
+    """The names of the states left."""
     entered: tuple[str, ...] = ()
+    """The names of the states entered."""
 
 
 class Deed(NamedTuple):
@@ -95,12 +97,13 @@ class Deed(NamedTuple):
 
 @dataclass(slots=True)
 class Trace:
-    """Everything that happened within a step, in order; `step` is the result."""
+    """Everything that happened within a step, in order."""
 
     moments: list[Moment] = field(default_factory=list)
     microsteps: list[TracedMicrostep] = field(default_factory=list)
     deeds: list[Deed] = field(default_factory=list)
     step: Step | None = None
+    """The result; None until the step is complete."""
 
     def entering(self, owner: str, state: str, until: TracedMicrostep | None = None) -> TracedMicrostep | None:
         """Return the last microstep up to `until` that entered the state of that name; None if none did."""
@@ -147,7 +150,7 @@ class TracedContext(ExecutionContext):
         self._decide(eventless=True)
 
     def _settle(self, taken: tuple[Transition, ...] | None = None) -> None:
-        """Record the decision on the event from outside, and the transitions taken; None means that none were."""
+        """Record the open decision about the trigger, and the transitions taken; None means that none were."""
         assert self.trace is not None
         if self.pending:
             self.pending = False
@@ -191,7 +194,7 @@ class TracedContext(ExecutionContext):
         self._note(outer_command(command, self.owner) if self.owner else command)
 
     def start(self, command: BodyCommand, *, awaited: bool = False) -> str:
-        """Start a command; after one that is awaited, no action is running."""
+        """Start a command; after an awaited one, no action counts as running."""
         id = super().start(command, awaited=awaited)
         if awaited:
             self.acting = ()
@@ -221,7 +224,10 @@ class TracedContext(ExecutionContext):
 
 
 def retaken(machine: MachineDefinition, before: Snapshot, event: Event | None) -> Trace:
-    """Return the trace of the step from `before`; without an event, that of the first step, as in `initial`."""
+    """Return the trace of the step from `before` by an event; None means the first step, as in `initial`.
+
+    Raises LumenError if the step can't be taken.
+    """
     program, trace = traced(machine), Trace()
     at = before.at if event is None else max(before.at, event.at)
     context = TracedContext.of(program, before, event, at, Invocations(before.invoked)).begin(trace, "")
@@ -230,7 +236,7 @@ def retaken(machine: MachineDefinition, before: Snapshot, event: Event | None) -
 
 
 def _is_heard(event: Event | None, timers: tuple[Timer, ...]) -> bool:
-    """Return whether an event from outside can select transitions; one that only continues a `do` can't."""
+    """Return whether the trigger can select transitions; the answer to a command or the end of a `wait` can't."""
     if event is None or (not event.sendid and answer_of(event)):
         return False
     ended = [t for t in timers if (t.id, t.event) == (event.sendid, event.name)]

@@ -20,12 +20,14 @@ from lumen.statechart.values import Snapshot, awaited
 
 
 class Way(NamedTuple):
-    """A transition of the behaviour under `owner`, and the action that it leads to; None if a state is sought."""
+    """A transition that leads to the goal of a question."""
 
     owner: str
+    """The ids under which its behaviour runs; empty for the outermost."""
     machine: MachineDefinition
     transition: Transition
     deed: PlacedDeed | None = None
+    """The action that it leads to; None if a state is sought."""
 
 
 def ways(machine: MachineDefinition, what: str) -> list[Way]:
@@ -79,7 +81,7 @@ def _towards(deed: PlacedDeed) -> Iterator[Way]:
 
 
 def unreached(history: StepHistory, deed: PlacedDeed) -> Reason | None:
-    """Return why an action of a `do` was not reached; None if its state is inactive or nothing prevented it."""
+    """Return why an action of a `do` has not run; None if its state is inactive or nothing is known to prevent it."""
     last = history.steps[-1]
     inner = within(last.step.snapshot, deed.owner)
     state = deed.state

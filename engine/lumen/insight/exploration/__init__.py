@@ -18,7 +18,7 @@ from lumen.language.machines import MachineDefinition, Transition
 __all__ = ["Exploration", "ExplorationFinding", "PathStep", "Stimulus", "StimulusKind", "explore"]
 
 MAX_CONFIGURATIONS = 10_000
-"""The default bound of an exploration."""
+"""The default for the greatest number of configurations that are expanded."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Exploration:
     waiting: int
     """The number of configurations that were found but not expanded, because of the bound."""
     never_entered: tuple[str, ...] = ()
-    """The paths of states that the search did not enter: they are unreachable, or beyond its bound or its samples."""
+    """The paths of states that the search did not enter: unreachable, or beyond its bound or its samples of data."""
     never_taken: tuple[Transition, ...] = ()
     """The transitions that the search did not take, for the same reasons."""
     kept: tuple[str, ...] = ()
@@ -57,12 +57,12 @@ def explore(
     timezone: str = "",
     progress: Callable[[int, int], None] = lambda expanded, waiting: None,
 ) -> Exploration:
-    """Explore every configuration that can be reached, up to `bound` of them.
+    """Explore the configurations that can be reached, and expand up to `bound` of them.
 
-    `events` are those that may come from outside, each with the JSON Schema of its data. `home` is the state that must
-    stay reachable; if it is empty, each innermost state of the beginning must. A configuration beyond the bound may
-    lead anywhere, so no finding depends on one. `progress` is called with the numbers of configurations that were
-    expanded and that wait.
+    `events` are those that may come from outside, each with the JSON Schema of its data. `home` is the name of the
+    state that must stay reachable; if it is empty, each innermost state of the beginning must. A configuration beyond
+    the bound may lead anywhere, so no finding depends on one. `progress` is called with the numbers of configurations
+    that were expanded and that wait.
     """
     search = StateSpaceSearch(machine, events, language=language, epoch=epoch, timezone=timezone)
     for expanded in search.expand(bound):

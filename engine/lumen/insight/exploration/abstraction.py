@@ -15,21 +15,21 @@ from lumen.language.numbers import is_number
 from lumen.statechart import Awaiting, Fork, Invoked, Position, Snapshot, Within
 
 MAX_ITEMS_COMPARED = 4
-"""Items of a list or map in the context that are compared; the others are ignored."""
+"""The number of items of a list or map in the context that are compared; the others are ignored."""
 
 ConfigurationKey = tuple[Any, ...]
 """The hashable key of a configuration."""
 
 
 class Abstraction:
-    """The key of a snapshot; snapshots with equal keys are one configuration.
+    """The key of a snapshot; snapshots with equal keys count as one configuration.
 
-    Only context keys that can still matter count. A number counts as itself near the numbers that the behaviour
-    mentions, else as below or above them all. A text counts as empty, as one that is mentioned, or as another. If the
-    behaviour uses `size`, the lengths of texts, lists and maps count as numbers too.
+    Only context keys that can still matter count. A number counts as itself within the range of numbers that the
+    behaviour mentions, else as below or above them all. A text counts as empty, as one that is mentioned, or as
+    another. If the behaviour uses `size`, the lengths of texts, lists and maps count as numbers too.
 
-    Of a `for`, the entry and the number of entries left count; of a history, only what it can still restore. Times,
-    ids, random numbers and (unless a guard reads it) the language do not count.
+    Of a `for`, the entry and the number of entries left count; of a history, only the part that it can still restore.
+    Times, ids, random numbers and (unless a guard reads it) the language do not count.
     """
 
     def __init__(self, machine: MachineDefinition) -> None:
@@ -67,7 +67,7 @@ class Abstraction:
         )
 
     def _goes_on(self, use: ExpressionUse) -> bool:
-        """Return whether an expression is how a `for` goes through its list; its numbers are not the behaviour's."""
+        """Return whether an expression steps a `for` through its list: numbers in such expressions do not count."""
         paths = [path_of(node) for node, _ in walk(use.tree)]
         return any(path and path[0] == "context" and "left" in path and path[1] in self._loops for path in paths)
 
@@ -76,7 +76,7 @@ class Abstraction:
         return (self.value(value["entry"]), len(value["left"])) if key in self._loops else self.value(value)
 
     def _remembered(self, snapshot: Snapshot) -> Iterator[tuple[Any, ...]]:
-        """Yield what histories can still restore."""
+        """Yield the content of each history that can still be restored."""
         for history, paths in sorted(snapshot.history.items()):
             if self._histories[history] & snapshot.configuration:
                 halted = [(path, _shape(at.position)) for path, at in sorted(snapshot.halted.items()) if path in paths]
@@ -87,7 +87,7 @@ class Abstraction:
         return (id, behavior, self._inner[behavior].key(child.snapshot))
 
     def value(self, value: Any) -> Any:
-        """Return the relevant part of a value."""
+        """Return a hashable form of a value's relevant part."""
         if value is None or isinstance(value, bool):
             return value
         if isinstance(value, int | float):

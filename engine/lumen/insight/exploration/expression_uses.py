@@ -24,10 +24,11 @@ from lumen.talk.hearing import ENTRY
 
 
 class ExpressionUse(NamedTuple):
-    """An expression, and the context key that gets its value; the key is empty if the course depends on it."""
+    """An expression, and the context key that gets its value."""
 
     tree: ExpressionNode
     key: str = ""
+    """Empty if the value decides the behaviour's course."""
 
 
 @lru_cache(maxsize=8192)
@@ -45,7 +46,7 @@ def property_trees(properties: Iterable[Property]) -> Iterator[ExpressionNode]:
 
 
 def of_transition(transition: Transition) -> Iterator[ExpressionUse]:
-    """Yield what a transition reads: phrases in a list's entry, its guard, its delay, and its actions' expressions."""
+    """Yield the expressions of a transition: phrases in a list's entry, guard, delay, and those of its actions."""
     if transition.hears:
         yield from (use for name in transition.hears.names if name.startswith(ENTRY) for use in _of(Expression(name)))
     if transition.guard:
@@ -55,7 +56,7 @@ def of_transition(transition: Transition) -> Iterator[ExpressionUse]:
 
 
 def of_state(state: State) -> Iterator[ExpressionUse]:
-    """Yield everything that a state reads, its transitions included."""
+    """Yield the expressions of a state, including those of its transitions."""
     for block in (state.entry, state.do, state.exit):
         yield from of_block(block)
     for transition in state.transitions:
@@ -65,7 +66,7 @@ def of_state(state: State) -> Iterator[ExpressionUse]:
 
 
 def of_block(block: tuple[PlacedAction, ...]) -> Iterator[ExpressionUse]:
-    """Yield what actions read, except for texts and messages, which change nothing in the behaviour."""
+    """Yield the expressions of actions, except in texts and messages, which change nothing in the behaviour."""
     for step in block:
         match step.action:
             case If(guard, then, otherwise):

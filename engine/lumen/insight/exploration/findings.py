@@ -38,7 +38,7 @@ class ExplorationFinding:
     where: NodePath = ()
     """The place of the property in the file; empty for other faults."""
     patience: float = 0.0
-    """The time to wait at the end of the path until the property fails [s]."""
+    """The time [s] to wait at the end of the path until a property with a deadline fails; 0 for other faults."""
 
 
 def findings(machine: MachineDefinition, search: StateSpaceSearch, home: str = "") -> list[ExplorationFinding]:
@@ -99,7 +99,9 @@ def _ahead(node: SearchNode) -> int:
 
 
 def _cheapest(machine: MachineDefinition, nodes: list[SearchNode], region: str = "") -> dict[str, SearchNode]:
-    """Return the nearest node for each innermost state of a region; for all states if the region is inactive."""
+    """Return the nearest node for each innermost state of a region; for every innermost state if the region is
+    inactive.
+    """
     found: dict[str, SearchNode] = {}
     for node in sorted(nodes, key=lambda s: s.cost):
         paths = list(leaves(machine, node.names))
@@ -110,7 +112,7 @@ def _cheapest(machine: MachineDefinition, nodes: list[SearchNode], region: str =
 
 
 def _region(machine: MachineDefinition, name: str) -> str:
-    """Return the region of the nearest parallel state around a state; empty if there is none."""
+    """Return the region of the nearest parallel state around a state; empty outside of parallel states."""
     path = next(s.path for s in machine.states.values() if s.name == name)
     while (parent := machine.states[path].parent) is not None:
         if machine.states[parent].kind is StateKind.PARALLEL:

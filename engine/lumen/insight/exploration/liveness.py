@@ -32,8 +32,8 @@ def assigned_on_entry(block: tuple[PlacedAction, ...]) -> frozenset[str]:
 def assigned_by(transition: Transition, caught: frozenset[str] = frozenset()) -> frozenset[str]:
     """Return the keys that a transition's actions certainly give new values, up to the first action that may fail.
 
-    An expression that the guard has evaluated from the event alone can't fail later: the guard was true. `caught` are
-    the keys that `heard` certainly has there.
+    An expression that the true guard has already evaluated from the event alone can't fail. `caught` are the keys that
+    `heard` certainly has there.
     """
     guard = tree_of(transition.guard.source) if transition.guard else None
     known = {unparse(node) for node in _computed(guard)} if guard else set()
@@ -67,7 +67,7 @@ def _computed(tree: ExpressionNode) -> Iterator[ExpressionNode]:
     if not speaks.context and not speaks.functions & {"In", *clock_functions()}:
         yield tree
     match tree:
-        case Binary() | Unary() | Logic(sign="&&"):  # `||` counts an error as false, so an operand may have failed
+        case Binary() | Unary() | Logic(sign="&&"):  # `||` treats an error as false, so an operand may have failed
             parts = tuple(children(tree))
         case FunctionCall(function=function) if function != "has":
             parts = tuple(children(tree))
@@ -112,7 +112,7 @@ class Liveness:
         return assigned_on_entry(state.entry).difference(*(self._reads[path] for path in self._around(state.path)))
 
     def _solve(self, leaves: list[str]) -> Mapping[str, frozenset[str]]:
-        """Return the keys that matter in each leaf, a fixed point: read in or around it, or after a transition."""
+        """Return the keys that matter in each leaf: those read in or around it, or after a transition from it."""
         live = {leaf: frozenset().union(*(self._reads[path] for path in self._around(leaf))) for leaf in leaves}
         changed = True
         while changed:
@@ -165,7 +165,7 @@ class Liveness:
         return found
 
     def _left_and_entered_again(self, leaf: str) -> Iterator[str]:
-        """Yield the leaves that a history can restore which remembers this leaf or a state around it."""
+        """Yield the leaves that a history may restore if this leaf or a state around it was active."""
         around = list(self._around(leaf))
         histories = [state for state in self._machine.states.values() if state.kind is StateKind.HISTORY]
         homes = {state.parent for state in histories}

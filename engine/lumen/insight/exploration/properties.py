@@ -21,15 +21,17 @@ from lumen.statechart.nesting import innermost_names
 from lumen.statechart.property_monitor import holds
 
 MAX_QUIET_STEPS = 2_000
-"""The most steps that are examined from one configuration on."""
+"""The greatest number of steps that are examined from one configuration on."""
 
 
 class QuietRun(NamedTuple):
-    """The end of a run without input from outside, the commands that are under way, and the steps to there."""
+    """The end of a run without input from outside."""
 
     snapshot: Snapshot
     commands: Mapping[str, BodyCommand]
+    """The commands under way, by their ids."""
     path: tuple[PathStep, ...] = ()
+    """The steps to the end."""
 
 
 def property_findings(machine: MachineDefinition, search: StateSpaceSearch) -> Iterator[ExplorationFinding]:
@@ -84,7 +86,7 @@ def _late(
 
 
 def _quiet(search: StateSpaceSearch, run: QuietRun) -> list[Stimulus]:
-    """Return what happens next if nothing comes from outside: the robot's answers, else the timer that is due first."""
+    """Return what may happen next without input from outside: the robot's answers, else the timer that is due first."""
     every = list(search.stimuli.of(run.snapshot, run.commands))
     answers = [s for s in every if s.kind in (StimulusKind.DONE, StimulusKind.FAILED)]
     timers = sorted((s for s in every if s.kind is StimulusKind.TIME), key=lambda s: s.event.at)

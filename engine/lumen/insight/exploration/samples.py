@@ -23,7 +23,7 @@ from lumen.language.machines import MachineDefinition
 from lumen.language.numbers import is_number
 
 MAX_FIELD_COMBINATIONS = 300
-"""The most combinations of fields that are tried."""
+"""The greatest number of combinations of fields that are tried."""
 
 SAMPLE_TEXT = "Ani"
 """A text for fields whose guards mention none."""
@@ -39,9 +39,9 @@ def samples(
     context: Mapping[str, Any],
     more: Mapping[FieldPath, Iterable[Any]] = MappingProxyType({}),
 ) -> Iterator[Any]:
-    """Yield data of an event with that JSON Schema, with all mentioned values for every field that the trees read.
+    """Yield data of an event that fits a JSON Schema, with all mentioned values of every field that the trees read.
 
-    The first is the plainest. `context` is the behaviour's context; `more` has further values of fields.
+    The plainest data come first. `context` is the behaviour's context; `more` has further values of fields.
     """
     values: dict[FieldPath, dict[Any, None]] = {path: dict.fromkeys(found) for path, found in more.items()}
     for tree in trees:

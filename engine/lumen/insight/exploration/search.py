@@ -58,13 +58,16 @@ class BrokenProperty(NamedTuple):
     """The cheapest step found after which a property does not hold."""
 
     cost: int
+    """The cost of the path that ends with the step."""
     parent: SearchNode | None
+    """The node from which the step was taken; None for the first step."""
     stimulus: Stimulus | None
     snapshot: Snapshot
+    """The snapshot after the step."""
 
 
 class StateSpaceSearch:
-    """The search through the configurations of a machine; `nodes` are those found, in that order.
+    """The search through the configurations of a machine.
 
     `events` are those that may come from outside, each with the JSON Schema of its data.
     """
@@ -83,11 +86,17 @@ class StateSpaceSearch:
         self.abstraction = Abstraction(machine)
         self._planner = compiled(machine).planner
         self.nodes: dict[ConfigurationKey, SearchNode] = {}
+        """The configurations found, in that order."""
         self.steps = 0
+        """The number of steps taken."""
         self.expanded = 0
+        """The number of nodes expanded."""
         self.taken: set[NodePath] = set()
+        """The paths of the transitions taken."""
         self.entered: set[str] = set()
+        """The names of the states entered."""
         self.violations: dict[str, BrokenProperty] = {}
+        """The cheapest violation of each property that must always hold, by the property's name."""
         self._waiting: list[tuple[int, int, SearchNode]] = []
         first = initial(machine, language=language, epoch=epoch, timezone=timezone)
         self.first = self._reach(first, None, None)

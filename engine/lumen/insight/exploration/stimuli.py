@@ -46,10 +46,10 @@ STIMULUS_COSTS: Mapping[StimulusKind, int] = {
 """The cost of a stimulus on the path to the shortest story: a robot that does what it should costs nothing."""
 
 OVERTAKING_COST = 5
-"""The extra cost if a timer ends during a command, or before an earlier timer."""
+"""The extra cost if a timer ends during a command, or before a timer that is due earlier."""
 
 MAX_SAID = 20
-"""The most sentences that are tried for a row of `hears`."""
+"""The greatest number of sentences that are tried for a row of `hears`."""
 
 
 class Stimulus(NamedTuple):
@@ -64,7 +64,7 @@ class Stimulus(NamedTuple):
     command: BodyCommand | None = None
     """The command that is answered; None for other kinds."""
     pending: tuple[BodyCommand, ...] = ()
-    """The commands that the robot is performing meanwhile."""
+    """The commands that the robot is performing at that time."""
     overtaking: bool = False
     """Whether a timer ends before one that is due earlier."""
 
@@ -114,7 +114,7 @@ class StimulusFinder:
             yield Stimulus(StimulusKind.FAILED, event, 0.0, commands.get(id))
 
     def _data(self, name: str, snapshot: Snapshot) -> tuple[Any, ...]:
-        """Return samples of an event's data: one for each case that the transitions for it distinguish."""
+        """Return samples of an event's data: one for each case that the waiting transitions distinguish."""
         if name.startswith(CONTROLLER_EVENT):
             return tuple(_extremes(self._events[name]))
         heard = tuple(_heard(self._compiled, snapshot, name))
@@ -168,7 +168,7 @@ def loop_keys(machine: MachineDefinition) -> frozenset[str]:
     found: frozenset[str] | None = machine.__dict__.get("_loop_keys")
     if found is None:
         found = frozenset(state.for_each.key for state in machine.states.values() if state.for_each)
-        object.__setattr__(machine, "_loop_keys", found)  # frozen, but every holder of the definition shares it
+        object.__setattr__(machine, "_loop_keys", found)  # frozen, but all holders of the definition share it
     return found
 
 
@@ -189,7 +189,7 @@ def _heard(machine: CompiledMachine, snapshot: Snapshot, name: str) -> Iterator[
 
 
 def _said(heard: tuple[HeardTransition, ...]) -> Iterator[str]:
-    """Yield a text for each name of each row of `hears`, and one for no row.
+    """Yield texts for each row of `hears`, one for each of its names and one more.
 
     If there are texts for which the row is the best of its state, only those are used: "no no problems" is not an
     example of `not fine`.
@@ -252,7 +252,7 @@ def _compared_keys(heard: HeardTransition) -> tuple[str, ...]:
 
 
 def _sort(heard: HeardTransition, source: str, name: str, data: Any) -> str:
-    """Return the result of a part of an expression for an event: its value if it is short, `something` or `fails`."""
+    """Return the value of a part of an expression for an event if it is short, else `something`; `fails` for errors."""
     machine, _, context = heard
     scope = Scope(context, {"name": name, "data": data}, phrases=machine.phrases, answers=machine.answers)
     scope = scope._replace(lists=machine.lists, machine=machine)

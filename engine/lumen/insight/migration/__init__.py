@@ -20,12 +20,13 @@ def plan(
     """Return how a behaviour of `old` at that snapshot continues under `new` at `at` [s]; nothing is performed.
 
     Active states keep their identity by path or by `renamed`. A state that still exists is not entered again; its
-    timers continue from when they were set, with a changed delay if there is one, and its actions continue. A state
-    that is gone runs its old exit actions, and the nearest `onReload` around it names the next state (else a
-    Refusal). If a `do` under way is gone or changed, the result is a MigrationDelay; with `now` the `do` is
-    cancelled instead, and a changed one begins anew. If the content is the same, so is the snapshot.
+    timers count from when they were set, even if their delay has changed, and its actions continue. A state that is
+    gone runs its old exit actions, and the nearest `onReload` around it names the next state (else the result is a
+    Refusal). If a `do` under way is gone or changed, the result is a MigrationDelay; with `now` the `do` is cancelled
+    instead, and a changed one begins anew. If the content is the same, so is the snapshot.
 
-    `back` is a rollback: `new` ran before `old`, whose renamings are undone.
+    `back` is a rollback: `new` ran before `old`, whose renamings are undone. Raises SnapshotError if `old` lacks an
+    active state of the snapshot.
     """
     options = MigrationOptions(at, now, back, new.languages)
     return migrated(old.machine, new.machine, snapshot, options, new.behavior)
@@ -40,5 +41,5 @@ def migrate(
     now: bool = False,
     back: bool = False,
 ) -> MigrationVerdict:
-    """Return the verdict for machines without a project."""
+    """Return the same as `plan` for machines without a project, in which every language may be spoken."""
     return migrated(old, new, snapshot, MigrationOptions(at, now, back), new.id)

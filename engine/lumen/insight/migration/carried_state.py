@@ -24,8 +24,8 @@ _LIST = "lists."
 def carried_round(old: MachineDefinition, new: MachineDefinition, loop: ForEach, value: Mapping[str, Any]) -> Any:
     """Return the value of a `for` key under the new machine: the same entries in their new form.
 
-    Removed entries are skipped, but the present entry stays. A list that is not in `lists` can't be compared, so its
-    value stays the same.
+    Removed entries are skipped, except the present one. A list that is not in `lists` can't be compared, so the value
+    stays the same.
     """
     name = loop.each.source.strip().removeprefix(_LIST)
     before, after = list(old.lists.get(name, ())), list(new.lists.get(name, ()))
@@ -37,9 +37,9 @@ def carried_round(old: MachineDefinition, new: MachineDefinition, loop: ForEach,
 
 
 def _now(entry: Any, before: list[Any], after: list[Any]) -> Any:
-    """Return an old entry's form in the new list: itself if it is still there, else the new entry at its index.
+    """Return an old entry's form in the new list: the entry itself if it is still there, else the new one at its index.
 
-    It is None if that place has no new entry.
+    Return None if there is no new entry at that index.
     """
     if entry in after or entry not in before:
         return entry if entry in after else None
@@ -96,7 +96,7 @@ def halted(halted: Mapping[str, Halted], old: Chart, new: Chart) -> dict[str, Ha
 def timers(
     timers: tuple[Timer, ...], kept: Mapping[StateNode, StateNode], context: ExecutionContext
 ) -> tuple[Timer, ...]:
-    """Return the timers that continue, in their order with their deadlines, then new ones of a state's `after` or `at`.
+    """Return the timers that continue with their deadlines, in their order, then new ones of `after` and `at`.
 
     If the delay of an `after` was changed, it counts from when the old timer was set. A computed delay is computed
     again, in the new machine's `context`, if it is new or its text was changed.
@@ -140,7 +140,9 @@ def _delays(node: StateNode) -> dict[str, int | Template]:
 
 
 def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int | Template, bool]]:
-    """Return the events and delays of a new state's `after`; those that the old state had (True) come first."""
+    """Return the events and delays of a new state's `after`, and whether the old state had that delay; those come
+    first.
+    """
     before = list(_delays(node).values())
     found = []
     for event, delay in _delays(image).items():
@@ -151,7 +153,9 @@ def _afters(node: StateNode, image: StateNode) -> list[tuple[str, int | Template
 
 
 def history(old: History, new: Chart, identity: Identity) -> dict[str, tuple[str, ...]]:
-    """Return what each history state that still exists remembers: the states themselves, or the nearest around them."""
+    """Return the content of each history state that still exists: its states, or the nearest surviving ones around
+    them.
+    """
     found = {}
     for path, remembered in old.items():
         name = identity.state(path)
@@ -162,10 +166,12 @@ def history(old: History, new: Chart, identity: Identity) -> dict[str, tuple[str
 
 
 def _recalled(history: StateNode, remembered: tuple[str, ...], new: Chart, identity: Identity) -> list[StateNode]:
-    """Return the states that a history restores now, completed as for an entry; empty if they exclude each other."""
+    """Return the states that a history restores in the new chart, as if they were entered; empty if they exclude each
+    other.
+    """
     home = history.parent
     assert home is not None  # only the document has no parent
-    assert history.state is not None  # likewise
+    assert history.state is not None  # only a state can be a history
     nodes = list(dict.fromkeys(node for path in remembered if (node := _nearest(path, home, new, identity))))
     if not nodes or not all(_together(*pair) for pair in combinations(nodes, 2)):
         return []

@@ -1,4 +1,4 @@
-"""The migration of a snapshot: leaves states that are gone, translates the rest, enters new states."""
+"""The migration of a snapshot: states that are gone are left, the rest is translated, new states are entered."""
 
 from collections.abc import Iterator
 
@@ -46,9 +46,9 @@ def migrated(
 
 
 class _Migration:
-    """The migration of one snapshot: `before` is the context of the old machine, `after` that of the new one.
+    """The migration of one snapshot.
 
-    `invocations` belong to the new one.
+    `before` is the context of the old machine, `after` that of the new one, to which `invocations` belong.
     """
 
     def __init__(self, situation: Situation, placement: Placement) -> None:
@@ -56,6 +56,7 @@ class _Migration:
         self.old, self.new = situation.old, situation.new
         self.invocations = Invocations({})
         self.before = self._left()
+        """The context of the old machine."""
         self.after, self.notes = self._translated()
 
     def plan(self, behavior: str) -> MigrationVerdict:
@@ -73,7 +74,7 @@ class _Migration:
         if not is_legal(self.new.chart, after.configuration.nodes):
             names = ", ".join(f"`{name}`" for name in sorted(after.configuration.names))
             return Refusal(f"{names} can't be active together in the new file", "restart the exhibition", "", behavior)
-        if after.configuration.finished:  # it ended before, or does now: nothing may begin any more
+        if after.configuration.finished:  # it ended before or ends now: nothing may begin any more
             after.timers, after.beginnings = (), ()
         step = complete(after)
         notes = (*self._destinations(step), *self.notes)
@@ -82,7 +83,9 @@ class _Migration:
         )
 
     def _left(self) -> ExecutionContext:
-        """Leave states that do not stay and end what can't continue, in the old machine; return its context."""
+        """In the old machine, leave the states that do not stay and end what can't continue; return the machine's
+        context.
+        """
         situation, snapshot = self.situation, self.situation.snapshot
         invocations = Invocations(snapshot.invoked)
         context = ExecutionContext.of(self.old, snapshot, None, snapshot.at, invocations)
@@ -128,7 +131,7 @@ class _Migration:
         return after, notes
 
     def _beginning(self, node: StateNode, image: StateNode) -> Beginning:
-        """Return the invokes and the `do` that a state that stays did not have before."""
+        """Return the invokes and the `do` that begin in a state that stays, because they are new or have changed."""
         had = [(invoke.id, invoke.behavior) for invoke in node.invokes]
         invokes = tuple(invoke for invoke in image.invokes if (invoke.id, invoke.behavior) not in had)
         return Beginning(
@@ -156,7 +159,7 @@ class _Migration:
         return verdict
 
     def _destinations(self, step: Step) -> Iterator[str]:
-        """Yield a sentence for each state that is gone, with the state that the behaviour goes to."""
+        """Yield a sentence for each removed state that was active, with the state that the behaviour enters instead."""
         gone = [node for node in self.placement.left if self.situation.identity.state(node.path) is None]
         inner = [node for node in gone if not any(child in gone for child in node.children)]
         names = step.snapshot.configuration

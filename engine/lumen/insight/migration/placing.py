@@ -15,7 +15,7 @@ CONTEXT_PREFIX = "context."
 class Identity:
     """The mapping of states and context keys from an old machine to a new one.
 
-    A renaming counts once: one that the old machine's file already contains was followed before. A renamed state
+    A renaming that the old machine's file already contains was applied before, and does not count. A renamed state
     includes the states below it. With `back`, the new machine ran before, and the old machine's renamings are undone.
     """
 
@@ -54,7 +54,7 @@ class Identity:
 
 
 def _path(machine: MachineDefinition, name: str) -> str:
-    """Return the path of the state of that id; the name itself if there is none."""
+    """Return the path of the state of that id; for any other name, the name itself."""
     if name in machine.states:
         return name
     return next((path for path, state in machine.states.items() if path and state.alias == name), name)
@@ -68,30 +68,32 @@ def _prefixes(path: str) -> Iterator[str]:
 
 
 class Placement(NamedTuple):
-    """The result: `kept` maps old states that stay active to new ones; `left` are old states, `entered` new ones."""
+    """The states that stay, are left and are entered."""
 
     kept: Mapping[StateNode, StateNode]
+    """The new state for each old state that stays active."""
     left: frozenset[StateNode]
+    """Old states."""
     entered: frozenset[StateNode]
+    """New states."""
 
 
 class Unplaced(NamedTuple):
-    """A state in which nothing can be active: its child `gone` was removed, and no `onReload` names another state.
-
-    If several children are active that can't be active together, they are `rivals`. `state` is new, `gone` the
-    innermost old state.
-    """
+    """A state in which nothing can be active: its child was removed, and no `onReload` names another state."""
 
     state: StateNode
+    """The new state."""
     gone: StateNode
+    """The innermost old state that has no place."""
     rivals: tuple[StateNode, ...] = ()
+    """Active children that can no longer be active together; empty if there is one at most."""
 
 
 def place(new: Chart, active: frozenset[StateNode], identity: Identity, history: History) -> Placement | Unplaced:
-    """Return the place of an old chart's active states in the new one; `history` is the new one's.
+    """Return the place of an old chart's active states in the new chart; `history` is that of the new chart.
 
     States that stay are not entered again. If a compound state has lost its active child, the nearest `onReload` around
-    it decides; one that had no children before enters its initial state.
+    it decides; a state that had no children before enters its initial state.
     """
     placing = _Placing(new, active, identity)
     while (empty := placing.unplaced()) is not None:
@@ -119,7 +121,9 @@ class _Placing:
         return None if found and found.kind is StateKind.HISTORY else found
 
     def _keep(self, leaf: StateNode) -> None:
-        """Keep a leaf and its old ancestors that still surround it; if it is gone, those around its old position."""
+        """Keep a leaf and those of its ancestors that still surround it; if the leaf is gone, those around its nearest
+        ancestor that stays.
+        """
         chain = [node for node in (leaf, *leaf.ancestors) if node in self.images]
         anchor = next(image for node in chain if (image := self.images[node]) is not None)
         around = {anchor, *anchor.ancestors}
@@ -138,7 +142,9 @@ class _Placing:
         return found.union(*(node.ancestors for node in found))
 
     def unplaced(self) -> StateNode | None:
-        """Return the outermost compound state that has not exactly one such child and can't enter its initial state."""
+        """Return the outermost compound state that has no single active child and can't enter its initial state; else
+        None.
+        """
         standing = self.standing()
         begins = {self.kept[leaf] for leaf in _leaves(self.active) if leaf in self.kept} | set(self.goals)
         for node in sorted(standing, key=lambda node: node.index):
@@ -148,7 +154,9 @@ class _Placing:
         return None
 
     def lead(self, empty: StateNode, history: History) -> bool:
-        """Follow the nearest `onReload` and drop the states in its domain; return False if there is none."""
+        """Follow the nearest `onReload` around a state, and drop the states in its domain; return False if there is
+        none.
+        """
         source = next((n for n in (empty, *empty.ancestors) if n.state and n.state.on_reload), None)
         if source is None or source.state is None:
             return False
@@ -160,7 +168,7 @@ class _Placing:
         return True
 
     def finish(self, history: History) -> Placement:
-        """Return the placement, with the states around, beside and within those that stay."""
+        """Return the placement, completed by the states around, beside and within those that stay."""
         staying = frozenset(self.kept.values())
         topology = StateSets(self.new, history, staying)
         entered = EntrySet()

@@ -16,8 +16,8 @@ from lumen.statechart.values import Awaiting, Fork, Position, Snapshot, Within
 def can_continue(before: tuple[PlacedAction, ...], after: tuple[PlacedAction, ...], position: Within) -> bool:
     """Return whether a `do` at that position can continue in the new actions.
 
-    The actions already done must have the same verbs. The action under way must be the same, except for its texts and
-    the length of a `wait`. Later actions may differ.
+    The actions already done must have the same verbs. The action under way must be the same, except for texts and the
+    length of a `wait`. Later actions may differ.
     """
     place = position.place
     if place >= len(after) or _shape(before[:place]) != _shape(after[:place]):
@@ -58,7 +58,7 @@ class MigrationOptions(NamedTuple):
     at: float
     """The time of the change [s]."""
     now: bool = False
-    """Whether to cancel what is under way rather than wait for it."""
+    """Whether to cancel what is under way instead of waiting for it."""
     back: bool = False
     """Whether the new bundle ran before the old one."""
     languages: Sequence[str] = ()
@@ -68,7 +68,10 @@ class MigrationOptions(NamedTuple):
 
 
 class Situation:
-    """A snapshot between two machines; `placement` has the states that stay, or the one that has no place."""
+    """A snapshot between two machines.
+
+    Raises KeyError if the old machine lacks a state of the snapshot.
+    """
 
     def __init__(
         self, old: MachineDefinition, new: MachineDefinition, snapshot: Snapshot, options: MigrationOptions
@@ -79,6 +82,7 @@ class Situation:
         self.identity = Identity(old, new, back=options.back)
         history = carried_state.history(snapshot.history, self.new.chart, self.identity)
         self.placement = place(self.new.chart, self.start.nodes, self.identity, history)
+        """The states that stay, or the one that has no place."""
 
     def refusal(self, unplaced: Unplaced, behavior: str) -> Refusal:
         """Return the refusal for a state without a place, with a hint on how to fix the file."""
@@ -113,12 +117,16 @@ class Situation:
         )
 
     def busy(self) -> MigrationDelay | None:
-        """Return a delay for the first state that is gone but still busy: it may lead to another state by itself."""
+        """Return a delay for the first removed state whose `do` is under way, because the `do` may lead to another
+        state.
+        """
         gone = [node for node in self.start.ordered if node.path and self.identity.state(node.path) is None]
         return next((_gone(node) for node in gone if node.path in self.snapshot.doing), None)
 
     def delays(self, placement: Placement) -> Iterator[MigrationDelay]:
-        """Yield what is under way and can't continue, in the order of the old file."""
+        """Yield a delay for each `do` and invoked behaviour that is under way and can't continue, in the order of the
+        old file.
+        """
         doing = self.snapshot.doing
         changed = self.changed(placement)
         for node in self.start.ordered:
@@ -142,7 +150,7 @@ class Situation:
         ]
 
     def ending(self, placement: Placement) -> list[str]:
-        """Return the ids of invoked behaviours that end: their state is left, or invokes another behaviour now."""
+        """Return the ids of invoked behaviours that end: their state is left, or now invokes another behaviour."""
         kept = {node.path: image.path for node, image in placement.kept.items()}
         old, new = self.old.chart.definition, self.new.chart.definition
         return [

@@ -36,14 +36,16 @@ class MigrationPlan(NamedTuple):
 
 
 class MigrationDelay(NamedTuple):
-    """The behaviour can't change yet: the `do` of a state, or an invoked behaviour, is under way and has changed.
+    """The behaviour can't change yet: the `do` of a state, or an invoked behaviour, is under way and was changed or
+    removed.
 
-    `what` is the name of the state or behaviour, which may also have been removed. Try again after the next step, or
-    with `now`, which cancels what is under way.
+    Try again after the next step, or with `now`, which cancels what is under way.
     """
 
     reason: str
+    """The reason in words."""
     what: str
+    """The name of the state, or the id of the invoked behaviour."""
 
 
 class Refusal(NamedTuple):
@@ -54,7 +56,7 @@ class Refusal(NamedTuple):
     hint: str = ""
     """A hint on how to fix it."""
     state: str = ""
-    """The name of the active state that is gone."""
+    """The name of the active state that is gone; empty if it is another reason."""
     behavior: str = ""
     """The name of the new behaviour's file."""
     where: NodePath = ()

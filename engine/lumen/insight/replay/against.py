@@ -31,7 +31,7 @@ Duration = Callable[[Project, BodyCommand], float]
 GRACE = 120.0
 """The additional time, beyond the recorded one, that a visit may take to return home [s]."""
 MORE_STEPS, MOST_TIMES = 20_000, 10
-"""The most additional steps of a visit, and per recorded input: other files may never come to rest."""
+"""The greatest number of additional steps of a visit, and of steps per recorded input: other files may never rest."""
 
 
 class VisitVerdict(NamedTuple):
@@ -64,9 +64,9 @@ def played_against(
     beside: Project | None = None,
     hurry: Callable[[], None] = lambda: None,
 ) -> VisitVerdict | None:
-    """Return the result of a visit with other files; None if the journal has too little of it.
+    """Return the result of a visit with other files; None if the journal has too little of the visit.
 
-    It is compared with the record, or with what the files `beside` would do. `takes` gives durations that were
+    The result is compared with the record, or with the result of the files `beside`. `takes` gives durations that were
     not recorded. `hurry` is called at each step and may raise to end the play.
     """
     home = visit.home
@@ -85,7 +85,7 @@ def played_against(
 
 
 def _verdict(play: "OtherPlay", then: list[tuple[float, Any]], trouble: str, home: str) -> VisitVerdict:
-    """Compare two plays; `home` is where the visit ended (empty for anywhere), `trouble` the error that ended it."""
+    """Compare a play with another course; `home` is where that ended (empty for anywhere), `trouble` its error."""
     if play.trouble != trouble:
         return VisitVerdict(ENDS, play.steps, play.at, trouble, play.trouble or "no such error")
     was, now = list(noticed(then)), list(noticed(play.done))
@@ -102,7 +102,7 @@ def _verdict(play: "OtherPlay", then: list[tuple[float, Any]], trouble: str, hom
 
 
 def noticed(commands: list[tuple[float, Any]]) -> Iterator[tuple[float, str, int]]:
-    """Yield the time, the words and the index of each command that others notice: without ids and without logs."""
+    """Yield the time, the words and the index of each command that people or other modules notice, without its id."""
     for number, (at, command) in enumerate(commands):
         begun = started(command)
         if begun:
@@ -120,15 +120,13 @@ def _words(said: Mapping[str, Any]) -> str:
 
 
 class OtherPlay:
-    """The play of the other files with a simulated robot; `done` has its commands with their times.
-
-    `trouble` is the error that ended it early, or empty.
-    """
+    """The play of the other files with a simulated robot."""
 
     def __init__(self, project: Project, takes: Duration) -> None:
         self._project, self._takes = project, takes
         self.home, self.steps, self.trouble = waiting_state(project.machine), 0, ""
         self.done: list[tuple[float, Any]] = []
+        """The commands with their times [s]."""
         self._asked: list[tuple[Snapshot, Event | None, Command]] = []
         self._counterparts: dict[str, str] = {}
         self._begun: set[str] = set()
@@ -142,7 +140,7 @@ class OtherPlay:
 
     @property
     def snapshot(self) -> Snapshot:
-        """The present snapshot; only after the change to the other files."""
+        """The present snapshot; it exists only after the change to the other files."""
         assert self._stands is not None
         return self._stands
 
@@ -153,11 +151,13 @@ class OtherPlay:
 
     @property
     def is_home(self) -> bool:
-        """Whether the behaviour is at home."""
+        """Whether the behaviour is in its home state."""
         return self._stands is not None and self.home in self._stands.configuration
 
     def attend(self, old: Project, home: JournalJump, visit: RecordedVisit, hurry: Callable[[], None]) -> None:
-        """Change to these files at the moment when the behaviour was at home, and play the visit."""
+        """Change to these files at the moment when the behaviour was at home, and play the visit; set `trouble` on an
+        error.
+        """
         self._began, self._hurry = home.at, hurry
         self._most = MORE_STEPS + MOST_TIMES * len(visit.inputs)
         try:
@@ -200,7 +200,7 @@ class OtherPlay:
         self._pair()
 
     def come_home(self, since: float) -> None:
-        """Continue until the behaviour is at home, if it is not yet; stop `GRACE` after `since` [s]."""
+        """Continue until the behaviour is at home; stop `GRACE` after `since` [s]."""
         while not self.is_home:
             timer = due(self.snapshot)
             waiting = [self._answers[0][0]] if self._answers else []
@@ -210,7 +210,9 @@ class OtherPlay:
             self._pass(following)
 
     def _pass(self, until: float, *, one: bool = False) -> None:
-        """Process timers and answers up to a time, in order; of the timers of that very moment only `one`."""
+        """Process timers and answers up to a time [s], in order; with `one`, only one timer of those
+        due at that time.
+        """
         while self._answers and self._answers[0][0] <= until:
             at, id, data = heapq.heappop(self._answers)
             self._elapse(at)

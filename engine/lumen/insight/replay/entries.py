@@ -9,7 +9,7 @@ from lumen.language.events import Event
 from lumen.language.numbers import is_number
 
 How = Literal["heard", "timer", "goto"]
-"""How an event came: from outside, as the end of a timer, or as an operator's wish to enter a state."""
+"""The origin of an event: from outside, the end of a timer, or an operator's command to enter a state."""
 
 JumpKind = Literal[
     "start", "reload", "rollback", "resume", "forget", "dropped timer", "dropped event", "gap", "keyframe"
@@ -18,8 +18,8 @@ JumpKind = Literal[
 
 It began, changed to other files (`reload`) or back to earlier ones (`rollback`), continued after a crash (`resume`) or
 without a visitor's name (`forget`), lost a timer or an event that it could not process, or entries were lost (`gap`). A
-`keyframe` changes nothing; its `said` is a person's `mark`, or the `note` of what that person did to the robot, and
-`by` whom.
+`keyframe` changes nothing: its `said` has a person's `mark`, or a `note` of an action on the robot with the person
+(`by`).
 """
 
 HOWS: tuple[How, ...] = get_args(How)
@@ -50,7 +50,7 @@ class JournalInput(NamedTuple):
     digest: str = ""
     """The digest of the step; empty if the entry is redacted."""
     redacted: bool = False
-    """Whether the name of a visitor whose data was deleted was removed."""
+    """Whether a visitor's name was removed because that visitor's data was deleted."""
 
 
 class JournalJump(NamedTuple):
@@ -71,9 +71,9 @@ class JournalJump(NamedTuple):
     commands: tuple[Any, ...] = ()
     """The commands that were performed for it, as JSON data."""
     said: Mapping[str, Any] = {}
-    """More details: the arguments of a start, who asked for it, how many entries were lost."""
+    """More details: the arguments of a start, the person who requested it, the number of entries that were lost."""
     redacted: bool = False
-    """Whether the name of a visitor whose data was deleted was removed."""
+    """Whether a visitor's name was removed because that visitor's data was deleted."""
 
 
 RecordedEntry: TypeAlias = JournalInput | JournalJump

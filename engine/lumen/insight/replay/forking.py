@@ -1,4 +1,4 @@
-"""A fork of a journal at a moment, with another event or other files, beside the recorded course.
+"""A fork of a journal at a moment, with another event or other files, compared with the recorded course.
 
 All other recorded events happen again at their times, as for a visit with other files.
 """
@@ -19,15 +19,18 @@ from lumen.statechart import Snapshot, Step
 ProjectSource = Callable[[str, str], Project | None]
 """A function that returns the bundle with a hash and a behaviour; None if it was not kept."""
 MAX_STEPS = 200
-"""The most recorded inputs that are followed, and the most steps that are returned."""
+"""The greatest number of recorded inputs that are followed, and of steps that are returned."""
 
 
 class ForkedRun(NamedTuple):
-    """The entries from the fork on as they were, and as they would have been; `trouble` ended the latter early."""
+    """A fork and the recorded course, both as entries from the fork on."""
 
     was: tuple[dict[str, Any], ...]
+    """The entries as they were recorded."""
     would: tuple[dict[str, Any], ...]
+    """The entries of the fork."""
     trouble: str = ""
+    """The error that ended the fork early; empty if there was none."""
 
 
 def fork(
@@ -40,11 +43,11 @@ def fork(
     saved: Project | None = None,
     hurry: Callable[[], None] = lambda: None,
 ) -> ForkedRun:
-    """Return the fork at the entry of that position, up to the next entry that is not a step.
+    """Return the fork at the first event from that position on, up to the next entry that is not a step.
 
-    `event` replaces the event there; `saved` are other files. `takes` gives durations of commands that were not
-    recorded; `hurry` is called at each step and may raise. Raises LumenError if the behaviour's state at that position
-    is unknown.
+    `event` replaces that event; `saved` are other files. `takes` gives durations of commands that were not recorded;
+    `hurry` is called at each step and may raise. Raises LumenError if the behaviour's state at that position is
+    unknown.
     """
     number = next((n for n, entry in enumerate(entries) if entry.position >= position), len(entries))
     then = _inputs(entries[number:])
@@ -66,7 +69,7 @@ def fork(
 
 
 def _inputs(entries: Sequence[RecordedEntry]) -> list[JournalInput]:
-    """Return the successive inputs, those of `goto` included, without keyframes."""
+    """Return the successive inputs up to the next jump, without keyframes and redacted entries; at most MAX_STEPS."""
     found: list[JournalInput] = []
     for entry in entries:
         if len(found) >= MAX_STEPS or (isinstance(entry, JournalJump) and found and entry.kind != "keyframe"):
@@ -104,7 +107,7 @@ class _Forked(OtherPlay):
         self.told: list[dict[str, Any]] = []
 
     def go_over(self, old: Project, stands: Snapshot, at: float) -> str:
-        """Change to the files at that snapshot; return why it is impossible, or an empty text."""
+        """Change to the files at that snapshot; return why that is impossible, or an empty text."""
         if self._project is old:
             self._stands = stands
             return ""

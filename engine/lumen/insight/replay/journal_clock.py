@@ -15,7 +15,7 @@ class JournalClock:
         self.epoch, self._timezone = 0.0, ""
 
     def of(self, entry: RecordedEntry) -> float:
-        """Return when the next entry was made [s since 1970, in UTC]; call it for each entry in order."""
+        """Return the time of the next entry [s since 1970, in UTC]; call this for each entry in order."""
         if isinstance(entry, JournalJump):
             self._set(entry.snapshot)
             return self.epoch + entry.at
@@ -29,7 +29,7 @@ class JournalClock:
         return datetime.fromtimestamp(moment, zone(self._timezone))
 
     def next(self, moment: float, wanted: time) -> float:
-        """Return the first time after a moment at which the local clock shows `wanted` [s since 1970, in UTC]."""
+        """Return the first time from a moment on at which the local clock shows `wanted` [s since 1970, in UTC]."""
         here = self.local(moment)
         then = datetime.combine(here.date(), wanted, here.tzinfo)
         return (then if then >= here else then + timedelta(days=1)).timestamp()

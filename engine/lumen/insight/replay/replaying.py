@@ -72,7 +72,7 @@ class ReplayedStep(NamedTuple):
 def replay(entries: Iterable[RecordedEntry], machines: MachineSource) -> Iterator[ReplayedStep]:
     """Yield each entry with its step, taken again with the bundle that ran then.
 
-    After a difference, more follow until the next keyframe with a snapshot.
+    A difference causes further ones until the next keyframe with a snapshot.
     """
     replayer = Replayer(machines)
     for entry in entries:
@@ -89,7 +89,7 @@ class Replayer:
         self._unknown = "the journal does not contain the time before it"
 
     def take(self, entry: RecordedEntry) -> ReplayedStep:
-        """Replay the next entry and return its result. No content of a journal makes it raise."""
+        """Replay the next entry and return the result. Faulty content of the journal does not raise."""
         return self._step(entry) if isinstance(entry, JournalInput) else self._jump(entry)
 
     def _step(self, entry: JournalInput) -> ReplayedStep:
@@ -168,7 +168,7 @@ def _taken(machine: MachineDefinition, before: Snapshot, entry: JournalInput) ->
 
 
 def _standing(was: Any, now: Any) -> tuple[StepOutcome, StepOutcome]:
-    """Return the differences between two frozen snapshots, as two outcomes; they are equal if the snapshots are."""
+    """Return the differences between two frozen snapshots as two outcomes, which are equal if the snapshots are."""
     was, now = json.loads(json.dumps(was)), json.loads(json.dumps(now))
     keys = [key for key in {**was, **now} if was.get(key) != now.get(key)]
     told = [", ".join(f"{key} {json.dumps(one.get(key), ensure_ascii=False)}" for key in keys) for one in (was, now)]

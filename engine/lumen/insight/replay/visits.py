@@ -14,9 +14,9 @@ from lumen.language.machines import MachineDefinition, StateKind
 from lumen.statechart import initial
 
 DROPPED = "dropped timer"
-"""A jump after which timers may be overdue, which then end in an order that no files would repeat."""
+"""A jump after which timers may be overdue; their order of ending would not repeat with any files."""
 BROKEN = ("start", "gap", DROPPED)
-"""Jumps after which entries are missing, another run begins, or events happen that no files would repeat."""
+"""Jumps after which entries are missing, another run begins, or events come in an order that would not repeat."""
 
 
 class RecordedVisit(NamedTuple):
@@ -33,14 +33,14 @@ class RecordedVisit(NamedTuple):
     ended: float
     """When it ended [s since 1970, in UTC]."""
     home: JournalJump | None = None
-    """The jump before it, with the behaviour at home; None if the journal lacks it.
+    """The jump before the visit, with the behaviour at home; None if the journal lacks it.
 
-    It may also be where a run began elsewhere, as in a museum that is already open.
+    It may also be the start of a run that began elsewhere, as in a museum that is already open.
     """
     inputs: tuple[JournalInput, ...] = ()
     """The events from `home` on."""
     whole: bool = False
-    """Whether the behaviour came back home with no entry missing."""
+    """Whether the behaviour came back home and no entry is missing."""
     redacted: bool = False
     """Whether a visitor's data was deleted from it."""
 
@@ -69,9 +69,9 @@ class VisitWatch:
         self.at = 0.0
 
     def take(self, entry: RecordedEntry, machine: MachineDefinition | None) -> bool:
-        """Return whether the entry is part of a visit; `machine` is the one that runs.
+        """Return whether the entry is part of a visit; `machine` is the one that runs, None if unknown.
 
-        Afterwards `away` is whether the visit continues, and `at` is when the entry was made [s since 1970, in UTC].
+        Afterwards `away` is whether the visit continues, and `at` is the time of the entry [s since 1970, in UTC].
         """
         before, self.at = self.away, self._clock.of(entry)
         match entry:
