@@ -25,7 +25,7 @@ class ActionContext(Protocol):
     """The last result of `scope`; None after anything in it has changed."""
 
     def scope(self) -> Scope:
-        """Return the values that an expression can read now; `cached_scope` keeps them until one of them changes."""
+        """Return the values that an expression can read now, cached in `cached_scope` until one of them changes."""
 
     def assign(self, key: str, value: Any) -> None:
         """Set a context key; raise ActionError if the value does not have the key's type."""

@@ -24,15 +24,17 @@ from lumen.statechart.question_position import QuestionPosition, fork
 from lumen.statechart.values import Awaiting, Fork, Position, Timer, Within, awaited
 
 SPEECH_RATE = 17.0
-"""Characters that the robot speaks per second, at most."""
+"""The greatest speech rate of the robot [characters/s]."""
 DOUBT = 1.0
-"""Time subtracted before the spoken part is estimated [s]: repeating a sentence is better than losing one."""
+"""Time [s] subtracted before the spoken part is estimated: repeating a sentence is better than losing one."""
 
 _SENTENCE = re.compile(r"(?<=[.!?…])\s+")
 
 
 def rest_of(command: BodyCommand, elapsed: float) -> BodyCommand:
-    """Return the command to start again `elapsed` [s] after its start; a `say` restarts at the current sentence."""
+    """Return the command to start again, `elapsed` [s] after it first started; a `say` restarts at the current
+    sentence.
+    """
     return replace(command, text=_remaining(command.text, elapsed)) if isinstance(command, Say) else command
 
 
@@ -91,14 +93,20 @@ class Advance:
     def resume_block(
         self, actions: tuple[CompiledAction, ...], position: Within, id: str, said: Sentence | None = None
     ) -> Within | None:
-        """Continue from `position` after `id` has ended, or after a sentence of the answer to question `id` came."""
+        """Continue from `position` after `id` has ended, or with the sentence `said` of the answer to question `id`.
+
+        Return the new position; None at the end.
+        """
         inner = self.resume(actions[position.place], position.inner, id, said)
         if inner is not None:
             return position._replace(inner=inner)
         return self.block(actions, position.block, position.place + 1)
 
     def again(self, node: StateNode, position: Within, at: float) -> Within | None:
-        """Resume from a `position` that was left or lost at `at` [s], as the state's `resume` specifies."""
+        """Resume a `do` from a `position` that was left or lost at `at` [s], as the state's `resume` specifies.
+
+        Return the new position; None if the `do` ends.
+        """
         word = resumption_of(node)
         return None if word == "never" else self._again_block(node.do, position, at, after=word == "after")
 
@@ -149,7 +157,10 @@ class Advance:
     def resume(
         self, action: CompiledAction, position: Position, id: str, said: Sentence | None = None
     ) -> Position | None:
-        """Continue the action that waits under `id`; return its new position, None if it has ended."""
+        """Continue the action that waits under `id`, with the sentence `said` if it is a question's.
+
+        Return the new position; None if the action has ended.
+        """
         match action, position:
             case ConditionalAction(), Within(block, _, _):
                 return self.resume_block(action.block(block), position, id, said)
@@ -206,7 +217,7 @@ class Advance:
             return self.awaiting(self.context.start(action.say(self.context, said), awaited=True))
 
     def awaiting(self, id: str) -> Awaiting:
-        """Note that `id` was started, and return the position that awaits it."""
+        """Record that `id` was started, and return the position that awaits it."""
         self.started.append(id)
         return Awaiting(id, self.context.at)
 

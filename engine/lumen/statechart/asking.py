@@ -11,13 +11,13 @@ from lumen.language.people import PersonName
 from lumen.statechart.action_context import ActionContext, ActionError
 
 MAX_QUESTION = 1_000
-"""Maximum length of a question [characters]; the rest is cut off."""
+"""The greatest length of a question [characters]; the rest is cut off."""
 MAX_SENTENCE = 500
-"""Maximum length of a sentence of an answer [characters]; a longer one is ignored."""
+"""The greatest length of a sentence of an answer [characters]; a longer one is ignored."""
 MAX_SENTENCES = 5
-"""Maximum number of sentences of one answer that are said, each when it arrives."""
+"""The greatest number of sentences of one answer that are said, each when it arrives."""
 MAX_NAME = 60
-"""Maximum length of a text that may be a name [characters]."""
+"""The greatest length of a text that may be a name [characters]."""
 MARKUP = str.maketrans(dict.fromkeys("\\^<>{}[]|`*_#~\n\r\t", " "))
 """Signs that a voice may interpret as commands, such as NAOqi's `^start(…)` and `\\rspd=…\\`; each becomes a blank."""
 
@@ -95,7 +95,7 @@ def _names(context: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _written_as_names(value: Any) -> Iterator[str]:
-    """Yield the texts of at most four words that all begin with a capital letter, however deep they are nested."""
+    """Yield the texts of at most four words, each with an initial capital letter, in a value or nested in it."""
     match value:
         case str():
             words = value.split()

@@ -112,10 +112,10 @@ def compile_value(value: ComputedValue) -> Callable[[Scope], Any]:
 
 
 def compile_assignment(way: str, value: ComputedValue) -> tuple[str, Callable[[Scope], Any]]:
-    """Return the context key that one key of `assign` changes, and a function that computes its new value.
+    """Return the context key that an entry of `assign` changes, and a function that computes its new value.
 
-    For a path into a map, such as `a.b`, that value is a copy of the map with the value at the end of the path; it
-    raises ExpressionError if something on the path is not a map.
+    For a path into a map, such as `a.b`, the value is a copy of the map with the value at the end of the path; the
+    function raises ExpressionError if something on the path is not a map.
     """
     compute = compile_value(value)
     key, *within = way.split(".")
@@ -184,7 +184,10 @@ def _do(command: Do) -> CommandFactory:
 
 
 def alternatives(texts: Mapping[str, tuple[Template, ...]]) -> Callable[[str], Alternatives]:
-    """Return a function from a language to its texts and that language; it falls back to the first language."""
+    """Return a function from a wanted language to the language used and its texts.
+
+    Without texts in the wanted language it falls back to those for every language, else to the first language.
+    """
     spoken = {
         language: tuple(compile_template(template.text) for template in templates)
         for language, templates in texts.items()

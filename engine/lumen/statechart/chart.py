@@ -19,28 +19,28 @@ CompiledGuard = Callable[[Scope], bool]
 
 
 class CompiledInvoke(NamedTuple):
-    """A behaviour that a state invokes; `input` computes the initial values of its context."""
+    """A behaviour that a state invokes."""
 
     id: str
+    """The id of the invoke."""
     behavior: str
+    """The name of the behaviour."""
     input: Callable[[Scope], Mapping[str, Any]]
+    """Computes the initial values of the behaviour's context."""
     where: NodePath
 
 
 class ComputedAfter(NamedTuple):
-    """An `after` whose delay is computed when its state is entered; `length` returns the delay [s]."""
+    """An `after` whose delay is computed when its state is entered."""
 
     delay: Template
     length: Callable[[ActionContext], float]
+    """Computes the delay [s]; raises ActionError if it is not a duration."""
     where: NodePath
 
 
 class StateNode:
-    """A compiled state with links to its neighbours; compared by identity.
-
-    `index` is its position in document order. `afters` are the events of its `after` transitions, each with its
-    constant delay [ns]; `computed` has those with computed delays, and `schedules` those of `at`.
-    """
+    """A compiled state with links to its neighbours; compared by identity."""
 
     __slots__ = (
         "afters", "ancestors", "children", "computed", "do", "entry", "exit", "histories", "index", "initial",
@@ -50,18 +50,24 @@ class StateNode:
     def __init__(self, state: State | None, index: int, parent: "StateNode | None") -> None:
         self.state = state
         self.index = index
+        """Its position in document order; -1 for the document."""
         self.parent = parent
         self.path = state.path if state else ""
         self.name = state.name if state else ""
         self.kind = state.kind if state else StateKind.COMPOUND
         self.ancestors: tuple[StateNode, ...] = (parent, *parent.ancestors) if parent else ()
+        """Innermost first, with the document at the end."""
         self.children: list[StateNode] = []
         self.histories: list[StateNode] = []
+        """The history states among its children, which `children` does not have."""
         self.initial: tuple[StateNode, ...] = ()
         self.transitions: tuple[CompiledTransition, ...] = ()
         self.afters: tuple[tuple[str, int], ...] = ()
+        """The events of its `after` transitions with constant delays, each with its delay [ns]."""
         self.computed: Mapping[str, ComputedAfter] = {}
+        """The `after` transitions with computed delays, by event."""
         self.schedules: Mapping[str, Schedule] = {}
+        """The times of its `at` transitions, by event."""
         self.entry: CompiledBlock = compile_block(state.entry) if state else ()
         self.exit: CompiledBlock = compile_block(state.exit) if state else ()
         self.do: tuple[CompiledAction, ...] = compile_do(state.do) if state else ()
@@ -71,30 +77,30 @@ class StateNode:
 
     @property
     def busy(self) -> bool:
-        """Return True if entering it starts a `do`, an invocation or a timer, which leaving it must end."""
+        """Return True if entering the state starts a `do`, an invocation or a timer, which leaving it must end."""
         return bool(self.do or self.invokes or self.timed)
 
     @property
     def timed(self) -> bool:
-        """Return True if it has timers: `after` or `at` transitions."""
+        """Return True if the state has timers: `after` or `at` transitions."""
         return bool(self.afters or self.computed or self.schedules)
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name or 'root'}>"
 
     def view(self, language: str, place: str) -> Mapping[str, str]:
-        """Return the value of `state` in its expressions."""
+        """Return the value that expressions of the state read as `state`."""
         found = self.views.get((language, place))
         if found is None:
             found = self.views[language, place] = {"path": self.path, "language": language, "place": place}
         return found
 
     def lies_below(self, other: "StateNode") -> bool:
-        """Return True if it is a proper descendant of the other (`isDescendant`)."""
+        """Return True if the state is a proper descendant of the other (`isDescendant`)."""
         return other in self.ancestors
 
     def below(self, top: "StateNode") -> Iterator["StateNode"]:
-        """Yield its proper ancestors, innermost first, up to but not including `top` (`getProperAncestors`)."""
+        """Yield the proper ancestors, innermost first, up to but not including `top` (`getProperAncestors`)."""
         for ancestor in self.ancestors:
             if ancestor is top:
                 return
@@ -102,11 +108,7 @@ class StateNode:
 
 
 class CompiledTransition:
-    """A transition with compiled guard and actions; compared by identity.
-
-    `alone` is the tuple with only this transition. A row of `hears` also has a `late` guard, which decides if no state
-    has reacted otherwise; `rows` are all rows of its state.
-    """
+    """A transition with compiled guard and actions; compared by identity."""
 
     __slots__ = ("alone", "block", "definition", "guard", "late", "rows", "source", "targets", "where")
 
@@ -117,10 +119,13 @@ class CompiledTransition:
         guard = definition.guard
         self.guard: CompiledGuard | None = compile_guard(guard.source) if guard else None
         self.late: CompiledGuard | None = None
+        """For a row of `hears`, the guard that decides if no state has reacted otherwise."""
         self.rows: RowBlock | None = None
+        """For a row of `hears`, all rows of its state."""
         self.where = guard.where if guard else definition.where
         self.block: CompiledBlock = compile_block(definition.actions)
         self.alone = (self,)
+        """The tuple with only this transition."""
 
     @property
     def is_otherwise(self) -> bool:
@@ -129,7 +134,7 @@ class CompiledTransition:
         return hears is not None and hears.way == "else"
 
     def matches(self, name: str) -> bool:
-        """Return True if an event of that name selects it (SCXML 3.12.1); a name never selects `after` or `at`."""
+        """Return True if an event of that name selects the transition (SCXML 3.12.1); never for `after` and `at`."""
         event = self.definition.event
         if self.definition.timed or not event:
             return False
@@ -169,7 +174,7 @@ class Chart:
                     row.rows, (row.guard, row.late) = block, block.guards(number)
 
     def _connect(self, node: StateNode) -> None:
-        assert node.state is not None  # only the document has none, and it is not among the nodes
+        assert node.state is not None  # only the document lacks a state, and it is not among the nodes
         node.initial = tuple(self.nodes[path] for path in node.state.initial)
         node.transitions = tuple(
             CompiledTransition(t, node, tuple(self.nodes[path] for path in t.targets)) for t in node.state.transitions

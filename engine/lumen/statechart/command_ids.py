@@ -14,15 +14,17 @@ ANSWER_KINDS = ("done", "error", "cancelled", "lost", "answer")
 
 
 class CommandAnswer(NamedTuple):
-    """The outcome of a command: `done`, or `error`, `cancelled` or `lost` (forgotten by the robot) with a reason.
-
-    An `answer` is (part of) the answer to a question, in its `data`.
-    """
+    """The robot's answer to a command."""
 
     kind: str
+    """`done`, `error`, `cancelled`, `lost` (forgotten by the robot) or `answer` (all or part of the answer to a
+    question).
+    """
     id: str
     reason: str
+    """Why the command did not succeed; else the kind."""
     data: Any = None
+    """The data of the event, such as the answer."""
 
 
 def answer_of(event: Event) -> CommandAnswer | None:
@@ -35,7 +37,7 @@ def answer_of(event: Event) -> CommandAnswer | None:
 
 
 def result_of(data: Any) -> Any:
-    """Return what a verb of a feature returned, by the data of its `done.command.ID`; None for other commands."""
+    """Return the result of a feature's verb in the data of its `done.command.ID`; None for other commands."""
     return data.get(RESULT) if isinstance(data, Mapping) else None
 
 
@@ -45,7 +47,9 @@ def outer_id(id: str, owner: str) -> str:
 
 
 def inner_id(id: str) -> tuple[str, str]:
-    """Return an id as used by its own behaviour, and the id of the invoke; the latter is empty for the machine."""
+    """Return an id as used by its own behaviour, and the id of the invoke; the latter is empty for the outermost
+    machine.
+    """
     own, separator, owner = id.rpartition("@")
     return (own, owner) if separator else (id, "")
 

@@ -12,13 +12,15 @@ from lumen.upkeep.garbage import gc_paused
 
 
 class CompiledMachine(NamedTuple):
-    """A compiled machine; `invoked` has the behaviours that it invokes, by name."""
+    """A compiled machine."""
 
     chart: Chart
     planner: MicrostepPlanner
     fast_paths: FastPaths
     invoked: "Mapping[str, CompiledMachine]"
+    """The behaviours that it invokes, by name."""
     robots: tuple[str, ...] = ()
+    """The names of other robots to which it can send events."""
 
 
 def compiled(definition: MachineDefinition) -> CompiledMachine:
@@ -30,7 +32,7 @@ def compiled(definition: MachineDefinition) -> CompiledMachine:
             planner = MicrostepPlanner(chart)
             invoked = {name: compiled(other) for name, other in definition.invoked.items()}
             machine = CompiledMachine(chart, planner, FastPaths(planner), invoked, definition.robots)
-        object.__setattr__(definition, "_compiled", machine)  # frozen, and the same for all who hold it
+        object.__setattr__(definition, "_compiled", machine)  # frozen, but all holders share it
     return machine
 
 

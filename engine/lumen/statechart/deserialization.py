@@ -49,7 +49,7 @@ def _snapshot(machine: MachineDefinition, data: JsonCursor) -> Snapshot:
     if difference := _difference(machine, data["machine"]):
         raise SnapshotError(f"the snapshot does not match `{machine.id}` as it is now: {difference}")
     found = _SnapshotReader(machine, data["configuration"]).read(data)
-    if compiled(machine).planner.configuration(found.configuration).finished:  # what is over waits for nothing
+    if compiled(machine).planner.configuration(found.configuration).finished:  # a finished machine waits for nothing
         return found._replace(timers=(), doing={}, halted={}, invoked={})
     return found
 

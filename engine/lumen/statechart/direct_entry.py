@@ -37,7 +37,7 @@ def entered_directly(machine: MachineDefinition, snapshot: Snapshot, name: str, 
 
 def _way(target: StateNode, standing: Configuration) -> tuple[StateNode, tuple[StateNode, ...]]:
     """Return source and targets of a transition from the innermost active ancestor, which leaves nothing else."""
-    assert target.parent is not None  # only the document has none, and it has no name
+    assert target.parent is not None  # only the document has no parent, and it has no name
     if target.parent.kind is StateKind.PARALLEL and target in standing.nodes and target.initial:
         return target, target.initial
     return next(node for node in target.ancestors if node in standing.nodes), (target,)

@@ -36,7 +36,7 @@ class InstantAction:
 
 @dataclass(frozen=True, slots=True)
 class AwaitedCommand:
-    """A command of the robot; ends when the robot answers."""
+    """A command of the robot; it ends when the robot answers."""
 
     make: CommandFactory
     where: NodePath
@@ -44,7 +44,7 @@ class AwaitedCommand:
 
 @dataclass(frozen=True, slots=True)
 class TimedWait:
-    """A pause of that many [s]."""
+    """A pause of `seconds` [s]."""
 
     seconds: float
 
@@ -65,7 +65,7 @@ class ConditionalAction:
 
 @dataclass(frozen=True, slots=True)
 class ParallelActions:
-    """A `parallel`; ends with the last of its branches."""
+    """A `parallel`; it ends with the last of its branches."""
 
     branches: "tuple[CompiledAction, ...]"
 

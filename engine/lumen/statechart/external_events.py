@@ -53,7 +53,10 @@ def _become(context: ExecutionContext, event: Event) -> None:
 
 
 def _learn(context: ExecutionContext, event: Event) -> None:
-    """Assign another robot's shared values to the context before any transition is selected; skip unknown keys."""
+    """Assign shared values of other robots to the context before any transition is selected; skip unknown keys.
+
+    A value of the wrong type raises error.execution.
+    """
     known = context.machine.chart.definition.shared
     news = {key: value for key, value in event.data.items() if key in known} if isinstance(event.data, Mapping) else {}
     if news:

@@ -22,7 +22,7 @@ from lumen.statechart.step_writer import StepWriter
 from lumen.statechart.values import Awaiting, Fork, Snapshot, Step, Within
 
 MAX_WAYS = 2
-"""Combinations of guards generated into one function; beyond that, each combination gets its own function."""
+"""The number of combinations of guards that are generated into one function; with more, each gets its own function."""
 
 
 def whole(snapshot: Snapshot, event: Event) -> None:
@@ -38,7 +38,7 @@ class FastPaths:
         self.answers: dict[tuple[Any, ...], WrittenStep] = {}
 
     def step(self, snapshot: Snapshot, event: Event) -> Step | None:
-        """Return the step of this event; None if it is not covered or has not occurred before."""
+        """Return the step of this event; None if the full algorithm must take it, as on its first occurrence."""
         try:
             play = self.paths[event[0]][snapshot[0]]
         except KeyError:
@@ -46,7 +46,8 @@ class FastPaths:
         return play(snapshot, event)
 
     def _found(self, snapshot: Snapshot, event: Event) -> WrittenStep:
-        """Return the function for an event that is not among the paths: an answer, or an event's first occurrence.
+        """Return the function for an event that is not among the paths: an answer, or a new combination of event and
+        states.
 
         Events that change the robot's place or context keys are left to the full algorithm, because they change more
         than states.
@@ -63,7 +64,7 @@ class FastPaths:
 
     def _written(self, names: frozenset[str], name: str) -> WrittenStep | None:
         start = self.planner.configuration(names)
-        if name.startswith("after."):  # a timer, which has the same `sendid`
+        if name.startswith("after."):  # the event of a timer, which has the same `sendid`
             return StepWriter(self.planner, start).elapsed(name)
         candidates = start.candidates(name)
         if _ways(candidates) <= MAX_WAYS:
@@ -77,7 +78,9 @@ class FastPaths:
         return StepWriter(self.planner, start, apart).heard(candidates)
 
     def _answered(self, snapshot: Snapshot, name: str) -> WrittenStep:
-        """Return the function for a `done.command.*`, which resumes the `do` that awaits it, if any."""
+        """Return the function for an answer to a command; only `done` has one, which resumes the `do` that awaits the
+        answer.
+        """
         kind, _, id = name.partition(".command.")
         if kind != "done" or not (id[:1] in ("c", "d") and id[1:].isdecimal()):
             return whole
@@ -121,6 +124,6 @@ def noted(cache: dict[Any, WrittenStep], key: Any, write: Callable[[], WrittenSt
 
 
 def _ways(candidates: Candidates) -> int:
-    """Return the number of combinations in which the guards may turn out."""
+    """Return the number of combinations of results that the guards can have."""
     groups = (*candidates, *(group for later in candidates.later for group in later))
     return prod(sum(t.guard is not None for t in group) + 1 for group in groups)

@@ -14,7 +14,7 @@ def recorded(active: AbstractSet[StateNode], left: AbstractSet[StateNode]) -> di
     found: dict[str, tuple[str, ...]] = {}
     for parent in left:
         for history in parent.histories:
-            assert history.state is not None  # only the document has none
+            assert history.state is not None  # only the document has no state
             deep = history.state.deep
             kept = [n for n in active if (_is_leaf(n) and n.lies_below(parent) if deep else n.parent is parent)]
             found[history.path] = tuple(n.path for n in sorted(kept, key=lambda n: n.index))

@@ -86,7 +86,7 @@ class Invocations:
         self.children = {other: child for other, child in self.children.items() if other != id}
 
     def adopt(self, context: ExecutionContext, id: str, child: Invoked) -> None:
-        """Replace the stored position of an invoked behaviour, and end it if it has finished."""
+        """Replace an invoked behaviour by its migrated form, and end it if it has finished."""
         self.children = {**self.children, id: child}
         _take_back(context, child.snapshot)
         machine = invoked_machine(context.machine, child.state, id)
@@ -94,7 +94,11 @@ class Invocations:
             self._finish(context, id, child.snapshot.output)
 
     def deliver(self, context: ExecutionContext, id: str, event: Event | None) -> None:
-        """Deliver an event to the behaviour of that id, or start it if the event is None; merge the resulting step."""
+        """Deliver an event to the behaviour of that id, or start it if the event is None, and merge the step that
+        follows.
+
+        If the behaviour fails, it ends and `error.invoke.ID` is raised.
+        """
         state, _, commands = self.children[id]
         child = self._open(context, id, event)
         share = int(INVOKED_MICROSTEP_SHARE * (MAX_MICROSTEPS - context.microsteps))

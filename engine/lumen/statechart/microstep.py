@@ -18,10 +18,10 @@ from lumen.statechart.schedule_timers import begin_schedules
 from lumen.statechart.values import Timer
 
 MAX_SHOWN_TRANSITIONS = 6
-"""Transitions that the error about an endless loop names, at most."""
+"""The greatest number of transitions that the error about an endless loop names."""
 
 MAX_MICROSTEPS = 1000
-"""Microsteps and internal events that one macrostep may use, at most."""
+"""The greatest number of microsteps and internal events in one macrostep."""
 
 
 def take_enabled(context: ExecutionContext, candidates: Candidates) -> bool:
@@ -96,7 +96,7 @@ def _end(context: ExecutionContext) -> None:
 
 
 def count_microstep(context: ExecutionContext) -> None:
-    """Count one more; raise LumenError with the loop if there are more than MAX_MICROSTEPS."""
+    """Count one more microstep; raise LumenError with the loop if there are more than MAX_MICROSTEPS."""
     context.microsteps += 1
     if context.microsteps > MAX_MICROSTEPS:
         states = ", ".join(f"`{name}`" for name in sorted({*context.entered[-20:], *context.configuration.names}))
@@ -193,6 +193,6 @@ def _output(context: ExecutionContext, node: StateNode) -> Any:
     try:
         return node.output(context.cached_scope or context.scope())
     except ExpressionError as error:
-        assert node.state is not None  # only the document has none
+        assert node.state is not None  # only the document has no state
         context.raise_error(str(error), (*node.state.where, "output"))
         return None

@@ -45,7 +45,8 @@ def flattened_steps(
 ) -> "Iterator[tuple[str, MachineDefinition, Step]]":
     """Yield a step and those of the behaviours invoked in it, each with the prefix of its state names and its machine.
 
-    The step of an invoked behaviour comes before its host's step if it caused that step by its end, else after it.
+    The step of an invoked behaviour comes before its host's step if its end caused a transition of the host, else
+    after.
     """
     ends = {t.event.split(".", 2)[2] for t in step.transitions if t.event.startswith(("done.invoke.", "error.invoke."))}
     early = [id in ends and inner.event is not None for id, inner in step.invoked]
@@ -55,7 +56,7 @@ def flattened_steps(
 
 
 def behavior_of(machine: MachineDefinition, id: str, step: Step) -> str:
-    """Return the behaviour that made a step, among those that the machine invokes under that id."""
+    """Return the name of the behaviour that made a step, among those that the machine invokes under that id."""
     behaviors = [invoke.behavior for state in machine.states.values() for invoke in state.invoke if invoke.id == id]
     names = {*step.entered, *step.exited, *step.snapshot.configuration}
     known = {b: {state.name for state in machine.invoked[b].states.values()} for b in behaviors}
@@ -63,7 +64,9 @@ def behavior_of(machine: MachineDefinition, id: str, step: Step) -> str:
 
 
 def resolutions(machine: MachineDefinition, name: str) -> Iterator[tuple[MachineDefinition, str]]:
-    """Yield each machine in which a name may occur, and the name there: `quiz/ask` is `ask` of what runs as `quiz`."""
+    """Yield each machine in which a name may occur, and the name there: `quiz/ask` is `ask` in the behaviour invoked as
+    `quiz`.
+    """
     invokes = {(invoke.id, invoke.behavior) for state in machine.states.values() for invoke in state.invoke}
     for id, behavior in sorted(invokes):
         if name.startswith(id + ID_SEPARATOR) and behavior in machine.invoked:

@@ -18,20 +18,18 @@ from lumen.statechart.state_changes import (
 from lumen.statechart.state_sets import StateSets, in_final
 
 MAX_CACHE_ENTRIES = 4096
-"""Entries of a cache before it is emptied: charts with many regions have too many configurations to keep them all."""
+"""The number of entries at which a cache is emptied, because charts with many regions have very many configurations."""
 
 Group: TypeAlias = tuple[CompiledTransition, ...]
 
 
 class Candidates(tuple[Group, ...]):
-    """The transitions that an event selects: a group for each active atomic state, the innermost first.
-
-    `later` are rows of `hears` of the same states, in two passes: rows whose phrase consists of slots only, then
-    `else`. A pass is for states that have not reacted, unless a state has reacted with a row. It is empty if there are
-    no rows.
-    """
+    """The transitions that an event selects: a group for each active atomic state, the innermost first."""
 
     later: tuple[tuple[Group, ...], ...] = ()
+    """Rows of `hears` of the same states, in two passes: rows whose phrase consists only of slots, then `else`. A pass
+    is for states that have not reacted, unless some state has reacted with a row. Empty if there are no rows.
+    """
 
     @property
     def all(self) -> Iterator[CompiledTransition]:
@@ -66,21 +64,21 @@ class MicrostepPlan(NamedTuple):
 
 
 class Configuration:
-    """A set of active states (SCXML 3.11), with caches of its candidates by event and of the plans that start from it.
-
-    `names` are those that a Snapshot holds, `known` those for which `In` is true. A configuration that is `finished`
-    ends the machine: it has no candidates.
-    """
+    """A set of active states (SCXML 3.11), with caches of candidates by event and of plans that start from it."""
 
     def __init__(self, nodes: frozenset[StateNode]) -> None:
         self.nodes = nodes
         self.ordered = entry_order(nodes)
         self.finished = bool(nodes) and in_final(self.ordered[0], nodes)
+        """Whether it ends the machine; then it has no candidates."""
         self.names = frozenset(node.name for node in nodes if node.path)
+        """The names that a Snapshot holds."""
         self.known = names_of(nodes)
+        """The names for which `In` is true."""
         self.plans: dict[tuple[object, ...], MicrostepPlan] = {}
         inner = {node.parent for node in nodes}
         self.leaves = [node for node in self.ordered if node not in inner]
+        """The active states without active children, in document order."""
         self._by_event: dict[str, Candidates] = {}
         self.eventless = self._select(lambda transition: not transition.definition.event)
 
@@ -156,7 +154,7 @@ class MicrostepPlanner:
             sets = StateSets(self.chart, history)
             taken = sets.without_conflicts(enabled, start.nodes)
             left = sets.exit_set(taken, start.nodes)
-            kept = {**history, **recorded(start.nodes, left)}  # histories recall what this microstep exits
+            kept = {**history, **recorded(start.nodes, left)}  # histories recall the states that this microstep exits
             entered = StateSets(self.chart, kept, start.nodes - left).entry_set(sets.domains(taken))
             found = start.plans[key] = self._make(start, taken, left, entered, kept)
         return found

@@ -17,7 +17,7 @@ Holds = Callable[[Snapshot], bool]
 
 
 class Violation(NamedTuple):
-    """A property that was violated, with an explanation."""
+    """A property that was violated, and how, in words."""
 
     property: Property
     how: str
@@ -34,10 +34,10 @@ class PropertyMonitor:
     begun: bool = False
     """True after the first step."""
     held: bool = False
-    """True if the condition `whenever` was true after the last step."""
+    """True if `whenever` was true after the last step."""
 
     def step(self, snapshot: Snapshot) -> Violation | None:
-        """Return the violation at the end of a macrostep, if any."""
+        """Check the property after a macrostep; return the violation, else None."""
         property = self.definition
         if property.always:
             return None if holds(self.machine, property.always, snapshot) else _broken(property, snapshot.at)
@@ -57,7 +57,7 @@ class PropertyMonitor:
         return inf if self.since is None else self.since + self.definition.within
 
     def elapse(self, now: float) -> Violation | None:
-        """Return the violation of a deadline that has passed at `now` [s] without a step, if any."""
+        """Return the violation of a deadline that has passed at `now` [s] without a step, else None."""
         if self.since is None or nanoseconds(now) <= nanoseconds(self.since) + nanoseconds(self.definition.within):
             return None
         since, self.since = self.since, None
@@ -92,7 +92,7 @@ def holds(machine: MachineDefinition, condition: Expression, snapshot: Snapshot)
 
 
 def late(property: Property, since: float) -> str:
-    """Return the text about a missed deadline; `since` [s] is when the wait began."""
+    """Return the message about a missed deadline; `since` [s] is when the wait began."""
     condition = property.eventually.shown if property.eventually else ""
     return f"`{condition}` did not become true within {property.within:g} s of {since:g} s"
 
@@ -107,5 +107,5 @@ def _paths_by_alias(machine: MachineDefinition) -> Mapping[str, str]:
     found: Mapping[str, str] | None = machine.__dict__.get("_paths_by_alias")
     if found is None:
         found = {state.alias: path for path, state in machine.states.items() if state.alias}
-        object.__setattr__(machine, "_paths_by_alias", found)  # frozen, and the same for all who hold it
+        object.__setattr__(machine, "_paths_by_alias", found)  # frozen, but all holders share it
     return found

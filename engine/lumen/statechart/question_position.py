@@ -1,4 +1,4 @@
-"""The position of an `ask`, in terms of the positions of any `do`."""
+"""The position of an `ask`, converted from and to the general positions of a `do`."""
 
 from typing import NamedTuple
 
@@ -25,7 +25,7 @@ class QuestionPosition(NamedTuple):
         return self._replace(filler=filler, sentences=tuple(sentences))
 
     def fork(self) -> Fork | None:
-        """Return it as a Fork; None if everything has ended."""
+        """Return the position as a Fork; None if everything has ended."""
         return fork([self.asked, self.deadline, self.filler, *self.sentences])
 
 

@@ -10,14 +10,13 @@ from lumen.statechart.state_sets import in_final
 
 
 class StateChange(NamedTuple):
-    """One state to exit or enter, with the names for which `In` is true while its actions run.
-
-    `done` are the ancestors that its entry finishes, the nearest first.
-    """
+    """One state to exit or enter."""
 
     node: StateNode
     active: Container[str]
+    """The names for which `In` is true while its actions run."""
     done: tuple[StateNode, ...] = ()
+    """The ancestors that its entry finishes, the nearest first."""
 
 
 class ActiveView:

@@ -9,11 +9,12 @@ from lumen.statechart.history import History
 
 
 class EntrySet(set[StateNode]):
-    """States to enter; `reached` has them and all their ancestors."""
+    """States to enter."""
 
     def __init__(self) -> None:
         super().__init__()
         self.reached: set[StateNode] = set()
+        """These states and all their ancestors."""
 
     def enter(self, node: StateNode) -> None:
         """Add a state, and mark its ancestors as reached."""
@@ -25,9 +26,9 @@ class StateSets:
     """The sets of one chart with one history; `staying` are the active states that are not exited.
 
     Three rules go beyond the pseudocode of Appendix D, but follow from the definitions of 3.13 and keep configurations
-    legal. Active states that stay are not entered, though a history inside them is the target. If one target contains
+    legal. Active states that stay are not entered, even if a history inside them is the target. If one target contains
     another, the inner one determines how the outer one is entered. A transition enters states inside the domain that it
-    exited, though a history among its targets may remember other states by now.
+    exited, even if a history among its targets remembers other states by now.
     """
 
     def __init__(self, chart: Chart, history: History, staying: AbstractSet[StateNode] = frozenset()) -> None:
@@ -104,7 +105,7 @@ class StateSets:
     def add_descendants(self, node: StateNode, entered: EntrySet) -> None:
         """Add a state and the descendants that are entered with it (`addDescendantStatesToEnter`)."""
         if node.kind is StateKind.HISTORY:
-            assert node.parent is not None  # only the document has none
+            assert node.parent is not None  # only the document has no parent
             self._add_all(self.recalled(node), node.parent, entered)
             return
         entered.enter(node)

@@ -87,14 +87,16 @@ class ActionText(StepText):
         raise NotImplementedError
 
     def either(self, condition: str, known: Certain, *ops: Op) -> None:
-        """Write everything that follows if a condition is true; later text is for the case that it is false."""
+        """Write everything that follows if a condition is true; the text after it is for the case that the condition is
+        false.
+        """
         with self.branch(condition):
             other = copy(known)
             other.first(*ops)
             self.run(other)
 
     def block(self, actions: tuple[PlacedAction, ...], node: StateNode, active: Container[str], known: Certain) -> None:
-        """Put actions that end at once on the agenda (`_execute`)."""
+        """Put actions that end at once at the front of the agenda (`_execute`)."""
         known.first(*(partial(self.act, placed.action, node, active) for placed in actions))
 
     def act(self, action: Action, node: StateNode, active: Container[str], known: Certain) -> None:
@@ -159,7 +161,11 @@ class ActionText(StepText):
         return self.constant(action)
 
     def begin(self, action: Action, node: StateNode, known: Certain) -> str:
-        """Write the start of an action of a `do` (`Advance.begin`); return its position as text, else `None`."""
+        """Write the start of an action of a `do` (`Advance.begin`); return the text of its position, `None` if it has
+        ended.
+
+        Raises NotPlainError if the action is not supported.
+        """
         sight = Sight(known.event, node, known.configuration.known)
         match action:
             case Assign() | Raise() | Send() | CancelSend() | PublishBody() | LogText():

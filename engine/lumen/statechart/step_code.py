@@ -50,10 +50,10 @@ def leave(
 
 
 def settled(position: Position | None, branch: int) -> Any:
-    """Return the position of a `parallel` after that branch has ended."""
+    """Return the position after the branch with the index `branch` of a `parallel` has ended."""
     if isinstance(position, Within):
         return position._replace(inner=settled(position.inner, branch))
-    assert isinstance(position, Fork)  # what else has branches
+    assert isinstance(position, Fork)  # only a Fork has branches
     return Fork((*position.branches[:branch], None, *position.branches[branch + 1 :]))
 
 
@@ -61,7 +61,7 @@ def without_deadline(timers: tuple[Timer, ...], position: Position | None) -> tu
     """Return the timers without the deadline of the awaited `ask`; raise LookupError if there is no such timer."""
     while isinstance(position, Within):
         position = position.inner
-    assert isinstance(position, Fork)  # as every question has
+    assert isinstance(position, Fork)  # the position of every question is a Fork
     kept, cancels = cancelled(timers, list(awaited(position.branches[1])))
     if cancels:
         raise LookupError(cancels)
@@ -69,7 +69,10 @@ def without_deadline(timers: tuple[Timer, ...], position: Position | None) -> tu
 
 
 def without_ended(timers: tuple[Timer, ...], event: Event) -> tuple[Timer, ...]:
-    """Return the timers without the `after` that ended with an event; raise LookupError unless exactly one matches."""
+    """Return the timers without the `after` that an event ended.
+
+    Raises LookupError if no timer matches, and ValueError if several timers have the event's id.
+    """
     (number,) = [i for i, timer in enumerate(timers) if timer[0] == event[3]] or [-1]
     if number < 0 or timers[number][6] != "after" or timers[number][3] != event[0]:
         raise LookupError(event[0])

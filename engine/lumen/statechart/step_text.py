@@ -15,12 +15,12 @@ from lumen.statechart.step_code import WrittenStep, function_of
 from lumen.statechart.values import Snapshot
 
 MAX_LINES = 200
-"""Lines of one function, at most; longer ones are not generated."""
+"""The greatest number of lines of one function; longer ones are not generated."""
 MAX_DEPTH = 40
-"""Nesting depth of one function, at most: Python's parser allows a hundred levels."""
+"""The greatest nesting depth of one function: Python's parser allows a hundred levels."""
 
 VARIABLES = {name: name for name in Snapshot._fields} | {"configuration": "names", "at": "before"}
-"""The variable of a written step that holds each field of the snapshot before it."""
+"""The variable of a generated step that holds each field of the snapshot before the step."""
 _HEAD = f"""\
 def play(constants, snapshot, event):
     {", ".join(VARIABLES.values())} = snapshot
@@ -38,20 +38,18 @@ class NotPlainError(Exception):
 
 
 class Sight(NamedTuple):
-    """The values that an expression reads besides the context: the event's variable, its state, the active names."""
+    """The values that an expression reads besides the context."""
 
     event: str | None
+    """The variable that holds the event; None if the expression does not read it."""
     node: StateNode | None = None
+    """The state of the expression."""
     active: Container[str] | None = None
+    """The names for which `In` is true."""
 
 
 class StepText:
-    """One function that is being written.
-
-    `scope` describes the content of the variable of that name, None before there is one. `chosen` are the variables
-    that hold the chosen row of `hears` of a state. `sendid` is the text of the id that the event must have; most have
-    none.
-    """
+    """One function that is being written."""
 
     def __init__(self, machine: MachineDefinition) -> None:
         self.machine = machine
@@ -59,8 +57,11 @@ class StepText:
         self.constants: list[Any] = []
         self.depth = 2
         self.scope: Sight | None = None
+        """The content of the variable `scope`; None before there is such a variable."""
         self.chosen: dict[tuple[object, ...], str] = {}
+        """The variables that hold the chosen row of `hears` of a state."""
         self.sendid = "''"
+        """The text of the id that the event must have; most events have none."""
 
     def text(self) -> str:
         """Return the text written so far, as a complete function."""
@@ -138,7 +139,7 @@ class StepText:
         return self.constant(value)
 
     def see(self, needed: frozenset[str], sight: Sight) -> None:
-        """Write a line that makes a `scope` with the needed parts, unless the current one has them already."""
+        """Write a line that makes a `scope` with the needed parts, unless the current one already has them."""
         if not needed:
             return
         wanted = Sight(

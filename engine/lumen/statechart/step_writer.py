@@ -30,7 +30,10 @@ DoPlace: TypeAlias = tuple[str, tuple[PlacedAction, ...], int]
 
 
 class StepWriter(ActionText):
-    """Writes one function; if `apart` is given, it provides the function for each set of transitions enabled first."""
+    """Writes one function.
+
+    If `apart` is given, it provides a separate function for each set of transitions that is enabled first.
+    """
 
     def __init__(
         self, planner: MicrostepPlanner, start: Configuration, apart: Callable[[Enabled], WrittenStep] | None = None
@@ -53,7 +56,10 @@ class StepWriter(ActionText):
         return self.heard(self.start.timed(event))
 
     def resumed(self, node: StateNode, position: Within, branch: int | None) -> WrittenStep | None:
-        """Return the function for the end of a command of a `do`; `branch` is its index in a `parallel` or `ask`."""
+        """Return the function for the end of an awaited command of a `do`; None if no branch of it can be written.
+
+        `branch` is the command's index in a `parallel` or `ask`, else None.
+        """
         place, awaiting = _after(_state(node).do, position)
         if not isinstance(awaiting, Fork):
             return self.written(partial(self.do, node, place))
@@ -128,8 +134,8 @@ class StepWriter(ActionText):
     ) -> None:
         """Write the choice of the first candidate of each atomic state whose guard is true (`selectTransitions`).
 
-        `groups` are the remaining ones of the `candidates`. `facts` are the values of guards that were evaluated before
-        for another candidate, and that have the same value here.
+        `groups` are those of the `candidates` that are not decided yet. `facts` are the values of guards that were
+        evaluated for another candidate and have the same value here.
         """
         if not groups:
             self.decide_late(candidates.later, 0, enabled, known)
@@ -218,7 +224,7 @@ class StepWriter(ActionText):
         return any(node.kind is StateKind.HISTORY for node in (*targets, *inside))
 
     def arrive(self, target: Configuration, known: Certain) -> None:
-        """Note the configuration after a microstep."""
+        """Record the configuration after a microstep."""
         known.configuration = target
 
     def exit(self, change: StateChange, known: Certain) -> None:
@@ -254,7 +260,7 @@ class StepWriter(ActionText):
         )
 
     def entered(self, node: StateNode, known: Certain) -> None:
-        """Note that the `do` of an entered state begins after the macrostep."""
+        """Record that the `do` of an entered state begins after the macrostep."""
         if node.do:
             path = self.constant(node.path)
             self.line(f"halted = without(halted, {path}) if {path} in halted else halted")
@@ -293,17 +299,17 @@ class StepWriter(ActionText):
 
 
 def _after(actions: tuple[PlacedAction, ...], position: Within) -> tuple[tuple[DoPlace, ...], Position]:
-    """Return the position after `position` in these actions, and what `position` awaits."""
+    """Return the position that follows `position` in these actions, and what `position` awaits."""
     block, number, inner = position
     if not isinstance(inner, Within):
         return ((block, actions, number + 1),), inner
     action = actions[number].action
-    assert isinstance(action, If | AskQuestion)  # which have blocks
+    assert isinstance(action, If | AskQuestion)  # only these have blocks
     inside = action.then if isinstance(action, If) and inner.block == "then" else action.otherwise
     place, awaiting = _after(inside, inner)
     return ((block, actions, number), *place), awaiting
 
 
 def _state(node: StateNode) -> State:
-    assert node.state is not None  # only the document has none, and it is never left or entered
+    assert node.state is not None  # only the document has no state, and it is never left or entered
     return node.state

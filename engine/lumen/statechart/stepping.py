@@ -22,10 +22,10 @@ from lumen.statechart.values import Snapshot, Step, Timer
 from lumen.upkeep.arguments import need, need_map, need_number, need_text
 
 MAX_RATE = 10_000
-"""Timers that may end per second [1/s]: timers that set further timers could make a tick endless."""
+"""The greatest rate of timers that end [1/s]: timers that set further timers could make a tick endless."""
 
 _DUE = itemgetter(Timer._fields.index("due_ns"))
-_new = tuple.__new__  # a third of the cost of Event(…)
+_new = tuple.__new__  # saves two thirds of the cost of Event(…)
 
 
 def initial(
@@ -70,7 +70,7 @@ def step(machine: MachineDefinition, snapshot: Snapshot, event: Event) -> Step:
         program: CompiledMachine = machine.__dict__.get("_compiled") or compiled(machine)
         taken = program.fast_paths.step(snapshot, event)
     except (KeyError, AttributeError, TypeError, ValueError):
-        taken = None  # `in_full` fails for the same reason, with a message
+        taken = None  # `in_full` fails for the same reason, with a better message
     return taken or in_full(machine, snapshot, event)
 
 

@@ -9,11 +9,11 @@ from lumen.language.machines import Transition
 from lumen.language.nanoseconds import in_seconds
 
 MAX_TIMERS = 10_000
-"""Timers that may wait before a `send` is refused: events that each send two more would exhaust the memory."""
+"""The number of waiting timers from which a `send` is refused, because sends that double could exhaust the memory."""
 
 
 class Timer(NamedTuple):
-    """An event that will happen; times are integers [ns], so that sums are exact."""
+    """An event that will happen; times are integers [ns] on the clock of the snapshot, so that sums are exact."""
 
     id: str
     """Its id: that of the `send` or `wait`; for `after` and `at` the name of the event."""
@@ -24,10 +24,10 @@ class Timer(NamedTuple):
     event: str
     data: Any = None
     state: str = ""
-    """The path of the state with which an `after`, `at` or `wait` ends; empty for a `send`, which `cancel` ends."""
+    """The path of the state with whose exit an `after`, `at` or `wait` is cancelled; empty for a `send`."""
     kind: Literal["after", "at", "send", "wait"] = "send"
     to: str = ""
-    """The other behaviour that receives a `send`; empty for the own machine."""
+    """The other behaviour that receives a `send`; empty for the machine itself."""
 
     @property
     def due(self) -> float:
@@ -41,22 +41,26 @@ class Timer(NamedTuple):
 
 
 class Awaiting(NamedTuple):
-    """The position of a `do` that has awaited a command or `wait` of that id since `at` [s]."""
+    """The position of a `do` that awaits a command or `wait`."""
 
     id: str
+    """The id of the command or timer."""
     at: float = 0.0
+    """When it began [s]."""
 
 
 class Within(NamedTuple):
-    """The position of a `do` in the action `place` of one of its blocks: the list itself, or a branch of an `if`."""
+    """The position of a `do` in one of its blocks: the list itself, or a branch of an `if`."""
 
     block: Literal["do", "then", "else"]
     place: int
+    """The index of the action in the block."""
     inner: "Position"
+    """The position in that action."""
 
 
 class Fork(NamedTuple):
-    """The position of a `do` inside a `parallel`: one for each branch, None for those that have ended."""
+    """The position of a `do` inside a `parallel` or `ask`: one for each branch, None for branches that have ended."""
 
     branches: "tuple[Position | None, ...]"
 
@@ -84,7 +88,7 @@ class Halted(NamedTuple):
 
 
 class Counters(NamedTuple):
-    """The numbers of ids given out: `c1, c2, …` to commands, `d1, d2, …` to awaited ones, `s1, w2, …` to timers."""
+    """The numbers of ids assigned: `c1, c2, …` to commands, `d1, d2, …` to awaited ones, `s1, w2, …` to timers."""
 
     commands: int = 0
     awaited: int = 0
@@ -92,11 +96,13 @@ class Counters(NamedTuple):
 
 
 class Invoked(NamedTuple):
-    """A behaviour invoked by the state at path `state`; `commands` counts the commands started before it."""
+    """A behaviour invoked by a state."""
 
     state: str
+    """The path of the state."""
     snapshot: "Snapshot"
     commands: int = 0
+    """The number of commands that were started before the behaviour."""
 
 
 class Snapshot(NamedTuple):
@@ -127,11 +133,11 @@ class Snapshot(NamedTuple):
     timezone: str = ""
     """The IANA name of the time zone of the wall clock."""
     output: Any = None
-    """The output of the final state in which the machine has ended."""
+    """The output of the final state in which the machine has ended; None before, or if it has no output."""
 
 
 class Step(NamedTuple):
-    """One macrostep: what happened, the states exited and entered (without the root), commands, and result."""
+    """One macrostep: its cause, the states exited and entered (without the root), its commands and its result."""
 
     event: Event | None
     """The event that caused it; None for the first step."""
