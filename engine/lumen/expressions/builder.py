@@ -120,7 +120,7 @@ class CodeBuilder:
         return ast.NamedExpr(ast.Name(name, ast.Store()), value), _load(name)
 
     def hidden(self, node: ExpressionNode) -> ast.expr:
-        """Return the node hidden from Python's constant check, which would warn of `1['a']` and `1 is None`."""
+        """Return the Python node, hidden from Python's constant check, which would warn of `1['a']` and `1 is None`."""
         built = self.node(node)
         return (
             built if isinstance(node, Identifier | FieldAccess | IndexAccess | FunctionCall) else self.named(built)[0]
@@ -160,14 +160,18 @@ class CodeBuilder:
                 return self.call(f"call_{function}", *first, *map(self.node, arguments))
 
     def logic(self, sign: str, operands: list[ast.expr]) -> ast.expr:
-        """Return the node of `&&` or `||`; in careful mode all operands are evaluated, if needed, after an error."""
+        """Return the node of `&&` or `||`; in careful mode, an error of one operand does not keep the others from
+        deciding.
+        """
         if not self.careful:
             return ast.BoolOp(ast.And() if sign == "&&" else ast.Or(), operands)
         nothing = ast.arguments([], [], None, [], [], None, [])
         return self.call("both" if sign == "&&" else "either", *(ast.Lambda(nothing, o) for o in operands))
 
     def has(self, target: ExpressionNode) -> ast.expr:
-        """Return the node of `has(a.b.c)`: a test of one key after another, without a call if the maps are dicts."""
+        """Return the node of `has(a.b.c)`, which tests one key after another, without a call as long as the maps are
+        dicts.
+        """
         keys: list[ast.expr] = []
         while isinstance(target, FieldAccess | IndexAccess):
             keys.append(ast.Constant(target.name) if isinstance(target, FieldAccess) else self.node(target.key))

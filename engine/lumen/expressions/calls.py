@@ -38,11 +38,14 @@ _INSTEAD = {
 def function_of(
     node: FunctionCall, around: Declarations, findings: ExpressionFindings
 ) -> Function | OwnFunction | None:
-    """Return the called function, or None if there is no function of that name; report a wrong number of arguments."""
+    """Return the called function; None if there is no function of that name, or its file is broken.
+
+    Report an unknown function and a wrong number of arguments.
+    """
     function: Function | OwnFunction | None = all_functions().get(node.function)
     if function is None and node.function in around.functions:
         function = around.functions[node.function]
-        if function is None:  # its file is broken, which is reported there
+        if function is None:  # its broken file is reported elsewhere
             return None
     if function is None:
         similar = _INSTEAD.get(node.function)
@@ -70,9 +73,9 @@ def function_of(
 
 
 def check_purity(node: FunctionCall, around: Declarations, findings: ExpressionFindings) -> None:
-    """Report a call that has no place in a function of the project, and a value drawn for an argument of one.
+    """Report a call that a function of the project can't contain, and a drawn value as an argument of such a function.
 
-    The function's expression may name an argument several times, and each time would draw another value.
+    The function's expression may use an argument several times, and each time would draw another value.
     """
     function = all_functions().get(node.function)
     if around.pure and function and (function.scoped or node.function in drawing_functions()):

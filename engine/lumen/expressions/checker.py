@@ -57,7 +57,7 @@ from lumen.language.diagnostics import did_you_mean, nearest
 
 
 def must_hold(tree: ExpressionNode) -> None:
-    """Raise ExpressionError for the first thing that keeps the expression from being compiled."""
+    """Raise ExpressionError for the first fault that keeps the expression from being compiled."""
     checker = _Checker(Declarations())
     checker.type(tree, KnownFacts())
     for finding in checker.findings.found:
@@ -94,7 +94,7 @@ def check_expression(
     functions: KnownFunctions = MappingProxyType({}),
     expected: Mapping[str, Any] | None = None,
 ) -> list[ExpressionFinding]:
-    """Return all findings about an expression, in the order of the source; never raises, whatever the source.
+    """Return all findings about an expression, in the order of the source; a malformed source is a finding.
 
     `context` maps its keys to JSON Schemas. `events` maps the events that can arrive here to the schemas of their data
     (None for data of any kind); it is None if any event can arrive. `phrases`, `answers` and `states` are the existing
@@ -294,7 +294,7 @@ class _Checker:
         return ValueType(function.returns)
 
     def arguments(self, node: FunctionCall, function: OwnFunction, known: KnownFacts) -> None:
-        """Check what is passed to a function of the project, whose parameters have names."""
+        """Check the arguments of a function of the project, whose parameters have names."""
         for argument, (name, kinds) in zip(node.arguments, function.parameters.items(), strict=False):
             found = self.type(argument, known).kinds
             if not found & kinds:

@@ -1,6 +1,6 @@
 """Expressions as functions.
 
-`a && b` becomes Python's `and`, which has CEL's meaning unless an operand fails. If one fails, the expression is
+`a && b` becomes Python's `and`, which has CEL's meaning unless an operand fails. If an operand fails, the expression is
 evaluated again by CEL's full rule: `a && b` is false if either operand is false, even if the other has no value.
 """
 
@@ -22,12 +22,18 @@ Evaluate = Callable[[Scope], Any]
 
 
 def both(*operands: Callable[[], Any]) -> bool:
-    """Return CEL's `&&`: False if any operand is False; else raise the first error of an operand; else True."""
+    """Return CEL's `&&` of operands, which are called in order: False if any is False, else its first error, else True.
+
+    Raises the first error of an operand if no operand is False.
+    """
     return not _any_is(False, operands)
 
 
 def either(*operands: Callable[[], Any]) -> bool:
-    """Return CEL's `||`: True if any operand is True; else raise the first error of an operand; else False."""
+    """Return CEL's `||` of operands, which are called in order: True if any is True, else False.
+
+    Raises the first error of an operand if no operand is True.
+    """
     return _any_is(True, operands)
 
 
@@ -60,10 +66,9 @@ def code_names() -> dict[str, Any]:
 
 @lru_cache(maxsize=8192)
 def compile_expression(source: str) -> Evaluate:
-    """Return the expression as a pure function of a Scope.
+    """Return the expression as a pure function of a Scope; equal sources give the same function while it is cached.
 
-    Raise ExpressionError if the source is invalid; the function raises it if the expression has no value. Equal sources
-    give the same function while it is cached.
+    Raises ExpressionError if the source is invalid; the function raises it if the expression has no value.
     """
     return _compile(source, guard=False)
 

@@ -26,7 +26,7 @@ UNKNOWN_VALUE = object()
 
 
 def explain(error: Exception, source: str, tree: ExpressionNode, scope: Scope) -> ExpressionError:
-    """Return the error in words for the author of the expression, from any exception of the evaluation."""
+    """Return the error in words for the author of the expression, for any exception of the evaluation."""
     node = _failing(error.__traceback__, tree)
     match error:
         case ExpressionError(message=message, hint=hint):
@@ -95,7 +95,7 @@ def _missing(
 
 
 def _few(keys: Iterable[Any]) -> list[str]:
-    """Return the keys worth comparing with a misspelt one: a message may have thousands, or long ones."""
+    """Return the keys worth comparing with a misspelt one: short texts, and not thousands of them."""
     return [key for key in islice(keys, 100) if isinstance(key, str) and len(key) <= 40]
 
 

@@ -37,11 +37,13 @@ WRONG_ARGUMENT_COUNT = Code(
 
 
 class ExpressionFinding(NamedTuple):
-    """A fault of an expression: `offset` and `length` [characters] are its place in the source."""
+    """A fault of an expression."""
 
     code: Code
     offset: int
+    """Its place in the source [characters], from 0."""
     length: int
+    """The number of characters to mark."""
     message: str
     hint: str = ""
 

@@ -16,7 +16,7 @@ from lumen.expressions.tree import (
 
 
 class KnownFacts(NamedTuple):
-    """The facts that the conditions around a node guarantee; `&` combines those of two conditions."""
+    """Facts guaranteed by the conditions around a node; `&` joins the facts of two conditions that are both met."""
 
     present: frozenset[tuple[str, ...]] = frozenset()
     """Paths of the fields that exist."""

@@ -22,7 +22,7 @@ class Function(NamedTuple):
     returns: KindSet
     """The kinds that its value may have."""
     call: Callable[..., Any]
-    """The function itself."""
+    """The implementation; it receives the Scope first if `scoped`, then the arguments."""
     scoped: bool = False
     """Whether it gets the Scope before its arguments."""
 
@@ -48,31 +48,34 @@ def clock_functions() -> frozenset[str]:
 
 @cache
 def drawing_functions() -> frozenset[str]:
-    """Return the names of the functions that draw: they are allowed only in `assign`, which keeps the next draw."""
+    """Return the names of the functions that draw random values: they are allowed only in `assign`.
+
+    Only actions advance the state of the random generator.
+    """
     return frozenset(name for name, row in table("functions").items() if row.draws)
 
 
 def example_of(name: str) -> str:
-    """Return how the arguments of a function are written; empty if its row does not say."""
+    """Return the arguments of a function as an example writes them; empty if its row has no example."""
     rows = table("functions")
     return str(rows[name].example) if name in rows else ""
 
 
 @cache
 def fault_of(name: str) -> str:
-    """Return why the code of a function can't be imported, with the package that it is in; empty if it can."""
+    """Return why the code of a function can't be imported, with its package; empty if it can be imported."""
     rows = table("functions")
     try:
         fault = "" if name not in rows or callable(resolve(rows[name].call)) else "it is not a function"
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # of code that is not Lumen's: even SystemExit
+    except BaseException as error:  # the code is not Lumen's, so even SystemExit is caught
         fault = described(error)
     return fault and f"{fault}{_package(name)}"
 
 
 def _package(name: str) -> str:
-    """Return the distribution of a function as a message ends with it; empty if the function comes with Lumen."""
+    """Return the distribution that provides a function, for the end of a message; empty if it comes with Lumen."""
     distribution = distribution_of(owner("functions", name))
     return f" (package {distribution})" if distribution else ""
 
@@ -88,7 +91,7 @@ def _kinds(kinds: str) -> KindSet:
 
 
 def _checked(name: str, row: FunctionRow, parameters: tuple[KindSet, ...]) -> Callable[..., Any]:
-    """Return a function that imports the row's when it is first called, and checks arguments and value."""
+    """Return a function that imports the row's function at its first call, and checks the arguments and the value."""
     first, returns = int(row.scoped), _kinds(row.returns)
 
     def call(*arguments: Any) -> Any:
@@ -104,12 +107,12 @@ def _checked(name: str, row: FunctionRow, parameters: tuple[KindSet, ...]) -> Ca
 
 
 def _called(name: str, row: FunctionRow, arguments: tuple[Any, ...]) -> Any:
-    """Return what the function returns. Raises FaultError for any fault of an installed package."""
+    """Return the value of a function. Raises FaultError for any exception of an installed package's code."""
     try:
         return resolve(row.call)(*arguments)
     except (KeyboardInterrupt, LumenError, FaultError, WrongKindError):
         raise
-    except BaseException as error:  # even SystemExit
+    except BaseException as error:  # the package's code may even raise SystemExit
         if not (package := _package(name)):
             raise
         what = f"{error} (`{name}` raised {type(error).__name__}){package}"
@@ -117,7 +120,7 @@ def _called(name: str, row: FunctionRow, arguments: tuple[Any, ...]) -> Any:
 
 
 def _plain(name: str, value: Any) -> Any:
-    """Return a value as JSON data. Raises FaultError if it is not."""
+    """Return a value as JSON data. Raises FaultError if it is not JSON data."""
     try:
         return json.loads(json.dumps(value, allow_nan=False))
     except (TypeError, ValueError) as error:

@@ -26,7 +26,7 @@ from lumen.talk import folding
 from lumen.talk.hearing import hearing_of
 
 CAUGHT = "caught"
-"""The function that `heard` is compiled to in a row of `hears`; files do not call it."""
+"""The function to which `heard` is compiled in a row of `hears`; files can't call it."""
 
 
 def _texts(*values: Any) -> None:
@@ -114,7 +114,7 @@ def heard(scope: Scope, text: Any, name: Any) -> bool:
         _texts(text)
         if not isinstance(name, str):
             return _heard_of(scope, text, name)
-    known = scope[6]  # `phrases`: by its index in half the time
+    known = scope[6]  # `phrases`: access by index takes half the time
     if name not in known:
         raise _unnamed("phrases", name, known)
     return phrases.is_heard(text, known[name], scope.lists)

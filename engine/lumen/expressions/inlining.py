@@ -17,15 +17,16 @@ from lumen.language.events import Event
 
 
 class InlinedExpression(NamedTuple):
-    """The text, in which `context` is a variable, and the parts that it needs of the variable `scope`."""
+    """An expression as Python text, in which `context` is a variable."""
 
     text: str
     needs: frozenset[str]
+    """The parts that the variable `scope` must have."""
 
 
 @lru_cache(maxsize=8192)
 def inlined(source: str, event: str, guard: bool) -> InlinedExpression:
-    """Return the expression as text; `event` is the variable of the Event. A `guard` is as in `compile_guard`."""
+    """Return the expression as text; `event` is the name of the Event's variable. For `guard` see `compile_guard`."""
     text = ast.unparse(_InlineBuilder(parse_expression(source), event).result(guard))
     return InlinedExpression(text, scope_needs(source) - {"context", "event"})
 

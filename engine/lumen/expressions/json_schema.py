@@ -25,7 +25,10 @@ _NAMED = frozenset(("properties", "patternProperties", "dependentSchemas", "$def
 
 
 MAX_DATA_DEPTH = 200
-"""The most levels of lists and objects in checked data: jsonschema-rs recurses, and too deep data ends the process."""
+"""The greatest number of levels of lists and objects in checked data.
+
+jsonschema-rs recurses, and data that is nested deeper could end the process.
+"""
 
 _FLAT = frozenset((str, int, float, bool, type(None)))
 
@@ -51,11 +54,11 @@ class JsonSchema:
             return False
         try:
             return self._is_valid(data)
-        except ValueError:  # half a surrogate pair, a key that is no text
+        except ValueError:  # half a surrogate pair, or a key that is no text
             return False
 
     def errors(self, data: Any) -> "Iterator[ValidationError]":
-        """Return an iterator over the errors of the data; raise RecursionError if data or schema nest too deeply."""
+        """Return an iterator over the errors of the data; raise RecursionError if the data is nested too deeply."""
         if deeper_than(MAX_DATA_DEPTH, data):
             raise RecursionError(f"nested more than {MAX_DATA_DEPTH} levels deep")
         if self._only_quick:
@@ -101,7 +104,7 @@ class JsonSchema:
             yield ValidationError(found.message, "schema", place, instance=instance, schema=self.schema)
 
     def _guessed(self, data: Any) -> "Iterator[ValidationError]":
-        """Yield the errors by a schema that jsonschema-rs rejects; none if jsonschema rejects it too."""
+        """Yield the errors by a schema that jsonschema-rs rejects; none if jsonschema rejects the schema too."""
         from jsonschema import SchemaError
         from referencing.exceptions import Unresolvable
 

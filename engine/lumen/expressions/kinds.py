@@ -15,7 +15,10 @@ _KIND_OF: Mapping[type, str] = {
 
 
 class FaultError(Exception):
-    """The failure of an evaluation: `message` is the reason, `hint` what would be right."""
+    """The failure of an evaluation.
+
+    `message` is the reason; `hint` says what would be right, and may be empty.
+    """
 
     def __init__(self, message: str, hint: str = "") -> None:
         self.message, self.hint = message, hint
@@ -23,7 +26,10 @@ class FaultError(Exception):
 
 
 class WrongKindError(Exception):
-    """The error of an operand, counted from 0 in the evaluated node, that has none of the kinds `wanted`."""
+    """The error of an operand that has none of the kinds `wanted`.
+
+    `operand` is its index in the evaluated node; -1 is the node itself.
+    """
 
     def __init__(self, operand: int, value: Any, *wanted: str) -> None:
         self.operand, self.kind, self.wanted = operand, kind_of(value), wanted
@@ -39,7 +45,7 @@ class MismatchError(Exception):
 
 
 def kind_of(value: Any) -> str:
-    """Return the kind of a value, one of KINDS; raise FaultError if it is not JSON data."""
+    """Return the kind of a value, one of KINDS; raise FaultError if the value is not JSON data."""
     kind = _KIND_OF.get(type(value))
     if kind is not None:
         return kind

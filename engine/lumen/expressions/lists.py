@@ -48,12 +48,12 @@ def in_language(scope: Scope, value: Any) -> Any:
 
 
 def by_language(value: Any) -> bool:
-    """Return whether a value is a map, not empty, whose keys are all language tags."""
+    """Return whether a value is a non-empty map whose keys are all language tags."""
     return isinstance(value, Mapping) and bool(value) and all(map(is_language_tag, value))
 
 
 def is_text_by_language(value: Any) -> bool:
-    """Return whether a value is a map, not empty, from language tags to texts."""
+    """Return whether a value is a non-empty map from language tags to texts."""
     return by_language(value) and all(isinstance(text, str) for text in value.values())
 
 

@@ -37,7 +37,7 @@ def truth(value: Any) -> bool:
 
 
 def negation(value: Any) -> bool:
-    """Return `!value`; raise WrongKindError if it is not a boolean."""
+    """Return `!value`; raise WrongKindError if the value is not a boolean."""
     if value is True or value is False:
         return not value
     raise WrongKindError(0, value, BOOLEAN)
@@ -56,7 +56,7 @@ def equal(left: Any, right: Any) -> bool:
 
 
 def contained(value: Any, collection: Any) -> bool:
-    """Return `value in collection`: an element of a list, or a key of a map."""
+    """Return `value in collection`: an element of a list, or a key of a map; raise WrongKindError for other kinds."""
     kind = kind_of(collection)
     if kind is LIST:
         return any(equal(value, element) for element in collection)
@@ -78,19 +78,19 @@ def less(left: Any, right: Any) -> bool:
 
 
 def at_most(left: Any, right: Any) -> bool:
-    """Return `left <= right`, as `less`."""
+    """Return `left <= right`; raises as `less` does."""
     _comparable(left, right)
     return bool(left <= right)
 
 
 def greater(left: Any, right: Any) -> bool:
-    """Return `left > right`, as `less`."""
+    """Return `left > right`; raises as `less` does."""
     _comparable(left, right)
     return bool(left > right)
 
 
 def at_least(left: Any, right: Any) -> bool:
-    """Return `left >= right`, as `less`."""
+    """Return `left >= right`; raises as `less` does."""
     _comparable(left, right)
     return bool(left >= right)
 
@@ -113,7 +113,10 @@ def _numbers(left: Any, right: Any) -> None:
 
 
 def add(left: Any, right: Any) -> Any:
-    """Return the sum of two numbers, or the concatenation of two texts or lists."""
+    """Return the sum of two numbers, or the concatenation of two texts or lists.
+
+    Raises MismatchError for other pairs of kinds, and FaultError if the result is too large.
+    """
     if type(left) is int and type(right) is int and MIN_INT <= (total := left + right) <= MAX_INT:
         return total
     kind = kind_of(left)
@@ -177,7 +180,10 @@ def negative(value: Any) -> Any:
 
 
 def item(base: Any, key: Any) -> Any:
-    """Return `base[key]`: an element of a list, counted from 0, or the value of a key."""
+    """Return `base[key]`: an element of a list, counted from 0, or the value of a key.
+
+    Raises KeyError for a missing key, FaultError for a missing element, and WrongKindError for other kinds.
+    """
     kind = kind_of(base)
     if kind is MAP:
         if not isinstance(key, str):
@@ -193,7 +199,7 @@ def item(base: Any, key: Any) -> Any:
 
 
 def has(base: Any, *keys: Any) -> bool:
-    """Whether each key exists in what the ones before it lead to."""
+    """Return whether a path of keys and indices leads to a value in `base`."""
     for key in keys:
         kind = kind_of(base)
         if kind is LIST and kind_of(key) == NUMBER and key == int(key) and 0 <= key < len(base):

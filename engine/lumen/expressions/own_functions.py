@@ -26,14 +26,14 @@ from lumen.expressions.tree import (
 
 @dataclass(frozen=True)
 class OwnFunction:
-    """A function of a project: the kinds of each parameter and of the value, and what a call is replaced by.
-
-    `body` has no calls of other functions of the project.
-    """
+    """A function of a project."""
 
     parameters: Mapping[str, frozenset[str]]
+    """The kinds that each argument may have, by the argument's name."""
     returns: frozenset[str]
+    """The kinds that the value may have."""
     body: ExpressionNode
+    """The expression that replaces a call; it has no calls of other functions of the project."""
 
 
 KnownFunctions = Mapping[str, OwnFunction | None]
@@ -41,7 +41,7 @@ KnownFunctions = Mapping[str, OwnFunction | None]
 
 
 class BrokenFunctionError(Exception):
-    """An expression calls a function whose file is broken, which lint reports there."""
+    """An expression calls a function whose file is broken; that file has the finding."""
 
 
 def called(tree: ExpressionNode, functions: KnownFunctions) -> list[FunctionCall]:
@@ -66,21 +66,21 @@ def expanded(source: str, functions: KnownFunctions) -> str:
 
 
 def expanded_tree(tree: ExpressionNode, functions: KnownFunctions) -> ExpressionNode:
-    """Return the tree with each call of these functions replaced. Raises what `expanded` does."""
+    """Return the tree with each call of these functions replaced; raise the same errors as `expanded`."""
     return _Expansion(functions).of(tree)
 
 
 class _Expansion:
     """Replaces calls from the inside out.
 
-    An argument that a function uses several times is one object in the tree, so even a tree that would be much too
-    large is small in memory, and is refused before anything walks through it.
+    An argument that a function uses several times is one object in the tree. Therefore even a tree that would be much
+    too large is small in memory, and is refused before anything walks through it.
     """
 
     def __init__(self, functions: KnownFunctions) -> None:
         self.functions = functions
         self.measured: dict[int, tuple[ExpressionNode, int, int]] = {}
-        """By the identity of a node: the node, so that it lives, its number of nodes and of levels."""
+        """By the id of a node: the node, which keeps the id in use, and its number of nodes and of levels."""
 
     def of(self, node: ExpressionNode) -> ExpressionNode:
         node = rebuilt(node, self.of)

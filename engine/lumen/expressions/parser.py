@@ -20,7 +20,7 @@ _PAIRS = {
     "<>": "write `!=`", "=>": "write `>=`", "=<": "write `<=`", "++": "to change a value, use `assign`",
     "??": "write `has(…) ? … : …`", "?.": "check with `has(…)` first",
 }  # fmt: skip
-"""Operators of other languages that are two tokens here."""
+"""Operators of other languages that are two tokens here, each with a hint."""
 
 
 MAX_REMEMBERED_TREES = 10_000

@@ -18,7 +18,7 @@ _PIECE = re.compile(
     r"\\(?:x[0-9a-fA-F]{2}|u[0-9a-fA-F]{4}|[pP]\{\w*\}|.)|\\"  # an escape
     r"|\[\^?\]?(?:\\.|[^\\\]])*\]|\["  # a set
     r"|\(\?(?:P?<\w+>|[a-zA-Z]*(?:-[a-zA-Z]+)?[:)])|\(\??"  # the beginning of a group, or a switch such as `(?i)`
-    r"|(?:[*+?]|\{\d+(?:,\d*)?\})\??"  # how often
+    r"|(?:[*+?]|\{\d+(?:,\d*)?\})\??"  # a number of repetitions
     r"|.",
     re.DOTALL,
 )
@@ -77,7 +77,7 @@ def _read(source: str) -> Callable[[str], bool] | None:
 
 
 def _check_repetitions(pieces: Sequence[PatternPiece]) -> None:
-    """Raise ExpressionError for a repetition of nothing or of a repetition, and for bounds that count downwards."""
+    """Raise ExpressionError for a repetition of nothing or of a repetition, and for bounds in the wrong order."""
     before = "("
     for piece, at in pieces:
         sign = piece[0]

@@ -51,7 +51,7 @@ _entries = _ByIdentity()
 
 
 def _prepared(phrases: Mapping[str, tuple[str, ...]]) -> tuple[str, ...]:
-    """Return the padded forms without slots."""
+    """Return the forms without slots, with a space around them."""
     found = (form for texts in phrases.values() for text in texts for form in forms(text) if form.plain)
     return tuple({f" {' '.join(form.literals)} ": None for form in found})
 
@@ -61,9 +61,9 @@ def _with_slots(phrases: Mapping[str, tuple[str, ...]]) -> bool:
 
 
 def is_heard(text: str, phrases: Mapping[str, tuple[str, ...]], lists: Lists = _NO_LISTS) -> bool:
-    """Return True if any phrase, in any language, is in the text as whole words; negations have no influence.
+    """Return True if any phrase, in any language, is in the text as whole words; negations are ignored.
 
-    `lists` are those that a slot may name.
+    `lists` are those that slots may name.
     """
     try:
         table, prepared = _kept[id(phrases)]
@@ -109,10 +109,10 @@ def phrases_of(value: Any) -> Mapping[str, tuple[str, ...]]:
 
 
 def answer(scope: Scope, text: str, table: Any) -> Any:
-    """Return the value of the first `answers:` row with a phrase that is in the text, else None.
+    """Return the value of the first `answers:` row with a phrase that is in the text; None if no row has one.
 
-    If the value is a map of languages, that of the current one is returned, or the first if it is missing. A map counts
-    as one of languages if every key is the current language, or one in which the table has phrases.
+    If the value is a map of languages, return the text in the current language, or the first one if there is no such
+    text. A map counts as one of languages if every key is the current language, or one in which the table has phrases.
     """
     prepared = _answers.get(table) or _answers.put(table, _AnswerTable(table))
     found = prepared.entry(padded(text[:MAX_TEXT_EXAMINED]))
@@ -132,7 +132,7 @@ class _AnswerTable:
         self.last: tuple[str, Answer | None] = ("", None)
 
     def entry(self, said: str) -> Answer | None:
-        """Return the first row with a phrase that is in the words."""
+        """Return the first row with a phrase that is in the padded words `said`; None if no row has one."""
         before, found = self.last
         if before is not said:
             begun = (row for word in said.split() if word in self.phrases for row in self.phrases[word])

@@ -52,7 +52,7 @@ class PrattParser(ABC):
     """Prefix of the function name that a call `a.name()` gets."""
 
     max_levels: ClassVar[int]
-    """Maximum nesting of expressions; brackets count here, though they are not in the tree."""
+    """The greatest nesting of expressions; brackets count here, although they are not in the tree."""
 
     def __init__(self, tokens: list[Token]) -> None:
         self.tokens, self.token, self.position, self.level = tokens, tokens[0], 0, 0
@@ -121,7 +121,7 @@ class PrattParser(ABC):
             raise self.unexpected(f"a `{text}` is missing")
         return self.advance()
 
-    # The beginning of an expression
+    # Beginnings of an expression
 
     def literal(self) -> ExpressionNode:
         """Parse a number or a text."""
@@ -141,7 +141,7 @@ class PrattParser(ABC):
         return Identifier(token.text, offset=token.offset, end=token.end)
 
     def unary(self, power: int) -> Unary:
-        """Parse `!operand`."""
+        """Parse a prefix operator and its operand, as in `!operand`."""
         sign = self.advance()
         operand = self.expression(power)
         return Unary(sign.text, operand, offset=sign.offset, end=operand.end)
@@ -203,7 +203,7 @@ class PrattParser(ABC):
         return IndexAccess(left, key, offset=left.offset, end=self.expect("]").end)
 
     def member(self, left: ExpressionNode, _: Token, __: int) -> ExpressionNode:
-        """Parse the rest of `left.field` or `left.function(arguments)`."""
+        """Parse the rest of `left.field` or `left.function(arguments)`, a call with `left` as its first argument."""
         if self.token.kind != "name":
             raise self.unexpected("write a name after the `.`")
         name = self.advance()

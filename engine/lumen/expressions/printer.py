@@ -25,7 +25,7 @@ _ESCAPES = {"\\": "\\\\", "'": "\\'", "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 def unparse(node: ExpressionNode) -> str:
     """Return the expression as text, which parses to the same tree.
 
-    It also serves other languages with these operators (CEL, ECMAScript): a call of `.name` becomes that of a method.
+    This also serves other languages with these operators (CEL, ECMAScript): a call of `.name` becomes a method call.
     """
     match node:
         case Literal(value=value):
@@ -63,7 +63,10 @@ def _listed(nodes: Iterable[ExpressionNode]) -> str:
 
 
 def _unary(sign: str, operand: ExpressionNode) -> str:
-    """Return the text, with brackets around a sign or number: `-1` is a number, and some CELs read `!!x` as `x`."""
+    """Return the text, with brackets around an operand that is a sign or a number.
+
+    `-1` is a number, and some implementations of CEL read `!!x` as `x`.
+    """
     text = _at_least(_POSTFIX, operand)
     return f"{sign} {text}" if sign.isalpha() else sign + text
 

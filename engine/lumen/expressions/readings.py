@@ -27,8 +27,8 @@ _LOCALIZED = re.compile(r"\bin_language\((heard(?:\.\w+|\['\w+'\])*)\)")
 def readings(source: str, scope: Scope, shown: str = "") -> dict[str, Any]:
     """Return the values of the expression's paths and of functions such as `hour()` and `In('dance')`.
 
-    Keys are the parts as the author wrote them. `shown` is the author's text if it differs from `source`: parts that it
-    lacks are left out. So are parts without a value, such as a missing field in `has(event.data.name)`.
+    Keys are the parts as the author wrote them. `shown` is the author's text if it differs from `source`; parts that it
+    lacks are left out. Parts without a value are left out too, such as a missing field in `has(event.data.name)`.
     """
     found: dict[str, Any] = {}
     for node in _looked_at(parse_expression(source)):
@@ -43,7 +43,7 @@ def readings(source: str, scope: Scope, shown: str = "") -> dict[str, Any]:
 
 
 def as_written(source: str) -> str:
-    """Return the expression of a row of `hears` as the author wrote it: with `heard` for the engine's own function."""
+    """Return an expression of a row of `hears` as its author wrote it, with `heard` for the engine's own function."""
     return _LOCALIZED.sub(r"\1", _CAUGHT.sub("heard", source)) if CAUGHT in source else source
 
 

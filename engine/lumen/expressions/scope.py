@@ -9,19 +9,19 @@ from lumen.language.machines import Answer, MachineDefinition
 from lumen.talk.folding import MAX_TEXT_EXAMINED as MAX_TEXT_EXAMINED
 
 MAX_EXPRESSION_LENGTH = 2_000
-"""The most characters of an expression."""
+"""The greatest number of characters of an expression."""
 
 MAX_TREE_DEPTH = 50
-"""The most levels of an expression's tree."""
+"""The greatest number of levels of an expression's tree."""
 
 MAX_TEXT_LENGTH = 10_000
-"""The most characters of a text that an expression or a template builds."""
+"""The greatest number of characters of a text that an expression or a template builds."""
 
 MAX_COLLECTION_VALUES = 10_000
-"""The most values in a list or map that an expression builds, nested ones included."""
+"""The greatest number of values in a list or map that an expression builds, nested ones included."""
 
 MIN_INT, MAX_INT = -(2**63), 2**63 - 1
-"""Whole numbers have 64 bits, as in CEL."""
+"""The range of whole numbers: 64 bits, as in CEL."""
 
 _NOTHING: Mapping[str, Any] = MappingProxyType({})
 
@@ -31,7 +31,7 @@ def _nowhere(state: str) -> bool:
 
 
 def no_draw(count: int) -> int:
-    """Raise FaultError: the `draw` of scopes without random values, since only actions advance the random state."""
+    """Raise FaultError: the `draw` of scopes without random values, because only actions advance the random state."""
     raise FaultError("random values are not allowed here", "use `shuffle` and `pick` only in `assign`")
 
 
@@ -52,14 +52,14 @@ class Scope(NamedTuple):
     phrases: Mapping[str, Mapping[str, tuple[str, ...]]] = _NOTHING
     answers: Mapping[str, tuple[Answer, ...]] = _NOTHING
     epoch: float = 0.0
-    """The time of the clock's zero [s since 1970, UTC]."""
+    """The time at which the clock was 0 [s since 1970, UTC]."""
     timezone: str = ""
     """The IANA name of the time zone for `hour()` and similar functions."""
     lists: Mapping[str, Sequence[Any]] = _NOTHING
     draw: Callable[[int], int] = no_draw
     """Returns a random number from 0 to one less than its argument."""
     machine: MachineDefinition | None = None
-    """The machine with the rows of `hears` for `heard`."""
+    """The machine with the rows of `hears` that `heard` reads; None if there are no such rows."""
 
 
 ROOTS = ("context", "event", "state", "lists")

@@ -1,4 +1,4 @@
-"""Rewrite expressions about entries of lists into expressions about the context: `question` becomes its path."""
+"""Expressions about entries of lists, rewritten as expressions about the context: `question` becomes its path."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,7 +19,7 @@ from lumen.expressions.tree import (
 )
 
 _WHOLE = frozenset(("has", "heard"))
-"""The functions whose arguments from a list keep their texts in all languages."""
+"""The functions for whose arguments texts by language are kept in all languages."""
 
 
 def substituted(source: str, variables: Mapping[str, str], *, localized: bool = True) -> str:
@@ -61,7 +61,7 @@ class _Substitution:
         self.localized = localized
 
     def of(self, node: ExpressionNode, *, whole: bool = False) -> ExpressionNode:
-        """Return the node with all variables replaced; `whole` keeps its text in all languages."""
+        """Return the node with all variables replaced; `whole` keeps its texts in all languages."""
         match node:
             case Identifier() | FieldAccess() | IndexAccess():
                 path = self.path(node)

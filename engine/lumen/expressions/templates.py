@@ -27,8 +27,8 @@ class Placeholder(NamedTuple):
 def compile_template(text: str) -> Callable[[Scope], str]:
     """Return the text as a function of a Scope that fills in its placeholders; errors have offsets in the text.
 
-    null becomes an empty text; true and false are printed as such, integral numbers without a fraction (1.0 as "1"),
-    lists and maps as JSON.
+    null becomes an empty text, true and false stay words, integral numbers have no fraction (1.0 is "1"), and lists and
+    maps become JSON. The function raises ExpressionError if a placeholder has no value, or the text becomes too long.
     """
     parts = split_template(text)
     if all(isinstance(part, str) for part in parts):

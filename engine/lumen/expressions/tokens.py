@@ -89,7 +89,7 @@ def token_at(source: str, offset: int) -> Token:
 
 
 def _filter(source: str, offset: int) -> str:
-    """Return the hint for a filter such as `| title`; empty for anything else."""
+    """Return the hint for a filter such as `| title`; empty for any other text."""
     found = _FILTER.match(source, offset)
     if found is None or found["name"] not in _FILTERS:
         return ""

@@ -7,10 +7,12 @@ from typing import NamedTuple
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SourceSpan:
-    """The place of a node in the source: characters from 0, the end exclusive; it does not count in equality."""
+    """The place of a node in the source, as offsets in characters; it does not count in equality."""
 
     offset: int = field(default=0, compare=False)
+    """The offset of the first character."""
     end: int = field(default=0, compare=False)
+    """The offset after the last character."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +24,7 @@ class Literal(SourceSpan):
 
 @dataclass(frozen=True, slots=True)
 class Identifier(SourceSpan):
-    """The beginning of a path: `context`, `event` or `state`."""
+    """The beginning of a path: `context`, `event`, `state`, `lists`, or the name of a variable."""
 
     name: str
 
@@ -94,11 +96,12 @@ class Conditional(SourceSpan):
 
 @dataclass(frozen=True, slots=True)
 class FunctionCall(SourceSpan):
-    """`function(arguments)`, or `first.function(rest)`; `named` is the offset of the function's name."""
+    """`function(arguments)`, or `first.function(rest)`."""
 
     function: str
     arguments: tuple["ExpressionNode", ...]
     named: int = field(default=0, compare=False)
+    """The offset of the function's name."""
 
 
 ExpressionNode = (

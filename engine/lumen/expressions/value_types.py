@@ -24,10 +24,11 @@ class FieldPresence(Enum):
 
 @dataclass(frozen=True)
 class ValueType:
-    """The kinds that a value may have; `schemas` are the alternatives that describe its fields or elements."""
+    """The kinds that a value may have."""
 
     kinds: frozenset[str] = KINDS
     schemas: tuple[Mapping[str, Any], ...] = ()
+    """Alternative JSON Schemas that describe its fields or elements; empty if these are unknown."""
 
     def field(self, name: str) -> tuple["ValueType", FieldPresence]:
         """Return the type of a field, and its presence in the worst alternative."""
@@ -58,7 +59,7 @@ def of(*kinds: str) -> ValueType:
 
 
 def union(types: Iterable[ValueType]) -> ValueType:
-    """Return the type of a value that has any of these types; ANY for an empty list."""
+    """Return the type of a value that has any of these types; ANY if there are no types."""
     listed = list(types)
     if not listed:
         return ANY

@@ -23,7 +23,7 @@ _FIRST, _LAST = ((datetime(year, 1, 1, tzinfo=UTC) - _ZERO) // _MICROSECOND for 
 """The range of moments in which time zones are defined."""
 
 _WEEK = 8
-"""Days, including today, after which each time on each weekday has occurred."""
+"""The number of days, including today, after which each time on each weekday has occurred."""
 
 
 @lru_cache(maxsize=64)
@@ -41,7 +41,10 @@ def zone(name: str) -> tzinfo:
 
 
 def moment(epoch: float, at: float) -> int:
-    """Return the moment at which a clock shows `at` [s] if its zero was at `epoch` [s since 1970]."""
+    """Return the moment at which a clock shows `at` [s] if its zero was at `epoch` [s since 1970, UTC].
+
+    A moment beyond the range of time zones becomes the nearest one within it.
+    """
     shown = (nanoseconds(epoch) + nanoseconds(at) + 500) // 1000
     return min(max(shown, _FIRST), _LAST)
 
@@ -54,8 +57,8 @@ def local_time(moment: int, timezone: str) -> datetime:
 def next_moment(schedule: Schedule, after: int, timezone: str) -> int | None:
     """Return the first moment of a schedule that is later than `after`; None if the schedule is over.
 
-    A time of day occurs when the wall clock first shows it or a later one. A time skipped in spring occurs at the
-    moment after the gap, one repeated in autumn only the first time.
+    A time of day occurs when the wall clock first shows it or a later one. A time that is skipped in spring occurs at
+    the end of the gap; a time that is repeated in autumn occurs only the first time.
     """
     region = zone(timezone)
     today = local_time(after, timezone).date()
@@ -68,11 +71,11 @@ def next_moment(schedule: Schedule, after: int, timezone: str) -> int | None:
 
 
 def readjusted(due: int, schedule: Schedule, was: int, now: int, timezone: str) -> int | None:
-    """Return the next moment of a schedule after the clock was set from `was` to `now`; `due` was the one before.
+    """Return the next moment of a schedule after the clock was set from `was` to `now`; `due` was the next one before.
 
     After a correction of up to an hour it stays `due`. After a greater one it is the next moment from `now`, or, if the
     clock was put forward, from the midnight before `now` or from `was`, whichever is later; a moment that has passed
-    today is due at once.
+    today is due at once. Return None if the schedule is over.
     """
     if abs(now - was) <= 3600 * MICROSECONDS:
         return due
@@ -89,7 +92,7 @@ def _days(schedule: Schedule, today: date) -> list[date]:
 
 
 def _first(wanted: datetime, region: tzinfo) -> int:
-    """Return the moment at which the wall clock first shows a time, or skips it."""
+    """Return the moment at which the wall clock first shows a local time, or skips it."""
     late = wanted.replace(tzinfo=region).astimezone(UTC)
     if late.astimezone(region).replace(tzinfo=None) != wanted:  # skipped: `fold` selects the offset
         early = wanted.replace(tzinfo=region, fold=1).astimezone(UTC)
