@@ -1,7 +1,7 @@
 """Activation methods: they select the rules of a block that are applied, and change their degrees.
 
-Each method accepts the rules' degrees in order and returns them, with NaN for a rule that is not applied. (Not with 0:
-a consequent such as `not Near` turns a 0 into another degree.)
+Each method receives the rules' degrees in order and returns them, with NaN for a rule that is not applied. It is not 0,
+because a consequent such as `not Near` turns 0 into another degree.
 """
 
 from collections.abc import Callable, Mapping
@@ -30,7 +30,7 @@ def general(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
 
 
 def first(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """Return the degrees of the first `rules` rules that reach `threshold`, in the order written."""
+    """Return the degrees of the first `rules` rules that are above 0 and reach `threshold`, in the order written."""
     taken: Number = 0.0
     chosen = []
     for degree in degrees:
@@ -41,7 +41,7 @@ def first(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
 
 
 def last(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """Return the degrees of the last `rules` rules that reach `threshold`."""
+    """Return the degrees of the last `rules` rules that are above 0 and reach `threshold`."""
     return first(m, activation, degrees[::-1])[::-1]
 
 
@@ -52,7 +52,7 @@ def lowest(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
 
 
 def highest(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """Return the `rules` highest degrees; of equal ones, those written first."""
+    """Return the `rules` highest degrees above 0; of equal ones, those written first."""
     ranks = m.rank([-degree for degree in degrees])
     return _ranked(m, activation, ranks, degrees)
 
@@ -71,7 +71,7 @@ def proportional(m: Arithmetic, activation: Activation, degrees: Degrees) -> Deg
 
 
 def threshold(m: Arithmetic, activation: Activation, degrees: Degrees) -> Degrees:
-    """Return the degrees that compare with `threshold` by the operator `comparison`."""
+    """Return the degrees for which the comparison with `threshold` by the operator `comparison` is true."""
     compare = COMPARISON_FUNCTIONS[activation.comparison]
     return [m.where(compare(degree, activation.threshold), degree, nan) for degree in degrees]
 

@@ -23,7 +23,7 @@ Number = Any
 
 @dataclass(frozen=True, slots=True)
 class Arithmetic:
-    """The operations that memberships, hedges, norms and activations consist of."""
+    """The operations of which memberships, hedges, norms and activations consist."""
 
     exp: Callable[[Number], Number]
     log: Callable[[Number], Number]
@@ -33,8 +33,11 @@ class Arithmetic:
     minimum: Callable[[Number, Number], Number]
     maximum: Callable[[Number, Number], Number]
     where: Callable[[Any, Number, Number], Number]
+    """Returns the second argument if the first is true, else the third, element by element."""
     interpolate: Callable[[Number, tuple[float, ...], tuple[float, ...]], Number]
+    """Returns the value at x of the polyline through xs (ascending) and ys, constant beyond its ends."""
     rank: Callable[[list[Number]], list[Number]]
+    """Returns the rank of each value from 0, element by element; equal values keep their order."""
 
     def clamp(self, x: Number, low: float, high: float) -> Number:
         """Return `x`, or the nearer end of [low, high] if it is outside."""
@@ -74,7 +77,7 @@ NUMBERS = Arithmetic(
 
 @cache
 def arrays() -> Arithmetic:
-    """Return the arithmetic of NumPy, which is imported by the first call."""
+    """Return the arithmetic of NumPy arrays; the first call imports NumPy."""
     import numpy as np
 
     def rank(values: list[Number]) -> list[Number]:

@@ -1,4 +1,4 @@
-"""Replace the roles of joints in a controller's outputs and searches by the joints of a body."""
+"""Controllers with the joints of a body in place of the roles of joints, in outputs and searches."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -9,7 +9,10 @@ from lumen.language.roles import JointRole
 
 
 def by_role(controller: ControllerDefinition, body: Body) -> ControllerDefinition:
-    """Return the controller with the joints of this body in place of their roles; roles that it lacks stay."""
+    """Return the controller with the joints of this body in place of their roles; roles that the body lacks stay.
+
+    A reversed joint gets the opposite gain, limits and angles.
+    """
     bindings = tuple(_bound(binding, body) for binding in controller.output_bindings)
     tracking = controller.tracking
     sweep, ahead = (_placed(angles, body) for angles in (tracking.sweep, tracking.ahead))

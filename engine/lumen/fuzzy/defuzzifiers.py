@@ -25,11 +25,15 @@ if TYPE_CHECKING:
 
     from lumen.fuzzy.arithmetic import Array
 
-_ROOM = 1 << 18  # values of a chunk: small enough for the cache
+_ROOM = 1 << 18  # values of a chunk: few enough for the cache
 
 
 class Sampled:
-    """Defuzzifies by `method`; `terms` is the index of the term that each of the given degrees implies."""
+    """Defuzzifies a sampled set by `method`, with NumPy.
+
+    `memberships` are those of each term at the `points`. `terms` is, for each of the degrees given later, the index of
+    the term that it implies, and `implications` the norm by which it does.
+    """
 
     def __init__(
         self,
@@ -50,7 +54,7 @@ class Sampled:
         self._method = DEFUZZIFY[method]
 
     def crisp(self, degrees: Sequence[float], values: Sequence[float] = ()) -> float:
-        """Return the output; NaN if the set is empty."""
+        """Return the output for one degree of each conclusion; NaN if the set is empty."""
         import numpy as np
 
         return float(self.crisp_batch([np.array([degree]) for degree in degrees])[0])
@@ -64,7 +68,7 @@ class Sampled:
         return np.concatenate([self._chunk([degree[i : i + size] for degree in degrees]) for i in chunks])
 
     def aggregated(self, degrees: "Sequence[Array]") -> "Array":
-        """Return the concluded set, Shape (n, points)."""
+        """Return the aggregated set, Shape (n, points), for degrees of Shape (n,) each."""
         import numpy as np
 
         whole = np.zeros((len(degrees[0]), len(self._points)))
@@ -85,14 +89,14 @@ def _centroid(y: "Array", whole: "Array") -> "Array":
 
 
 def _bisector(y: "Array", whole: "Array") -> "Array":
-    """Return the point that halves the area; the mean of all points that are equally near to it."""
+    """Return the point that halves the area; of equally near points, their mean."""
     import numpy as np
 
     half = whole.cumsum(axis=1)
     off = abs(half / half[:, -1:] - 0.5)
     found = _mean(y, off == off.min(axis=1, keepdims=True))
     within = whole > 0.0
-    return np.where(within.sum(axis=1) == 1, within @ y, found)  # a single point has no area beside it
+    return np.where(within.sum(axis=1) == 1, within @ y, found)  # a single point has no area on either side
 
 
 def _mean(y: "Array", chosen: "NDArray[np.bool_]") -> "Array":
@@ -129,7 +133,8 @@ def defuzzifier(
 ) -> Defuzzifier:
     """Return the cheapest defuzzifier that is exact for the rules' conclusions about an output.
 
-    Besides the degrees, it gets the values of the variables called `known`, the first `inputs` of which are inputs.
+    Besides the degrees, it receives the values of the variables `known`, the first `inputs` of which are the
+    controller's inputs.
     """
     names = list(dict.fromkeys(conclusion.term for conclusion in conclusions))
     which = [names.index(conclusion.term) for conclusion in conclusions]
@@ -149,7 +154,7 @@ def defuzzifier(
 def midpoints(variable: Variable) -> list[float]:
     """Return the points at which an output's set is sampled: the middles of `resolution` equal parts of its range.
 
-    If the top of a set lies between two of them, as that of a single point may, it is added.
+    If the top of a narrow term lies between two of them, it is added. The points ascend.
     """
     step = (variable.maximum - variable.minimum) / variable.resolution
     points = [variable.minimum + (i + 0.5) * step for i in range(variable.resolution)]

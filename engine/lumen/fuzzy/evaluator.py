@@ -1,4 +1,4 @@
-"""Evaluate a controller, which is compiled once, for single inputs or for hundreds of thousands."""
+"""Evaluation of a controller, which is compiled once, for single inputs or for hundreds of thousands."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from lumen.fuzzy.arithmetic import Array
 
-_CHUNK = 1 << 13  # rows of a batch that are processed together: they fit into the cache
+_CHUNK = 1 << 13  # rows of a batch that are processed together: few enough for the cache
 
 
 class Evaluator:
@@ -34,9 +34,10 @@ class Evaluator:
         ]
 
     def evaluate(self, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Return the outputs in their own units; `previous` outputs are used by those with `lock_previous`.
+        """Return the outputs by name, in their own units; those with `lock_previous` keep their value in `previous`.
 
-        Raises UsageError for a missing, unknown or NaN input, LumenError if no rule fires and there is no default.
+        They keep it if no rule fires. Raises UsageError for a missing, unknown or NaN input, LumenError if no rule
+        fires for an output without a previous value and a default.
         """
         values = self._values(inputs)
         tape = self.program.run(values)
@@ -54,7 +55,10 @@ class Evaluator:
     def evaluate_batch(
         self, inputs: "Mapping[str, ArrayLike]", previous: Mapping[str, float] | None = None
     ) -> "dict[str, Array]":
-        """Return arrays of outputs, Shape (n,), for inputs of Shape (n,) each. Raises as `evaluate`."""
+        """Return arrays of outputs, Shape (n,), for inputs of Shape (n,) each; raises the same errors as `evaluate`.
+
+        The rows count as successive evaluations: `previous` is used for the first one.
+        """
         import numpy as np
 
         columns = self._columns(inputs)
@@ -74,7 +78,7 @@ class Evaluator:
 
     def _values(self, inputs: Mapping[str, float]) -> list[float]:
         try:
-            values = [float(inputs[name] + 0.0) for name in self._names]  # a text is no number
+            values = [float(inputs[name] + 0.0) for name in self._names]  # a text raises here: it is no number
         except KeyError as error:
             raise UsageError(f"the input `{error.args[0]}` of `{self.controller.name}` is missing") from None
         except (TypeError, ValueError, OverflowError):
@@ -151,7 +155,11 @@ class Evaluator:
 
 
 def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping[str, float] | None) -> float:
-    """Return the output if no rule fires, or if no rule that fires has a value. Raises LumenError without a default."""
+    """Return the value of an output for which no rule fires, or none that fires has a value: the previous one or the
+    default.
+
+    Raises LumenError without a default.
+    """
     if variable.lock_previous and previous and not isnan(previous.get(variable.name, float("nan"))):
         return previous[variable.name]
     if variable.default is not None:
@@ -163,5 +171,5 @@ def _fallback(variable: Variable, inputs: Mapping[str, float], previous: Mapping
 def infer(
     controller: ControllerDefinition, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None
 ) -> dict[str, float]:
-    """Return the outputs of a controller, once; for repeated evaluations, keep an `Evaluator`, which is compiled."""
+    """Return the outputs of a controller once; for repeated evaluations keep an `Evaluator`, which is compiled."""
     return Evaluator(controller).evaluate(inputs, previous)

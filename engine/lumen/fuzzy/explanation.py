@@ -1,4 +1,4 @@
-"""Explain a controller's outputs by every number between them and the inputs."""
+"""Explanations of a controller's outputs: every number between the inputs and the outputs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from lumen.language.controllers import Rule, Variable
 
 @dataclass(frozen=True)
 class Concluded:
-    """The rules' conclusions about an output: its value, the degree of each term, and the aggregated set."""
+    """The rules' conclusions about an output."""
 
     degrees: Mapping[str, float]
     """The degree of each term."""
@@ -30,18 +30,21 @@ class Concluded:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Memberships by input and term, each rule with its degree, and the conclusions about each output."""
+    """Every number between the inputs and the outputs of an evaluation."""
 
     inputs: Mapping[str, float]
     memberships: Mapping[str, Mapping[str, float]]
+    """The degree of each term, by input and term."""
     rules: tuple[tuple[Rule, float], ...]
+    """Each rule with its degree."""
     outputs: Mapping[str, Concluded]
+    """The conclusions about each output."""
 
 
 def explain(
     evaluator: Evaluator, inputs: Mapping[str, float], previous: Mapping[str, float] | None = None
 ) -> Explanation:
-    """Return every value between these inputs and the outputs. Raises as `evaluate`."""
+    """Return every number between these inputs and the outputs; raises the same errors as `evaluate`."""
     controller, program = evaluator.controller, evaluator.program
     values = evaluator.evaluate(inputs, previous)
     tape = program.run([float(inputs[name]) for name in controller.inputs])

@@ -1,7 +1,7 @@
 """Formulas of `function` terms: Lumen's expressions over real numbers.
 
 `x` and the names of variables are numbers, `/` is a division of reals, and a comparison counts as 1 or 0. A formula has
-no value (NaN) if one of its parts has none or an infinite one: after a division by zero, or a root of -1.
+no value (NaN) if one of its parts has no value or an infinite one, as after a division by zero or a root of -1.
 """
 
 import math
@@ -34,7 +34,9 @@ _ARITHMETIC: Mapping[str, Callable[[Any, Any], Any]] = {"+": add, "-": sub, "*":
 
 
 def formula(m: Arithmetic, text: str, names: Sequence[str]) -> Formula:
-    """Return the compiled formula; `names` is the order of the variables. Raises ExpressionError for an invalid one."""
+    """Return the compiled formula; `names` is the order of the variables. Raises ExpressionError for an invalid
+    formula.
+    """
     part = _Compiler(m, names).part(parse_expression(text))
     return _on_numbers(part) if m is NUMBERS else _on_arrays(part)
 
@@ -43,7 +45,7 @@ def _on_numbers(part: FormulaPart) -> Formula:
     def value(x: float, values: Sequence[float]) -> float:
         try:
             found = float(part(x, values))
-        except (ArithmeticError, ValueError, TypeError):  # a power of a negative number is a complex one
+        except (ArithmeticError, ValueError, TypeError):  # such as a power of a negative number, which is complex
             return math.nan
         return found if math.isfinite(found) else math.nan
 
@@ -68,7 +70,7 @@ def _on_arrays(part: FormulaPart) -> Formula:
 
 
 class _Compiler:
-    """Compiles the tree of a checked formula to functions, lazy for numbers, on whole arrays for arrays."""
+    """Compiles the tree of a checked formula to functions: lazy ones for numbers, else on whole arrays."""
 
     def __init__(self, m: Arithmetic, names: Sequence[str]) -> None:
         self._m, self._names = m, {name: i for i, name in enumerate(names)}
@@ -129,7 +131,7 @@ class _Compiler:
         end = 0.0 if sign == "&&" else 1.0
 
         def value(x: Any, values: Sequence[Any]) -> Any:
-            """Evaluate from the left, as for numbers: the parts after the deciding one have no influence."""
+            """Return the same as a lazy evaluation from the left: parts after the deciding one have no influence."""
             found = parts[-1](x, values)
             found = self._degree(found != 0.0, found)
             for part in reversed(parts[:-1]):

@@ -1,13 +1,14 @@
 """The centroid of clipped terms under their maximum, exact for the sampled set, but without evaluating its points.
 
-With minimum as implication and maximum as aggregation the concluded set is max over k of min(d_k, M_k(y)). Cut it into
-layers between the sorted degrees: to the layer below the m-th greatest degree exactly the m terms with the greatest
-degrees contribute, so its area is F_S(top) - F_S(bottom), where S are these terms, M_S their maximum and
+With minimum as implication and maximum as aggregation, the concluded set is max over k of min(d_k, M_k(y)). Cut the set
+into layers between the sorted degrees: exactly the m terms with the greatest degrees contribute to the layer below the
+m-th greatest degree, so its area is F_S(top) - F_S(bottom), where S are these terms, M_S their maximum and
 
     F_S(t) = sum over the points y of min(t, M_S(y)),
 
-and likewise for the moment. F_S is piecewise linear in t, with a corner at each sampled membership: once these are
-sorted and summed up, one bisection evaluates it. So the cost grows with the logarithm of the number of points.
+and likewise for the moment. F_S is piecewise linear in t, with a corner at each sampled membership: once the
+memberships are sorted and summed up, one bisection evaluates F_S. So the cost grows with the logarithm of the number of
+points.
 """
 
 from bisect import bisect_left
@@ -20,13 +21,17 @@ if TYPE_CHECKING:
     from lumen.fuzzy.arithmetic import Array
 
 MAX_LAYERED_TERMS = 6
-"""The maximum number of terms: a layer is kept for every union of terms that occurs, so at most 2^6."""
+"""The greatest number of terms: a layer is kept for every union of terms that occurs, so at most 2^6."""
 
-_BINS = 1 << 14  # bins of the degrees' range, with which a batch locates corners before it searches
+_BINS = 1 << 14  # bins of the degrees' range, by which a batch finds most layers without a search
 
 
 class Layer:
-    """F_S(t) and its first moment for one union of terms; `offsets` are the points' distances from their middle."""
+    """F_S(t) and its first moment for one union of terms.
+
+    `offsets` are the distances of the points from the middle of the range, and `memberships` those of M_S at the
+    points.
+    """
 
     def __init__(self, offsets: Sequence[float], memberships: Sequence[float]) -> None:
         pairs = sorted(zip(memberships, offsets, strict=True))
@@ -37,13 +42,16 @@ class Layer:
         self.above = [*accumulate((offset for _, offset in reversed(pairs)), initial=0.0)][::-1]
 
     def measure(self, t: float) -> tuple[float, float]:
-        """Return area and moment under the level `t`."""
+        """Return area and moment under the level `t`, as sums over the points."""
         i = bisect_left(self.levels, t)
         return self.area[i] + t * self.count[i], self.moment[i] + t * self.above[i]
 
 
 class LayeredCentroid:
-    """Defuzzifies by centroid; `terms` is the index of the term that each of the given degrees clips."""
+    """Defuzzifies by centroid; `terms` is the index of the term that each of the degrees given later clips.
+
+    The `points` ascend, and `memberships` has those of each term at them.
+    """
 
     def __init__(self, points: Sequence[float], memberships: Sequence[Sequence[float]], terms: Sequence[int]) -> None:
         self._middle = (points[0] + points[-1]) / 2
@@ -124,7 +132,7 @@ class _Table:
         self.sure = np.append(edges[:-1] == edges[1:], False)  # an unbounded sum may exceed 1
 
     def measure(self, t: "Array") -> "tuple[Array, Array]":
-        """Return area and moment under each level. A bin with a corner needs a search; others do not."""
+        """Return area and moment under each level; only levels in a bin with a corner need a search."""
         import numpy as np
 
         bins = np.minimum(t * _BINS, _BINS).astype(np.intp)

@@ -1,9 +1,10 @@
 """Evaluates a controller for an image at the magnification that gives the greatest output.
 
-The output for a magnified image is divided by the magnification. Magnifications are 1 and each following half octave.
-The best one moves the face to the point at which the controller's surface, seen from the neutral points, is steepest.
-If each output depends on an input of its own, the distance of the input from its neutral point determines it, and each
-image needs only one evaluation. Otherwise all magnifications are tried.
+The output for a magnified image is divided by the magnification. Each magnification is half an octave greater than the
+one before; the first is 1. The best one moves the face to the point at which the controller's surface, seen from the
+neutral points, is steepest. If each output depends on an input of its own, the distance of the input from its neutral
+point determines the best magnification, and each image needs only one evaluation. Otherwise all magnifications are
+tried.
 """
 
 from collections.abc import Mapping
@@ -20,7 +21,7 @@ from lumen.language.controllers import ControllerDefinition
 ZOOM_STEP = 2**0.5
 """The ratio of a magnification to the one before."""
 HALVINGS = 20
-"""Bisections in the search for the distance from which the next magnification is better."""
+"""The number of bisections in the search for the distance from which the next magnification is better."""
 ONE_BY_ONE = frozenset(("general", "threshold"))
 """The activation methods with which the rules of a block do not affect each other."""
 
@@ -29,7 +30,7 @@ InputSide = tuple[str, bool]
 
 
 class Magnifier:
-    """Evaluates images, magnified about the inputs' neutral points within the limits of the controller's `track:`."""
+    """Evaluates images, magnified about the inputs' neutral points up to the `zoom` of the controller's `track:`."""
 
     def __init__(self, controller: ControllerDefinition) -> None:
         self._controller = controller
@@ -43,7 +44,10 @@ class Magnifier:
         self._own = _own_inputs(controller)
 
     def answer(self, inputs: Mapping[str, float], previous: Mapping[str, float]) -> dict[str, float]:
-        """Return the outputs for an image; `previous` ones serve those with `lock_previous`. Raises as `evaluate`."""
+        """Return the outputs for an image; raises the same errors as `evaluate`.
+
+        Outputs with `lock_previous` keep their value in `previous` if no rule fires.
+        """
         if self._own is None or len(self._zooms) == 1:
             return self._tried(inputs, previous)
         zooms = {name: self._best(name, value) for name, value in inputs.items()}
@@ -51,7 +55,7 @@ class Magnifier:
         return {name: value / zooms.get(self._own.get(name, ""), 1.0) for name, value in said.items()}
 
     def _tried(self, inputs: Mapping[str, float], previous: Mapping[str, float]) -> dict[str, float]:
-        """Return for each output its greatest value over all magnifications."""
+        """Return for each output its value of the greatest size over all magnifications."""
         outputs: dict[str, float] = {}
         for zoom in self._zooms:
             said = self._evaluator.evaluate(self._magnified(inputs, dict.fromkeys(inputs, zoom)), previous)
@@ -77,7 +81,9 @@ class Magnifier:
 
     @cached_property
     def _far_enough(self) -> dict[InputSide, float]:
-        """Return the distance of each input from its neutral point beyond which magnification has no benefit."""
+        """The distance of each input from its neutral point, on each side, beyond which
+        magnification has no benefit.
+        """
         steepest: dict[InputSide, tuple[float, float, str]] = {}
         for output, name, xs, ys in Survey(self._controller).slices():
             for x, y in zip(xs, ys, strict=True):
@@ -111,7 +117,7 @@ class Magnifier:
 
 
 def _own_inputs(controller: ControllerDefinition) -> dict[str, str] | None:
-    """Return the one input that each output depends on; None if one depends on several, or several on one.
+    """Return the one input on which each output depends; None if that is not a one-to-one relation.
 
     It is also None if rules compete, or if the range of an input is infinite.
     """

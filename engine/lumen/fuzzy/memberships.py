@@ -15,7 +15,7 @@ from lumen.language.controllers import Term
 Membership = Callable[[Number], Number]
 
 LEAST_DENOMINATOR = 1e-300
-"""A denominator or an exponent's base that must not be zero; far below every membership that matters."""
+"""The least denominator, or argument of a logarithm; it is far below every membership that matters."""
 
 MAX_EXPONENT = 700.0
 """The largest exponent: e^700 is still a float."""
@@ -32,7 +32,7 @@ def membership(m: Arithmetic, term: Term) -> Membership:
 
 
 def function(m: Arithmetic, text: str) -> Membership:
-    """Return a formula of x as a membership, clipped to 0 and 1, and 0 if it has no value."""
+    """Return a formula of x as a membership, clipped to 0 and 1; it is 0 if the formula has no value."""
     value = formula(m, text, ())
 
     def shape(x: Number) -> Number:
@@ -43,7 +43,7 @@ def function(m: Arithmetic, text: str) -> Membership:
 
 
 def _rising(m: Arithmetic, start: float, end: float) -> Membership:
-    """Return a ramp from 0 at `start` to 1 at `end`; a step if they are equal, 1 if `start` is infinite."""
+    """Return a ramp from 0 at `start` to 1 at `end`; a step if they are equal, and 1 if `start` is minus infinity."""
     if start == -inf:
         return lambda x: 1.0
     if end <= start:
@@ -53,7 +53,7 @@ def _rising(m: Arithmetic, start: float, end: float) -> Membership:
 
 
 def _falling(m: Arithmetic, start: float, end: float) -> Membership:
-    """Return a ramp from 1 at `start` to 0 at `end`; a step if they are equal, 1 if `end` is infinite."""
+    """Return a ramp from 1 at `start` to 0 at `end`; a step if they are equal, and 1 if `end` is infinite."""
     mirrored = _rising(m, -end, -start)
     return lambda x: mirrored(-x)
 
@@ -76,13 +76,13 @@ def gaussian(m: Arithmetic, mean: float, sigma: float) -> Membership:
 
 
 def gaussian_product(m: Arithmetic, mean_a: float, sigma_a: float, mean_b: float, sigma_b: float) -> Membership:
-    """Return the left half of one Gaussian bell times the right half of another."""
+    """Return the left half of one Gaussian bell times the right half of another; each is 1 on its other side."""
     a, b = gaussian(m, mean_a, sigma_a), gaussian(m, mean_b, sigma_b)
     return lambda x: a(m.minimum(x, mean_a)) * b(m.maximum(x, mean_b))
 
 
 def bell(m: Arithmetic, center: float, width: float, slope: float) -> Membership:
-    """Return a generalized bell."""
+    """Return a generalized bell: 1 / (1 + |(x - center) / width|^(2 slope))."""
     if slope == 0.0:
         return _half
 
@@ -94,7 +94,7 @@ def bell(m: Arithmetic, center: float, width: float, slope: float) -> Membership
 
 
 def sigmoid(m: Arithmetic, inflection: float, slope: float) -> Membership:
-    """Return a sigmoid; a negative `slope` makes it fall."""
+    """Return a sigmoid, 1/2 at `inflection`; a negative `slope` makes it fall."""
     if slope == 0.0:
         return _half
     return lambda x: 1.0 / (1.0 + m.exp(m.clamp(slope * (inflection - x), -MAX_EXPONENT, MAX_EXPONENT)))
@@ -106,7 +106,7 @@ def _half(x: Number) -> Number:
 
 
 def sigmoid_difference(m: Arithmetic, left: float, rising: float, falling: float, right: float) -> Membership:
-    """Return the difference of two sigmoids."""
+    """Return the absolute difference of two sigmoids."""
     a, b = sigmoid(m, left, rising), sigmoid(m, right, falling)
     return lambda x: m.abs(a(x) - b(x))
 
@@ -152,7 +152,7 @@ def pi_shape(m: Arithmetic, a: float, b: float, c: float, d: float) -> Membershi
 
 
 def spike(m: Arithmetic, center: float, width: float) -> Membership:
-    """Return a double-sided exponential decay about `center`."""
+    """Return an exponential decay about `center` on both sides."""
     k = -10.0 / abs(width)
     return lambda x: m.exp(k * m.abs(x - center))
 
@@ -193,14 +193,14 @@ def arc(m: Arithmetic, start: float, end: float) -> Membership:
 
 
 def binary(m: Arithmetic, start: float, direction: float) -> Membership:
-    """Return a step at `start`, towards the side of `direction`."""
+    """Return 1 from `start` on, towards the side on which `direction` is, else 0."""
     if direction > start:
         return lambda x: m.where(x >= start, 1.0, 0.0)
     return lambda x: m.where(x <= start, 1.0, 0.0)
 
 
 def discrete(m: Arithmetic, *points: float) -> Membership:
-    """Return the linear interpolation between points, given as x, y, x, y, …"""
+    """Return the linear interpolation between points, given as x, y, x, y, …, with ascending x."""
     xs, ys = points[::2], points[1::2]
     return lambda x: m.interpolate(x, xs, ys)
 

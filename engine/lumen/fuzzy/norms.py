@@ -1,4 +1,4 @@
-"""T-norms and S-norms: the combinations of two degrees by `and`, `or`, implication and aggregation.
+"""T-norms and S-norms: they combine two degrees by `and`, `or`, implication and aggregation.
 
 An unbounded sum may pass more than 1 to another norm; even then no denominator is zero.
 """
@@ -9,7 +9,7 @@ from lumen.fuzzy.arithmetic import Arithmetic, Number
 
 Norm = Callable[[Arithmetic, Number, Number], Number]
 
-_TINY = 1e-300  # keeps a denominator above zero if the other side of `where` is the result
+_TINY = 1e-300  # keeps the denominator above zero if the other side of `where` is the result
 
 
 def _drastic_product(m: Arithmetic, a: Number, b: Number) -> Number:

@@ -46,7 +46,7 @@ HEDGE_FUNCTIONS: Mapping[str, Callable[[Arithmetic, Number], Number]] = {
 
 
 def hedged(m: Arithmetic, hedges: tuple[str, ...], degree: Number) -> Number:
-    """Return the degree after its hedges; the one next to the term is applied first."""
+    """Return the degree after its hedges; the hedge next to the term is applied first."""
     for hedge in reversed(hedges):
         degree = HEDGE_FUNCTIONS[hedge](m, degree)
     return degree
@@ -57,18 +57,18 @@ Operation = Callable[[Tape], Any]
 
 
 class Conclusion(NamedTuple):
-    """A rule's conclusion about a `term` of an output: its degree is in `slot` and modifies it by `implication`."""
+    """A rule's conclusion about an output."""
 
     term: str
+    """The output's term that it concludes."""
     slot: int
+    """The slot of its degree on the tape."""
     implication: str
+    """The norm by which the degree modifies the term."""
 
 
 class InferenceProgram:
-    """The operations of a controller under one arithmetic.
-
-    `rules` has the slot of each rule's degree, in the order written; `conclusions` those of each output.
-    """
+    """The operations of a controller under one arithmetic."""
 
     def __init__(self, controller: ControllerDefinition, m: Arithmetic) -> None:
         self._controller, self._m = controller, m
@@ -76,8 +76,10 @@ class InferenceProgram:
         self._known: dict[Any, int] = {}
         self._parts: dict[int, int] = {}
         self.conclusions: dict[str, list[Conclusion]] = {name: [] for name in controller.outputs}
+        """The conclusions about each output, in the order of the rules."""
         self._inputs = {name: i for i, name in enumerate(controller.inputs)}
         self.rules = [slot for block in controller.blocks for slot in self._block(block)]
+        """The slot of each rule's degree, in the order written."""
 
     def run(self, inputs: Sequence[Any]) -> Tape:
         """Return the tape for these inputs: numbers or arrays, depending on the arithmetic."""
@@ -95,7 +97,10 @@ class InferenceProgram:
         return slot
 
     def _block(self, block: RuleBlock) -> list[int]:
-        """Return the slots of the rules' degrees; a rule may use another's conclusion only if all rules are applied."""
+        """Return the slots of the rules' degrees.
+
+        A rule may use an earlier rule's conclusion only if the activation decides about each rule alone.
+        """
         operators = block.operators
         if operators.activation.method in ("general", "threshold"):
             return [self._conclude(rule, self._activated([rule], operators)[0], operators) for rule in block.rules]
@@ -111,7 +116,9 @@ class InferenceProgram:
         return [self._part(whole, i) for i in range(len(slots))]
 
     def _part(self, whole: int, i: int) -> int:
-        """Return the slot of a rule's degree after activation; it is 0 for a rule not applied, which has NaN before."""
+        """Return the slot of a rule's degree after activation; it is 0 for a rule that is not applied, which has NaN
+        before.
+        """
         m = self._m
         part = self._add(lambda tape: tape[whole][i])
         slot = self._add(lambda tape: m.where(tape[part] == tape[part], tape[part], 0.0))
@@ -123,7 +130,9 @@ class InferenceProgram:
         return slot if weight == 1.0 else self._add(lambda tape: weight * tape[slot])
 
     def _conclude(self, rule: Rule, slot: int, operators: Operators) -> int:
-        """Add a rule's conclusions. A hedge in a consequent also changes the degrees of later ones, as in FuzzyLite."""
+        """Add a rule's conclusions; return its slot. A consequent's hedge also changes the degrees of later ones
+        (FuzzyLite).
+        """
         degree = slot
         for proposition in rule.consequents:
             if proposition.hedges:

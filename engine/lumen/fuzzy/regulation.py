@@ -31,24 +31,26 @@ RouteField = tuple[str, ...]
 
 
 class Signals(NamedTuple):
-    """The signals to send now: the volume, messages, and events for the behaviour."""
+    """The signals to send now."""
 
     volume: float | None = None
+    """From 0 to 1; None if it has not changed."""
     messages: tuple[Publish, ...] = ()
     events: tuple[Event, ...] = ()
+    """Events for the behaviour."""
 
 
 NOTHING = Signals()
 
 ROUNDING = 1e-9
-"""Greatest difference of float sums that count as equal."""
+"""The greatest difference of float sums that count as equal."""
 
 
 class Regulator:
     """The part of an active controller that moves no joint; it reads no clock and sends nothing; times are in [s].
 
-    Pass it messages (`take`) and the contexts of the behaviour and of those it has invoked (`know`); `signals` returns
-    what should be sent. Message fields in `whole` are rounded to integers.
+    Pass it messages (`take`) and the contexts of the behaviour and of its invoked ones (`know`); `signals` returns what
+    should be sent. Message fields in `whole` are rounded to integers.
     """
 
     def __init__(self, controller: ControllerDefinition, whole: Collection[RouteField] = ()) -> None:
@@ -63,7 +65,7 @@ class Regulator:
         self._changed, self._told_at = False, -inf
 
     def succeed(self, before: "Regulator") -> None:
-        """Continue from another version's state: its inputs, and the last values sent for unchanged bindings."""
+        """Continue from the state of another version: its inputs, and the last values sent for unchanged bindings."""
         mine, theirs = _sources(self.controller), _sources(before.controller)
         same = {name for name in mine if mine[name] == theirs.get(name)}
         self._inputs = {name: value for name, value in before._inputs.items() if name in same}
@@ -79,13 +81,16 @@ class Regulator:
                 self._set(binding.variable, number_at(body, binding.path))
 
     def know(self, contexts: Sequence[Mapping[str, Any]]) -> None:
-        """Update the inputs bound to context keys; the first context with the key counts, the behaviour's own first."""
+        """Update the inputs bound to context keys, from the first of these contexts that has the key."""
         for source in self.controller.context_inputs:
             found = next((context[source.key] for context in contexts if source.key in context), None)
             self._set(source.variable, number(found))
 
     def signals(self, now: float) -> Signals:
-        """Return the signals to send at `now`; empty after small changes, without all inputs, or if no rule fires."""
+        """Return the signals to send at `now`.
+
+        There are none after small changes, before `every` has passed, without all inputs, or if no rule fires.
+        """
         if not self._changed or now - self._told_at < self.controller.tracking.every - ROUNDING:
             return NOTHING
         if self._inputs.keys() != self.controller.inputs.keys():
@@ -105,7 +110,7 @@ class Regulator:
             self._changed = True
 
     def _news(self, signal: SignalBinding) -> bool:
-        """Return True if a signal must be sent, and note its value as sent."""
+        """Return True if a signal must be sent, and record its value as sent."""
         value = self._outputs[signal.variable]
         if isinstance(signal, ThresholdBinding):
             return self._crossed(signal, value)
@@ -118,7 +123,9 @@ class Regulator:
         return True
 
     def _crossed(self, signal: ThresholdBinding, value: float) -> bool:
-        """Return True if the output has passed the threshold, for the first time since it was below the hysteresis."""
+        """Return True if the output has passed the threshold, for the first time since it went
+        back by the hysteresis.
+        """
         way = 1.0 if signal.rising else -1.0
         beyond = way * (value - signal.threshold)
         if signal.variable in self._beyond:
@@ -157,7 +164,7 @@ def _sources(controller: ControllerDefinition) -> dict[str, InputBinding | Conte
 
 
 def _rounded(value: float, step: float) -> float:
-    """Return the value rounded to a tenth of its step or finer: more digits have no use."""
+    """Return the value rounded to a tenth of its step or finer, because more digits are useless."""
     return round(value, 1 - floor(log10(step))) if step > 0.0 else value
 
 
@@ -170,7 +177,7 @@ def _at(path: Sequence[str], value: Any) -> dict[str, Any]:
 
 
 def _merged(one: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a body with the fields of both; of common fields the other's value counts."""
+    """Return a body with the fields of both; a common field has the value of `other`, and common maps are merged."""
     both = {**one, **other}
     for key in one.keys() & other.keys():
         if isinstance(one[key], Mapping) and isinstance(other[key], Mapping):

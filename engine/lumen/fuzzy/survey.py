@@ -28,20 +28,25 @@ STEP_HALVINGS = 14
 
 
 class Slice(NamedTuple):
-    """The values `ys` of `output` over the range of `input`, with the other inputs at rest; NaN if no rule fires."""
+    """An output as a function of one input, the other inputs being at rest."""
 
     output: str
     input: str
     xs: tuple[float, ...]
+    """Values of the input over its range, ascending."""
     ys: tuple[float, ...]
+    """The output at each of them; NaN if no rule fires."""
 
 
 class SurfaceJump(NamedTuple):
-    """A jump of an output from `low` to `high` between two almost equal values of an input, near `x`."""
+    """A jump of an output between two almost equal values of an input."""
 
     x: float
+    """The input's value just before the jump."""
     low: float
+    """The output before the jump."""
     high: float
+    """The output after the jump, which may be lower."""
 
 
 class Survey:
@@ -67,7 +72,7 @@ class Survey:
                     yield Slice(output, name, xs, tuple(point[output] for point in said))
 
     def step(self, found: Slice, share: float) -> SurfaceJump | None:
-        """Return the greatest jump by more than that share of the output's range, located by bisection."""
+        """Return the greatest jump by more than that share of the output's range, located by bisection; else None."""
         output = self.controller.outputs[found.output]
         least = share * (output.maximum - output.minimum)
         gaps = [(abs(b - a), i) for i, (a, b) in enumerate(zip(found.ys, found.ys[1:], strict=False))]
@@ -83,7 +88,9 @@ class Survey:
 
 
 def silent(controller: ControllerDefinition, resolution: int) -> ControllerDefinition:
-    """Return the controller without defaults, with its sets sampled at no more than `resolution` points."""
+    """Return the controller without defaults and previous values, with its sets sampled at
+    most at `resolution` points.
+    """
     outputs = {
         name: replace(v, default=nan, lock_previous=False, resolution=min(v.resolution, resolution))
         for name, v in controller.outputs.items()

@@ -56,15 +56,15 @@ INVERSE_MEMBERSHIPS: Mapping[str, Callable[..., Callable[[Number], Number]]] = {
 }
 """For each monotonic kind the x at which the membership is w, from the term's height and parameters.
 
-NaN if there is no such x, for w above the height. Ramps and `concave` continue beyond it.
+It is NaN if no x has that membership, as for w above the height; ramps and `concave` continue beyond the height.
 """
 
 
 def value(m: Arithmetic, term: Term, names: Sequence[str] = (), inputs: int = 0) -> TermValue:
     """Return a function for the value of a term of kind `constant`, `linear`, `function` or a monotonic kind.
 
-    Its arguments are the degree and the variables called `names`, of which the first `inputs` are the controller's
-    inputs.
+    Its arguments are the degree and the values of the variables `names`, of which the first `inputs` are the
+    controller's inputs.
     """
     if term.kind == "constant":
         return lambda w, values: term.parameters[0]
@@ -82,9 +82,10 @@ def _line(coefficients: tuple[float, ...], inputs: Sequence[Number]) -> Number:
 
 
 class Weighted:
-    """Defuzzifies by weighted average or sum; `which` is the index of the term that each of the given degrees weights.
+    """Defuzzifies by weighted average or sum; `which` is the index of the term that each of the degrees given later
+    weights.
 
-    `values` are the inputs and the outputs before this one, called `names`; the first `inputs` of them are inputs.
+    The values given later are those of the variables `names`, of which the first `inputs` are the controller's inputs.
     """
 
     def __init__(
@@ -102,11 +103,13 @@ class Weighted:
         self._on_arrays: list[TermValue] = []
 
     def crisp(self, degrees: Sequence[float], values: Sequence[float]) -> float:
-        """Return the output; NaN if no term has a weight, or a formula no value."""
+        """Return the output; NaN if no term has a weight, or a formula has no value."""
         return float(self._crisp(NUMBERS, self._on_numbers, degrees, values))
 
     def crisp_batch(self, degrees: "Sequence[Array]", values: "Sequence[Array]") -> "Array":
-        """Return the outputs, Shape (n,), of degrees of Shape (n,) each; NaN if no term has a weight."""
+        """Return the outputs, Shape (n,), of degrees of Shape (n,) each; NaN if no term has a weight, or a formula has
+        no value.
+        """
         self._on_arrays = self._on_arrays or [value(arrays(), term, self._names, self._inputs) for term in self._terms]
         return self._crisp(arrays(), self._on_arrays, degrees, values)  # type: ignore[no-any-return]
 
